@@ -18,6 +18,7 @@ pub fn phrase(finding: &Finding, explanation: &Explanation, words: Translator) -
         finding.parameters.iter().map(|(name, p)| (name.as_str(), value(name, p, words).whole)).collect();
     let named = [("column", &finding.column), ("column2", &finding.column2)];
     given.extend(named.into_iter().filter_map(|(key, name)| Some((key, name.clone()?))));
+    given.extend(finding.formula.clone().map(|formula| ("formula", formula)));
     given.extend(finding.law.as_ref().map(|law| ("law", words.name("explain.law", law))));
     if let Some(name) = corrected(kind) {
         // What a claim does not state, it states to be nil.
@@ -33,7 +34,11 @@ pub fn phrase(finding: &Finding, explanation: &Explanation, words: Translator) -
         let title = title(kind, words);
         return words.with("explain.sentence.bare", &[("title", &title)]);
     }
-    fill(pattern, |name| given.iter().find(|g| g.0 == name).map(|g| g.1.clone()))
+    let what = fill(pattern, |name| given.iter().find(|g| g.0 == name).map(|g| g.1.clone()));
+    match finding.column.as_ref().filter(|_| !places(pattern).any(|name| name == "column")) {
+        Some(column) => words.with("explain.sentence.of_column", &[("what", &what), ("column", column)]),
+        None => what,
+    }
 }
 
 /// The parameter by which an effect corrects a value that the claim states; `None` for one that adds to the claim.
@@ -59,6 +64,7 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Translator) 
     let mut out = vec![];
     if finding.is_unnamed() {
         out.push(words.t("explain.sentence.unknown"));
+        out.extend(shape(finding, words));
         if let Some(rms) = finding.parameters.get("rms_deg_h") {
             let rms = value("rms_deg_h", rms, words).whole;
             out.push(words.with("explain.sentence.size", &[("rms", &rms)]));
@@ -76,6 +82,20 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Translator) 
         let list: Vec<String> = finding.equivalents.iter().map(|k| title(k, words)).collect();
         let list = list.join(&words.t("number.list"));
         out.push(words.with("explain.sentence.equivalents", &[("list", &list)]));
+    }
+    out
+}
+
+/// What a cause without a name looks like, how often it shows and how large it is.
+fn shape(finding: &Finding, words: Translator) -> Vec<String> {
+    let Some(shape) = &finding.shape else { return vec![] };
+    let mut out = vec![words.name("explain.shape", &shape.form)];
+    if let (Some(events), Some(each_s)) = (shape.count, shape.each_s) {
+        let (events, each) = (count(events as u64, words.lang), duration(each_s, words.lang));
+        out.push(words.with("explain.shape.count", &[("count", &events), ("each", &each)]));
+    }
+    if let Some(rms) = shape.rms_deg_h {
+        out.push(words.with("explain.shape.rms", &[("rms", &digits(rms, 2, words.lang))]));
     }
     out
 }

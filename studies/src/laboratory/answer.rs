@@ -22,6 +22,8 @@ pub struct Entry {
     pub kind: String,
     /// Equivalents.
     pub equivalents: Vec<String>,
+    /// Probabilities of kinds.
+    pub probabilities: BTreeMap<String, f64>,
     /// Parameters.
     pub parameters: BTreeMap<String, Stated>,
     /// Places, the principal first.
@@ -116,6 +118,9 @@ fn entry(value: &Value) -> Entry {
         equivalents: value["equivalents"]
             .as_array()
             .map_or_else(Vec::new, |all| all.iter().filter_map(owned).collect()),
+        probabilities: value["probabilities"].as_object().map_or_else(BTreeMap::new, |all| {
+            all.iter().filter_map(|(kind, p)| Some((kind.clone(), p.as_f64()?))).collect()
+        }),
         parameters,
         places,
         column: owned(&value["column"]),

@@ -12,6 +12,15 @@ pub struct Held {
     pub holds: bool,
 }
 
+/// A name with the probability that the answer gives it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Believed {
+    /// 0 to 1.
+    pub probability: f64,
+    /// Whether it is the kind of a concealed effect.
+    pub right: bool,
+}
+
 /// What an answer is worth.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Score {
@@ -47,6 +56,8 @@ pub struct Score {
     pub law: Option<bool>,
     /// Intervals of the parameters.
     pub intervals: Vec<Held>,
+    /// Each name that the first entry gives a probability.
+    pub names: Vec<Believed>,
     /// Explained part of the variance of what was concealed, over the possible part; absent where nothing can be predicted.
     pub explained: Option<f64>,
     /// Explaining again with `augmented.toml` gave `consistent`; absent where it was not tried.
@@ -96,6 +107,7 @@ impl Score {
             decoys_named: named_columns.filter(|c| truth.decoys.contains(c)).count(),
             law,
             intervals: intervals(truth, answer),
+            names: first.map_or_else(Vec::new, |entry| believed(truth, entry)),
             explained: explained(truth, answer, time_s),
             closes: again.map(|verdict| verdict == "consistent"),
         }
@@ -129,6 +141,19 @@ fn overlaps(said: &Place, real: &Place) -> bool {
     let least = 1e-9 + 1e-6 * real.to.abs().max(real.from.abs());
     let common = said.to.min(real.to) - said.from.max(real.from) + least;
     common >= 0.5 * width(said).min(width(real)) && width(said) <= 4.0 * width(real) + 4.0 * least
+}
+
+/// The probabilities of an entry, each with whether a concealed effect has that kind.
+fn believed(truth: &Truth, entry: &Entry) -> Vec<Believed> {
+    let right = |kind: &String| {
+        truth.concealed.iter().any(|part| {
+            // The column is that of the entry, whatever the kind.
+            let named = Entry { kind: kind.clone(), equivalents: vec![], ..entry.clone() };
+            matches(part, &named, false)
+        })
+    };
+    let one = |(kind, p): (&String, &f64)| Believed { probability: *p, right: right(kind) };
+    entry.probabilities.iter().map(one).collect()
 }
 
 fn intervals(truth: &Truth, answer: &Answer) -> Vec<Held> {

@@ -1,6 +1,6 @@
 //! Many scores as rows of a study.
 
-use super::score::Score;
+use super::score::{Believed, Score};
 use super::truth::{Family, Strength};
 use crate::study::{Asked, Row};
 
@@ -19,6 +19,7 @@ pub fn rows(family: Family, scores: &[Score]) -> Vec<Row> {
     let both: Vec<&Score> = scores.iter().collect();
     rows.push(share("any", "no name besides what is there", Asked::AtLeast(0.95), &both, |s| s.extra == 0));
     rows.push(share("any", "no decoy named", Asked::AtLeast(0.99), &both, |s| s.decoys_named == 0));
+    rows.extend(reliability(scores));
     let laws: Vec<&Score> = scores.iter().filter(|s| s.law.is_some()).collect();
     if !laws.is_empty() {
         rows.push(share("any", "law of the column", Asked::Nothing, &laws, |s| s.law == Some(true)));
@@ -74,6 +75,22 @@ fn strength_rows(family: Family, strength: Strength, of: &[&Score]) -> Vec<Row> 
         rows.push(share(&format!("{name}, {subject}"), "named", Asked::Nothing, &own, |s| s.named));
     }
     rows
+}
+
+/// How often names are right to which answers give a probability between two bounds, against the mean of the probabilities.
+fn reliability(scores: &[Score]) -> Vec<Row> {
+    const BOUNDS: [f64; 6] = [0.0, 0.1, 0.4, 0.7, 0.95, 1.0 + 1e-9];
+    let all: Vec<&Believed> = scores.iter().flat_map(|s| &s.names).collect();
+    let one = |bounds: &[f64]| {
+        let inside: Vec<&&Believed> =
+            all.iter().filter(|b| (bounds[0]..bounds[1]).contains(&b.probability)).collect();
+        let of = inside.len() as u64;
+        let mean = inside.iter().map(|b| b.probability).sum::<f64>() / of.max(1) as f64;
+        let right = inside.iter().filter(|b| b.right).count() as u64;
+        let claim = format!("names of probability {mean:.2} on average are right");
+        (of > 0).then(|| Row::share("reliability", &claim, Asked::Nothing, right, of))
+    };
+    BOUNDS.windows(2).filter_map(one).collect()
 }
 
 fn null_rows(scores: &[Score]) -> Vec<Row> {
@@ -132,6 +149,7 @@ mod tests {
             decoys_named: 0,
             law: None,
             intervals: vec![],
+            names: vec![Believed { probability: 0.8, right }],
             explained: Some(f64::from(right)),
             closes: Some(right),
         }
@@ -146,6 +164,7 @@ mod tests {
         assert_eq!(of("explained").measured, Some(0.75));
         assert_eq!(of("no name besides").measured, Some(0.75));
         // A loop can close only where something was found.
+        assert_eq!((of("names of probability 0.80").measured, of("names of").of), (Some(0.75), 4));
         assert_eq!((of("loop").measured, of("loop").of), (Some(1.0), 3));
         assert!(rows.iter().all(|r| !r.quantity.starts_with("middling")), "{rows:?}");
     }

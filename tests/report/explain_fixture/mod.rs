@@ -29,6 +29,7 @@ pub const KINDS: &[(&str, &[(&str, &str)])] = &[
         &[("frequency_hz", "Hz"), ("amplitude_rms_deg_h", "deg/h"), ("coherence_time_s", "s"), RMS],
     ),
     ("line", &[("frequency_hz", "Hz"), ("amplitude_deg_h", "deg/h"), RMS]),
+    ("comb", &[("fundamental_hz", "Hz"), RMS]),
     ("quantization", &[("lsb_arcsec", "arcsec"), RMS]),
     ("bandwidth_filter", &[("cutoff_hz", "Hz")]),
     ("noise_variance_time", &[("ratio", "")]),
@@ -94,7 +95,10 @@ pub fn of_kind(kind: &str) -> Finding {
         column: follows_any.then(|| "pressure_hPa".into()),
         column2: None,
         law: (kind == "column_driver").then(|| "lag".into()),
+        formula: None,
+        shape: None,
         equivalents: vec![],
+        probabilities: std::collections::BTreeMap::new(),
         parameters: listed
             .iter()
             .map(|(name, unit)| ((*name).to_owned(), parameter(3.0, 0.25, unit)))

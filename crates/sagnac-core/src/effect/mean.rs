@@ -124,6 +124,11 @@ pub trait MeanModel: Sync {
         vec![]
     }
 
+    /// How many parameters BIC counts for so many columns: as many, where each has a coefficient of its own size.
+    fn counted(&self, columns: usize) -> usize {
+        columns
+    }
+
     /// Whether one shape is the same cause as an earlier one of the same effect, so that the two are not found beside each
     /// other.
     fn same_cause(&self, _earlier: &[f64], _nonlinear_parameters: &[f64]) -> bool {
@@ -133,6 +138,16 @@ pub trait MeanModel: Sync {
     /// Texts that a claim states beside the numbers and a finding reports, by name.
     fn texts(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Vec<(&'static str, String)> {
         vec![]
+    }
+
+    /// The fitted law as a formula in the units of the columns, for an effect whose law is found and not given.
+    fn formula(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Option<String> {
+        None
     }
 
     /// The course of stated parameters, deg/h, one value a sample; `None` where a parameter or a column is missing.

@@ -57,6 +57,10 @@ pub trait Effect: Sync {
     fn sets_level(&self) -> bool {
         matches!(self.detector(), Some(Detector::Level(_)))
     }
+    /// True for an effect of short events, of which many may be each too weak to be found alone.
+    fn is_short_events(&self) -> bool {
+        false
+    }
     /// For an effect that rounds the output: how the step is stated and found.
     fn rounding(&self) -> Option<&'static dyn Rounding> {
         None

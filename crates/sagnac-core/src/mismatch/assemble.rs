@@ -21,14 +21,12 @@ use super::samples;
 use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
 use super::single_cause;
 use super::tried::{Candidate as Fitted, Tried};
+use super::unnamed;
 use crate::claim::{Claim, Stated};
 use crate::effect::{
     Detection, Domain, Effect, Family, Model, Place, SpectralContext, UNKNOWN, find, stateable,
 };
 use std::collections::BTreeMap;
-
-/// A residual test counts as departed below this, its own scan and the number of tests counted.
-const DEPARTED: f64 = 1e-4;
 
 /// Everything that an explanation rests on.
 pub(super) struct Evidence<'a> {
@@ -169,14 +167,15 @@ fn causes(
     let mut out = findings(named, options.max_effects);
     let mut rest = None;
     let all_named = !out.is_empty() && out.iter().all(|f| f.kind != UNKNOWN);
-    let departs = unknown(after, named.is_empty(), options.alpha);
+    let departs = unnamed::cause(after, named.is_empty(), problem, options);
     // A departure of probability p is worth about −ln p of log-likelihood.
     let share = |u: &Finding| 0.5 * u.delta_bic / (0.5 * u.delta_bic + gained.max(0.0)).max(1e-300);
     if let Some(small) = departs.as_ref().filter(|u| all_named && share(u) < REST) {
         rest = Some(Rest { p_value: small.p_value, share: share(small), places: small.places.clone() });
-    } else if let Some(unknown) = departs {
+    } else if let Some(mut unknown) = departs {
+        unnamed::absorb(&mut unknown, &mut out);
         // What repeats without being a sinusoid has lines for its parts: they are no causes beside it.
-        if after.iter().any(|d| d.test == "comb" && d.below(DEPARTED, after.len())) {
+        if after.iter().any(|d| d.test == "comb" && d.below(unnamed::DEPARTED, after.len())) {
             out.retain(|f| find(&f.kind).and_then(|e| e.family()) != Some(Family::Line));
         }
         out.push(unknown);
@@ -211,9 +210,12 @@ fn findings(named: &[Named], allowed: usize) -> Vec<Finding> {
                     column: None,
                     column2: None,
                     law: None,
+                    formula: None,
+                    shape: None,
                     equivalents: vec![],
+                    probabilities: BTreeMap::new(),
                     parameters: BTreeMap::new(),
-                    places: t.places.iter().map(record).collect(),
+                    places: t.places.iter().map(PlaceRecord::of).collect(),
                     delta_bic: members().map(|m| m.delta_bic).sum(),
                     p_value: members().map(|m| m.p_value).fold(1.0, f64::min),
                     heldout_gain: None,
@@ -240,7 +242,10 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
         let [from, to] = [instant.ci95[0] - half, instant.ci95[1] + half];
         places.iter_mut().filter(|p| p.domain == Domain::Time).for_each(|p| (p.from, p.to) = (from, to));
     }
-    let fitted: Vec<&str> = chosen.equivalents.iter().map(|e| e.effect.kind()).collect();
+    // Two effects of the catalogue can be of one kind in reports.
+    let own = chosen.effect.reported_kind();
+    let fitted: Vec<&str> =
+        chosen.equivalents.iter().map(|e| e.effect.reported_kind()).filter(|kind| *kind != own).collect();
     let driver =
         ambiguous_oscillation(chosen.effect, &estimated.reported, problem.drivers.length_s(), options);
     let equivalents = chosen
@@ -261,6 +266,7 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
         stated_as: chosen.effect,
         estimated,
         equivalents,
+        names: chosen.names.clone(),
         places,
         delta_bic: chosen.delta_bic,
         p_value: chosen.p_value,
@@ -319,23 +325,23 @@ fn candidate(fitted: &Fitted) -> Candidate {
     }
 }
 
-fn record(place: &Place) -> PlaceRecord {
-    PlaceRecord { domain: place.domain, from: place.from, to: place.to }
-}
-
 fn finding(named: &Named) -> Finding {
     let own = !named.effect.in_format();
+    let kind = named.effect.reported_kind();
     let text = |name: &str| named.estimated.texts.get(name).cloned();
     Finding {
-        kind: named.effect.reported_kind().to_owned(),
-        effect: own.then(|| named.effect.kind().to_owned()),
+        kind: kind.to_owned(),
+        effect: (kind != named.effect.kind()).then(|| named.effect.kind().to_owned()),
         column: text("column"),
         column2: text("column2"),
         law: text("law"),
+        formula: named.estimated.formula.clone(),
+        shape: None,
         equivalents: named.equivalents.iter().map(|e| (*e).to_owned()).collect(),
+        probabilities: named.names.iter().map(|n| (n.kind.to_owned(), n.probability)).collect(),
         // Of a course of no kind, what is told of its parts is no parameter of the format.
         parameters: if own { BTreeMap::new() } else { named.estimated.reported.clone() },
-        places: named.places.iter().map(record).take(3).collect(),
+        places: named.places.iter().map(PlaceRecord::of).take(3).collect(),
         delta_bic: named.delta_bic,
         p_value: named.p_value,
         heldout_gain: named.improvement.map(|i| i.heldout_gain),
@@ -373,39 +379,6 @@ fn places(
         out.extend(contribution::time_of(slot, best, &problem.spectra));
     }
     out
-}
-
-/// What departs from the hypothesis and has no name.
-fn unknown(after: &[Departure], nothing_found: bool, alpha: f64) -> Option<Finding> {
-    let bound = if nothing_found { (0.3 * alpha).min(1e-3) } else { DEPARTED };
-    let mut departed: Vec<&Departure> = after.iter().filter(|d| d.below(bound, after.len())).collect();
-    departed.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
-    // A track is the narrowest place of what other tests see whole: theirs come first.
-    departed.sort_by_key(|d| d.test == "track");
-    let worst = departed.first()?;
-    let mut places: Vec<PlaceRecord> = vec![];
-    for place in departed.iter().flat_map(|d| [Some(d.place), d.beside]).flatten() {
-        let place = record(&place);
-        if !places.iter().any(|p| p.domain == place.domain) {
-            places.push(place);
-        }
-    }
-    places.truncate(3);
-    let ln_p = (worst.ln_p + (after.len().max(1) as f64).ln()).min(0.0);
-    Some(Finding {
-        kind: UNKNOWN.to_owned(),
-        effect: None,
-        column: None,
-        column2: None,
-        law: None,
-        equivalents: vec![],
-        parameters: BTreeMap::new(),
-        places,
-        delta_bic: -2.0 * ln_p,
-        p_value: ln_p.exp().max(1e-300),
-        heldout_gain: None,
-        removed_share: None,
-    })
 }
 
 /// Rows missing on the grid that the claim states. They are a fact: excluded from the search, the effect leaves a cause

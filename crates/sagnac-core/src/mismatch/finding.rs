@@ -1,6 +1,6 @@
 //! What an explanation says, as `explain.json` has it.
 
-use crate::effect::Domain;
+use crate::effect::{Domain, Place};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -72,7 +72,8 @@ impl MismatchVerdict {
 pub struct Finding {
     /// Kind of the contract, or `unknown`.
     pub kind: String,
-    /// Effect of the catalogue, where `kind` is `unknown` because the format has no kind for it.
+    /// Effect of the catalogue, where the format has no kind of that name for it: `kind` is then `unknown`, or the kind that
+    /// holds it among others.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub effect: Option<String>,
     /// Column that it follows, for a kind that any column can drive.
@@ -84,8 +85,19 @@ pub struct Finding {
     /// Law by which it follows that column: `linear`, `rate`, `lag`, `curve`, `hysteresis` or `product`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub law: Option<String>,
+    /// The law that it follows as a formula in deg/h and the units of the columns, rates of change per hour, for a law that no
+    /// kind describes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub formula: Option<String>,
+    /// What it looks like, for a cause without a name.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub shape: Option<ShapeRecord>,
     /// Kinds that this recording cannot tell from it, at most three.
     pub equivalents: Vec<String>,
+    /// How probable each kind is, given that an effect of the catalogue is there; those below a hundredth are left out, and so is all
+    /// of it where the cause was found in single samples.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub probabilities: BTreeMap<String, f64>,
     /// Parameters by name.
     pub parameters: BTreeMap<String, ParameterValue>,
     /// Where it lives, principal first.
@@ -115,6 +127,23 @@ impl Finding {
     }
 }
 
+/// What a cause without a name looks like.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ShapeRecord {
+    /// The test that shows it best, as in `tests`.
+    pub form: String,
+    /// Events that stand out by themselves.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub count: Option<usize>,
+    /// About how long each is, s.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub each_s: Option<f64>,
+    /// Standard deviation of what it adds at its place, deg/h.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rms_deg_h: Option<f64>,
+}
+
 /// A parameter with its interval.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -137,6 +166,13 @@ pub struct PlaceRecord {
     pub from: f64,
     /// Upper end.
     pub to: f64,
+}
+
+impl PlaceRecord {
+    /// A place as it is recorded.
+    pub fn of(place: &Place) -> PlaceRecord {
+        PlaceRecord { domain: place.domain, from: place.from, to: place.to }
+    }
 }
 
 /// What named effects leave: more than chance, and so small a part of the misfit that it is no cause of its own.

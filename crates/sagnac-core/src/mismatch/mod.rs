@@ -10,11 +10,11 @@
 //! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `tried`, `problem` |
 //! | tests that name no physics | `departures` |
 //! | every effect tried as an addition | `nonlinear_search`, `candidates`, `filtered` |
-//! | the fewest effects that explain the recording | `select` |
+//! | the fewest effects that explain the recording, and how probable their names are | `select`, `posterior` |
 //! | effects on single samples, by their detectors | `flat`, `samples`, `jumps` |
 //! | parameters with intervals, what effects add, what they improve | `estimates`, `contribution`, `heldout`, `improvement` |
 //! | what became of each column | `columns` |
-//! | causes, equivalents, the augmented claim, figures | `single_cause`, `experiment`, `augmented`, `draw`, `figures`, `assemble` |
+//! | causes, equivalents, the augmented claim, figures | `single_cause`, `unnamed`, `experiment`, `augmented`, `draw`, `figures`, `assemble` |
 //! | all of it in order | `engine` |
 //! | a claim from a simulated recording, and what that recording shows itself | `identify`, `witness`, `taken` |
 
@@ -44,6 +44,7 @@ pub mod noise_fit;
 mod nonlinear_search;
 pub mod options;
 pub mod outcome;
+mod posterior;
 pub mod problem;
 pub mod quantization_grid;
 pub mod regular;
@@ -54,6 +55,7 @@ pub mod spectral_data;
 mod taken;
 mod terms;
 pub mod tried;
+mod unnamed;
 mod usable;
 mod witness;
 

@@ -3,6 +3,7 @@
 use super::estimates::Estimated;
 use super::finding::ParameterValue;
 use super::improvement::Improvement;
+use super::posterior::Probable;
 use super::select::ENOUGH;
 use crate::effect::{Detection, Effect, Place, Value};
 
@@ -16,6 +17,8 @@ pub struct Named {
     pub estimated: Estimated,
     /// Kinds that would have served as well.
     pub equivalents: Vec<&'static str>,
+    /// How probable each name is; empty for an effect that its detector found.
+    pub names: Vec<Probable>,
     /// Where, principal first.
     pub places: Vec<Place>,
     /// BIC without it less BIC with it.
@@ -44,10 +47,12 @@ impl Named {
             stated_as: effect,
             estimated: Estimated {
                 reported: found.reported.iter().map(value).collect(),
+                formula: None,
                 texts: found.stated.iter().filter_map(text).collect(),
                 stated: found.stated.clone(),
             },
             equivalents: vec![],
+            names: vec![],
             places: found.places.clone(),
             delta_bic,
             p_value: found.p_value,

@@ -53,7 +53,7 @@ pub fn take_invalid(
         }
         let Some(place) = detection.places.first().copied().filter(|_| !stated) else { continue };
         found.named.push(Named::detected(effect, &detection, delta_bic));
-        out.push(Departure { test, place, beside: None, ln_p: -gain });
+        out.push(Departure { test, place, beside: None, ln_p: -gain, shape: None });
     }
     out
 }

@@ -6,6 +6,7 @@ use super::hypothesis::{Hypothesis, fit};
 use super::noise_fit::{Noise, base_index};
 use super::nonlinear_search::LocalSearch;
 use super::options::Options;
+use super::posterior::{Probable, name_of, probabilities};
 use super::terms::CourseIn;
 use super::terms::SpectrumIn;
 use super::tried::{Candidate, SpectralDataSet, Tried};
@@ -45,6 +46,8 @@ pub struct Chosen {
     pub equivalents: Vec<Candidate>,
     /// For a response that is described by terms: the kind whose law alone explains most, fitted in its place.
     pub law: Option<Candidate>,
+    /// How probable each name is, the likeliest first.
+    pub names: Vec<Probable>,
     /// What single samples say would have served as well.
     pub beside: Option<&'static str>,
     /// The hypothesis without it, fitted.
@@ -97,7 +100,7 @@ fn course_parameters(course: &CourseIn, spectra: &SpectralDataSet) -> usize {
     let spectral = spectra.of(c.resolution());
     let parts = c.regressors(&course.nonlinear_parameters, &spectral.drivers);
     let nonlinear_parameters = LocalSearch::of(c, &spectral.drivers).free();
-    parts.columns.len() + parts.nuisance.len() + nonlinear_parameters
+    c.counted(parts.columns.len()) + parts.nuisance.len() + nonlinear_parameters
 }
 
 /// BIC of an addition with what it lets free beside its own parameters, as the state of a delay before the record, charged
@@ -245,18 +248,41 @@ fn pruned(mut best: Tried, spectra: &SpectralDataSet, rows: usize) -> Tried {
     }
 }
 
+/// What a law that stands for a response is worth alone, nats.
+fn worth_of_law(law: &Candidate) -> f64 {
+    law.gain - 2.0 * law.parameters as f64
+}
+
 /// For a response that is described by terms: the kinds whose law alone explains a good part of what it explains, the best
 /// first. The others are its equivalents: the response has something of each.
 fn laws<'a>(effect: &dyn Effect, rivals: &'a [Candidate]) -> Vec<&'a Candidate> {
     /// Share of the best law's gain from which another is no worse a name.
     const NEAR: f64 = 0.7;
-    let worth = |c: &&Candidate| c.gain - 2.0 * c.parameters as f64;
+    let worth = |c: &&Candidate| worth_of_law(c);
     let kinds = effect.named_by_law();
     let mut laws: Vec<&Candidate> = rivals.iter().filter(|c| kinds.contains(&c.effect.kind())).collect();
     laws.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
     let best = laws.first().map_or(0.0, worth);
     laws.retain(|c| worth(c) >= NEAR * best);
     laws
+}
+
+/// How probable the names of a chosen effect are: its own and those of its rivals in its place, or of the laws of a response.
+fn names(
+    effect: &'static dyn Effect,
+    best: &Tried,
+    rivals: &[Candidate],
+    laws: &[&Candidate],
+    rank_without: f64,
+    rows: usize,
+) -> Vec<Probable> {
+    if !laws.is_empty() {
+        return probabilities(laws.iter().map(|c| (c.effect.kind(), worth_of_law(c))));
+    }
+    let own = 0.5 * (rank_without - best.rank(rows));
+    let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind());
+    let others = others.map(|c| name_of(c, rows, rank_without));
+    probabilities([(effect.reported_kind(), own)].into_iter().chain(others))
 }
 
 fn chosen(
@@ -289,6 +315,7 @@ fn chosen(
             } else {
                 laws.iter().skip(1).take(MOST_EQUIVALENTS).map(|c| (*c).clone()).collect()
             };
+            let names = names(effect, best, &rivals, &laws, without.rank(rows), rows);
             let law = laws.first().map(|c| (*c).clone());
             let better = rivals
                 .iter()
@@ -298,7 +325,18 @@ fn chosen(
                 .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)))
                 .cloned();
             let delta_bic = without.bic(rows) - best.bic(rows);
-            Chosen { effect, slot, delta_bic, p_value, equivalents, law, beside: None, without, better }
+            Chosen {
+                effect,
+                slot,
+                delta_bic,
+                p_value,
+                equivalents,
+                law,
+                names,
+                beside: None,
+                without,
+                better,
+            }
         })
         .collect();
     out.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));

@@ -126,6 +126,7 @@ pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem, options: &Opti
             ..Estimated::default()
         },
         equivalents: vec![],
+        names: vec![],
         places: hull(named, &[first, second]),
         delta_bic: pair.iter().map(|n| n.delta_bic).sum(),
         p_value: pair.iter().map(|n| n.p_value).fold(1.0, f64::min),
@@ -184,6 +185,7 @@ mod tests {
             stated_as: find(kind).unwrap(),
             estimated: Estimated { reported, ..Estimated::default() },
             equivalents: vec![],
+            names: vec![],
             places: vec![Place { domain: Domain::Time, from: at - 1.0, to: at + 1.0 }],
             delta_bic: 50.0,
             p_value: 1e-9,

@@ -88,17 +88,27 @@ pub struct Candidate {
     pub p_value: f64,
 }
 
-/// What an addition is worth; `trials` counts the independent places that its own search looked at.
+/// What was looked at to find an addition.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Looked {
+    /// Numbers that were fitted.
+    pub numbers: usize,
+    /// Independent places that its own search looked at.
+    pub trials: f64,
+}
+
+/// What an addition is worth.
 pub(super) fn rated(
     effect: &'static dyn Effect,
     tried: Tried,
     before: &Tried,
-    trials: f64,
+    looked: Looked,
     rows: usize,
 ) -> Candidate {
     let gain = tried.fit.log_likelihood - before.fit.log_likelihood;
     let parameters = tried.parameters - before.parameters;
-    let p_value = (trials.max(1.0) * chi_square_tail(2.0 * gain.max(0.0), parameters as f64)).min(1.0);
+    let chance = chi_square_tail(2.0 * gain.max(0.0), looked.numbers as f64);
+    let p_value = (looked.trials.max(1.0) * chance).min(1.0);
     let delta_bic = before.bic(rows) - tried.bic(rows);
     Candidate { effect, tried, gain, parameters, delta_bic, p_value }
 }
@@ -140,7 +150,7 @@ mod tests {
     #[test]
     fn an_addition_pays_the_logarithm_of_the_rows_for_each_parameter() {
         let (before, after) = (tried(-100.0, 1, 0.0), tried(-80.0, 3, -3.0));
-        let one = rated(find("line").unwrap(), after, &before, 50.0, 1000);
+        let one = rated(find("line").unwrap(), after, &before, Looked { numbers: 2, trials: 50.0 }, 1000);
         assert_eq!((one.gain, one.parameters), (20.0, 2));
         // 2 · 20 − 2 ln 1000.
         assert!((one.delta_bic - (40.0 - 2.0 * 1000f64.ln())).abs() < 1e-9);

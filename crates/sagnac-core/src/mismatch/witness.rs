@@ -236,7 +236,10 @@ mod tests {
             column: None,
             column2: None,
             law: None,
+            formula: None,
+            shape: None,
             equivalents: vec![],
+            probabilities: std::collections::BTreeMap::new(),
             parameters: parameters
                 .iter()
                 .map(|(name, value, half)| {

@@ -72,6 +72,12 @@ pub fn cosine_integral(x: f64) -> f64 {
     -multiply(h, (x.cos(), -x.sin())).0
 }
 
+/// Standard normal number of a χ² of some degrees of freedom (Wilson and Hilferty 1931).
+pub fn chi_square_normal(sum: f64, dof: f64) -> f64 {
+    let a = 2.0 / (9.0 * dof);
+    ((sum / dof).cbrt() - (1.0 - a)) / a.sqrt()
+}
+
 /// The standard normal number of a ratio of variances (Paulson 1942).
 pub fn f_normal(ratio: f64, dof: f64, others: f64) -> f64 {
     let (a, b) = (2.0 / (9.0 * dof), 2.0 / (9.0 * others));

@@ -143,6 +143,11 @@ impl MeanModel for DeadZone {
         Some(column.into_iter().map(|x| share * x).collect())
     }
 
+    /// A unit has one zone.
+    fn same_cause(&self, _earlier: &[f64], _nonlinear_parameters: &[f64]) -> bool {
+        true
+    }
+
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<Place> {
         let at = |w: &f64| Place { domain: Domain::InputRate, from: -w / 3600.0, to: w / 3600.0 };
         nonlinear_parameters.first().map(at).into_iter().collect()

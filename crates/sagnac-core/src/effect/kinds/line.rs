@@ -1,6 +1,7 @@
 //! A coherent sinusoid.
 
 use super::unobserved_driver::UnobservedDriver;
+use crate::effect::shared::periodogram::LineGains;
 use crate::effect::shared::search::peaks;
 use crate::effect::shared::sinusoid::{averaged, columns, polar, wave};
 use crate::effect::{
@@ -10,7 +11,6 @@ use crate::effect::{
 use crate::numeric::cosine::sinusoid_modes;
 use crate::numeric::optimize::parabolic_peak;
 use crate::numeric::range::Bounds;
-use realfft::RealFftPlanner;
 use std::f64::consts::TAU;
 
 pub struct Line;
@@ -34,27 +34,8 @@ describe! {
     }
 }
 
-/// Twice-padded power of the score at the frequencies j/(2n·dt) of a length that transforms fast, as gains of a line,
-/// and the step of the frequencies, Hz.
-fn periodogram(drivers: &Drivers, context: &SearchContext<'_>) -> (Vec<f64>, f64) {
-    let n = context.score.len();
-    let padded = (2 * n).next_power_of_two();
-    let mut input = context.score.to_vec();
-    input.resize(padded, 0.0);
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
-    let mut spectrum = plan.make_output_vec();
-    if plan.process(&mut input, &mut spectrum).is_err() {
-        return (vec![], 1.0);
-    }
-    let step = 1.0 / (padded as f64 * drivers.dt_s);
-    // Mode k lies at k/(2n·dt). Weighted by the inverse covariance a sinusoid of amplitude 1 has n/2 over the power there.
-    let power = |j: usize| {
-        let mode = (2.0 * n as f64 * j as f64 / padded as f64).round() as usize;
-        context.powers.get(mode.clamp(1, n - 1)).copied().unwrap_or(0.0)
-    };
-    let gains = spectrum.iter().enumerate().map(|(j, w)| w.norm_sqr() * power(j) / n as f64).collect();
-    (gains, step)
-}
+/// Fewest cycles in the record: of fewer, nothing that is slow can be told from a line.
+const CYCLES: f64 = 2.5;
 
 impl MeanModel for Line {
     fn resolution(&self) -> Resolution {
@@ -70,7 +51,7 @@ impl MeanModel for Line {
         if n < 32 || context.score.len() != n || context.powers.len() != n {
             return Starts { points: vec![], trials: 1.0 };
         }
-        let (mut gains, step) = periodogram(drivers, context);
+        let LineGains { mut gains, step_hz: step } = LineGains::of(drivers, context);
         let Bounds { low, high } = self.bounds(drivers)[0];
         for (j, gain) in gains.iter_mut().enumerate() {
             if !(low..=high).contains(&(j as f64 * step)) {
@@ -84,7 +65,8 @@ impl MeanModel for Line {
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         let resolution = 1.0 / drivers.length_s();
-        vec![Bounds::new(resolution, (0.5 / drivers.dt_s - 0.5 * resolution).max(resolution))]
+        let low = CYCLES * resolution;
+        vec![Bounds::new(low, (0.5 / drivers.dt_s - 0.5 * resolution).max(low))]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
@@ -154,7 +136,7 @@ mod tests {
         // Half the square of amplitude over deviation, n/2 samples' worth.
         let left = averaged(f * 0.1);
         let expected = 0.5 * (n as f64 / 2.0) * left * left / power;
-        let (gains, step) = periodogram(&drivers, &context);
+        let LineGains { gains, step_hz: step } = LineGains::of(&drivers, &context);
         let top = gains[(f / step) as usize..][..2].iter().copied().fold(0.0, f64::max);
         assert!((top / expected - 1.0).abs() < 0.25, "{top} {expected}");
     }

@@ -34,10 +34,10 @@ impl MeanModel for Saturation {
         varies(drivers.table_rate.as_deref()) && largest(drivers) > 0.0
     }
 
-    /// Limits that fall short of the largest rate by shares from a millionth to three quarters.
+    /// Limits that fall short of the largest rate by shares from a billionth, which is what the best units resolve, to three quarters.
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let most = largest(drivers);
-        let shares = crate::effect::shared::search::log_grid(1e-6, 0.75, 40);
+        let shares = crate::effect::shared::search::log_grid(1e-9, 0.75, 60);
         let limits = shares.into_iter().map(|s| vec![most * (1.0 - s)]);
         let limits = shortlist(self, limits, 6, drivers, context);
         let points = best_of(self, limits, 3, drivers, context);
@@ -67,6 +67,11 @@ impl MeanModel for Saturation {
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         beyond(number(values, PARAMS[0].name)?, drivers)
+    }
+
+    /// A unit has one limit.
+    fn same_cause(&self, _earlier: &[f64], _nonlinear_parameters: &[f64]) -> bool {
+        true
     }
 
     /// The rates beyond the limit, those of the sign of which more is cut off.
@@ -106,6 +111,29 @@ impl MeanModel for Saturation {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_limit_just_below_the_largest_rate_is_among_the_starts() {
+        use crate::numeric::cosine::dct2;
+        let n = 4000;
+        let rate: Vec<f64> = (0..n).map(|i| f64::from(i / 500 % 4) * 5.0 - 7.5).collect();
+        let drivers = Drivers {
+            dt_s: 1.0,
+            samples: n as usize,
+            averaged: 1,
+            table_rate: Some(rate),
+            ..Drivers::default()
+        };
+        // 2.7 mdeg/h of 7.5 deg/s: a tenth of a millionth.
+        let limit = 7.5 * (1.0 - 1e-7);
+        let residual = beyond(limit, &drivers).unwrap();
+        let power = 1e-8;
+        let score: Vec<f64> = residual.iter().map(|r| r / power).collect();
+        let (modes, powers) = (dct2(&residual), vec![power; n as usize]);
+        let context = SearchContext { score: &score, modes: &modes, powers: &powers };
+        let best = Saturation.starts(&drivers, &context).points[0][0];
+        assert!(((7.5 - best) / 7.5e-7 - 1.0).abs() < 0.3, "{best}");
+    }
 
     #[test]
     fn samples_in_which_the_rate_passes_the_limit_are_told() {

@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::f64::consts::PI;
 
 /// Kinds of the contract, section 3, without `unknown`.
-const KINDS: [&str; 41] = [
+const KINDS: [&str; 42] = [
     "temp_linear",
     "temp_polynomial",
     "temp_rate",
@@ -29,6 +29,7 @@ const KINDS: [&str; 41] = [
     "markov_long",
     "quasi_periodic",
     "line",
+    "comb",
     "quantization",
     "bandwidth_filter",
     "noise_variance_time",
@@ -174,6 +175,7 @@ fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "rate_ramp" => (drivers(), vec![0.1]),
         "diurnal" => (days(), vec![0.02, 86_400.0, 40.0]),
         "line" => (drivers(), vec![0.2345, 0.01, 117.0]),
+        "comb" => (drivers(), vec![0.0612]),
         "bias_step" => (drivers(), vec![0.05, 2111.3]),
         // At one heading: a table that turns shows the new heading in all its projections.
         "heading_change" => (Drivers { table_angle: None, ..drivers() }, vec![0.05, 2111.3]),
@@ -191,8 +193,10 @@ fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "temp_response" => (drivers(), vec![25.0, 15.0]),
         "column_driver" => (drivers(), vec![f64::NAN, 1010.0, 5.0]),
         "sf_driver" => (drivers(), vec![20.0, 27.0]),
+        "sf_unrecorded" => (drivers(), vec![1000.0, 3000.0]),
         "time_offset" => (drivers(), vec![3.21]),
         "clock_drift" => (drivers(), vec![-870.0]),
+        "column_law" => (drivers(), vec![]),
         "column_product" => (drivers(), vec![0.0, 25.0, 15.0, 27.0, 0.5]),
         "column_curve" => (drivers(), vec![0.0, 27.0, 0.5]),
         "drifting_line" => (drivers(), vec![0.2345, 1e-5, 0.015, 117.0, 2499.75]),
@@ -209,8 +213,18 @@ fn values(effect: &dyn Effect, numbers: &[f64], lists: Vec<(&'static str, Vec<f6
 fn true_values(effect: &dyn Effect, numbers: &[f64]) -> Values {
     let lists = match effect.kind() {
         "temp_polynomial" => vec![("coefficients_deg_h", vec![0.01, 0.05, -0.03])],
+        "sf_unrecorded" => vec![("coefficients_ppm", vec![2.0, -3.0])],
+        "column_law" => vec![
+            ("centers", vec![1010.0, 25.0]),
+            ("half_ranges", vec![5.0, 15.0]),
+            ("coefficients_deg_h", vec![0.01]),
+        ],
         "column_product" => vec![("coefficients_deg_h", vec![0.03, 0.0, 0.01])],
         "column_curve" => vec![("coefficients_deg_h", vec![0.01, 0.03])],
+        "comb" => vec![
+            ("harmonics", vec![1.0, 2.0, 4.0]),
+            ("coefficients_deg_h", vec![0.03, 0.0, 0.0, 0.02, 0.015, 0.01]),
+        ],
         // A curve, a delay and a play at once.
         "temp_response" | "column_driver" => vec![
             ("terms", vec![1.0, 2.0, 12.0, 13.0]),
@@ -224,7 +238,9 @@ fn true_values(effect: &dyn Effect, numbers: &[f64]) -> Values {
         "sf_driver" => Some("supply_v"),
         _ => None,
     };
-    let texts = column.map(|name| ("column".to_owned(), Value::Text(name.to_owned())));
+    let terms = (effect.kind() == "column_law").then_some("rate pressure_hPa * value temp_degC");
+    let text = |name: &str, text: &str| (name.to_owned(), Value::Text(text.to_owned()));
+    let texts = column.map(|c| text("column", c)).into_iter().chain(terms.map(|t| text("terms", t)));
     values(effect, numbers, lists).into_iter().chain(texts).collect()
 }
 

@@ -1,5 +1,6 @@
 //! Whether a column follows the rate by chance: the same column shifted in time can only do so by chance.
 
+use super::pursuit::dot;
 use super::response::{ResponseFound, regressors, search};
 use crate::effect::{Drivers, SearchContext};
 use crate::numeric::cosine::dct2;
@@ -47,7 +48,7 @@ pub(in crate::effect) fn follows_by_chance(
 }
 
 /// A series moved along its even extension: what leaves at one end comes back at the other without a jump.
-fn mirrored_shift(values: &[f64], shift: usize) -> Vec<f64> {
+pub(super) fn mirrored_shift(values: &[f64], shift: usize) -> Vec<f64> {
     let n = values.len();
     let at = |i: usize| {
         let i = (i + shift) % (2 * n);
@@ -72,10 +73,6 @@ fn orthonormal(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
         }
     }
     out
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
 }
 
 #[cfg(test)]

@@ -2,11 +2,12 @@
 //! several time constants, play of several widths. It decides *that* a column drives the rate and how much it explains,
 //! before anything is said of the law.
 //!
-//! The terms are chosen one by one by what they gain under the noise at hand (orthogonal matching pursuit, Pati, Rezaiifar
-//! and Krishnaprasad, Asilomar 1993), each for a price, so that a response of one law stays as cheap as that law.
+//! The terms are chosen one by one by what they gain under the noise at hand, each for a price, so that a response of one law
+//! stays as cheap as that law.
 
 use super::decay::decay;
 use super::polynomial::Scale;
+use super::pursuit::{choices, pursue, remove, unit};
 use super::thermal::delayed;
 use crate::effect::{Drivers, Regressors, SearchContext, Values, list, number};
 use crate::numeric::cosine::dct2;
@@ -24,8 +25,6 @@ const MAX_TERMS: usize = 6;
 /// Gain of log-likelihood that each term must bring: half the logarithm of some sixty modes that tell of a slow course, and
 /// what the best of several terms gains by chance.
 const PRICE: f64 = 4.0;
-/// Share of a term that must be left after the terms before it.
-const INDEPENDENT: f64 = 1e-4;
 
 /// Name of the list of terms in a claim.
 pub(in crate::effect) const TERMS_LIST: &str = "terms";
@@ -211,30 +210,8 @@ impl Dictionary {
 
     /// Chooses terms among those allowed, one by one; each must gain the price.
     fn pursue(&self, allowed: impl Fn(&Term) -> bool, most: usize) -> (u32, f64) {
-        let mut left: Vec<Option<Vec<f64>>> =
-            self.terms.iter().zip(&self.modes).map(|(t, m)| allowed(t).then(|| m.clone())).collect();
-        let sizes: Vec<f64> = self.modes.iter().map(|m| dot(m, m)).collect();
-        let mut residual = self.residual.clone();
-        let (mut mask, mut total) = (0u32, 0.0);
-        for _ in 0..most {
-            let gain = |(i, m): (usize, &Option<Vec<f64>>)| {
-                let m = m.as_ref()?;
-                let size = dot(m, m);
-                if !(size > INDEPENDENT * sizes[i] && size > 0.0) {
-                    return None;
-                }
-                Some((i, 0.5 * dot(m, &residual).powi(2) / size))
-            };
-            let best = left.iter().enumerate().filter_map(gain).max_by(|a, b| a.1.total_cmp(&b.1));
-            let Some((i, gained)) = best.filter(|(_, g)| *g >= PRICE) else { break };
-            let Some(chosen) = left[i].take() else { break };
-            let direction = unit(chosen);
-            remove(&mut residual, &direction);
-            left.iter_mut().flatten().for_each(|m| remove(m, &direction));
-            mask |= 1 << i;
-            total += gained;
-        }
-        (mask, total)
+        let chosen = pursue(&self.modes, |i| allowed(&self.terms[i]), &self.residual, most, PRICE);
+        (chosen.terms.iter().fold(0, |mask, i| mask | 1 << i), chosen.gain)
     }
 }
 
@@ -249,8 +226,7 @@ pub(in crate::effect) fn search(
     if mask == 0 {
         return None;
     }
-    let chosen = mask.count_ones() as usize;
-    let trials = (0..chosen).map(|i| (TERMS - i) as f64 / (i + 1) as f64).product();
+    let trials = choices(TERMS, mask.count_ones() as usize);
     Some(ResponseFound { mask, law: leading_law(&dictionary), gain, trials })
 }
 
@@ -349,7 +325,8 @@ fn scaled(values: &[f64], scale: Scale) -> Vec<f64> {
     values.iter().map(|v| scale.scaled(*v)).collect()
 }
 
-fn rate_per_hour(scaled: &[f64], dt_s: f64) -> Vec<f64> {
+/// Rate of change per hour; differences over two samples, over one at the ends.
+pub(super) fn rate_per_hour(scaled: &[f64], dt_s: f64) -> Vec<f64> {
     let n = scaled.len();
     let at = |i: usize| {
         let (a, b) = (i.saturating_sub(1), (i + 1).min(n - 1));
@@ -380,23 +357,6 @@ fn legendre(order: usize, x: f64) -> f64 {
     let slope = 0.5 * (order * (order + 1)) as f64;
     let sign = if inside < 0.0 && order.is_multiple_of(2) { -1.0 } else { 1.0 };
     here + sign * slope * (x - inside)
-}
-
-fn dot(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(x, y)| x * y).sum()
-}
-
-fn unit(mut v: Vec<f64>) -> Vec<f64> {
-    let size = dot(&v, &v).sqrt();
-    if size > 0.0 {
-        v.iter_mut().for_each(|x| *x /= size);
-    }
-    v
-}
-
-fn remove(v: &mut [f64], direction: &[f64]) {
-    let share = dot(v, direction);
-    v.iter_mut().zip(direction).for_each(|(x, d)| *x -= share * d);
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::mismatch::noise_fit::Noise;
 use crate::mismatch::nonlinear_search::LocalSearch;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::CourseIn;
-use crate::mismatch::tried::{Candidate, SpectralDataSet, Tried, own_odds, rated};
+use crate::mismatch::tried::{Candidate, Looked, SpectralDataSet, Tried, own_odds, rated};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::least_squares::{Normal, subtract};
 use std::borrow::Cow;
@@ -174,7 +174,9 @@ pub(super) fn try_course(
     let local = LocalSearch::of(course, drivers);
     let (shape, gain) = best_shape(&starts.points, &local, &ShapeSearch::new(course, ground))?;
     let parts = course.regressors(&shape, drivers);
-    let added = parts.columns.len() + parts.nuisance.len() + local.free();
+    let beside = parts.nuisance.len() + local.free();
+    let numbers = parts.columns.len() + beside;
+    let added = course.counted(parts.columns.len()) + beside;
     let mut hypothesis = with_course(&before.hypothesis, effect, &shape, &before.hypothesis.noise);
     // The noise, fitted anew, can give at most about as much again.
     let worth = 4.0 * gain - added as f64 * (spectra.rows as f64).ln();
@@ -205,5 +207,6 @@ pub(super) fn try_course(
         parameters: before.parameters + added,
         odds: before.odds + (course.odds(&shape, drivers) + own_odds(effect)),
     };
-    allowed.then(|| rated(effect, tried, before, starts.trials, spectra.rows))
+    let looked = Looked { numbers, trials: starts.trials };
+    allowed.then(|| rated(effect, tried, before, looked, spectra.rows))
 }

@@ -5,7 +5,7 @@ use crate::mismatch::hypothesis::fit;
 use crate::mismatch::noise_fit::{self, Noise, base_index};
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::SpectrumIn;
-use crate::mismatch::tried::{Candidate, SpectralDataSet, Tried, own_odds, rated};
+use crate::mismatch::tried::{Candidate, Looked, SpectralDataSet, Tried, own_odds, rated};
 
 /// The best addition of a process, a filter or a coefficient set free.
 pub(super) fn try_spectrum(
@@ -110,6 +110,7 @@ fn finish_spectrum(
     hypothesis.noise = noise;
     let fit = fit(&mut hypothesis, &spectra.full);
     let odds = before.odds + own_odds(effect);
-    let candidate = rated(effect, Tried { hypothesis, fit, parameters, odds }, before, trials, spectra.rows);
+    let looked = Looked { numbers: parameters - before.parameters, trials };
+    let candidate = rated(effect, Tried { hypothesis, fit, parameters, odds }, before, looked, spectra.rows);
     (candidate.gain > 0.5).then_some(candidate)
 }

@@ -53,7 +53,7 @@ pub fn all(spectral: &SpectralData, white: &White) -> Vec<Departure> {
             if let Some(ln_p) = gain_of(white, std::iter::once(product)) {
                 let Bounds { low: from, high: to } = ends(&named[j].1);
                 let place = Place { domain: named[j].0, from, to };
-                out.push(Departure { test: "product", place, beside: None, ln_p });
+                out.push(Departure { test: "product", place, beside: None, ln_p, shape: None });
             }
         }
     }
@@ -143,7 +143,7 @@ fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]
         gain_of(white, (1..=ORDER).map(|k| x.iter().map(|v| legendre(k, *v)).collect()))
     }?;
     let Bounds { low: from, high: to } = extreme(white, values, low, high);
-    Some(Departure { test, place: Place { domain, from, to }, beside: None, ln_p })
+    Some(Departure { test, place: Place { domain, from, to }, beside: None, ln_p, shape: None })
 }
 
 fn legendre(order: usize, x: f64) -> f64 {
@@ -201,7 +201,7 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
         }
     }
     let place = Place { domain, from: best.1, to: best.2 };
-    Some(Departure { test: "size", place, beside: None, ln_p: (best.0 + trials.ln()).min(0.0) })
+    Some(Departure { test: "size", place, beside: None, ln_p: (best.0 + trials.ln()).min(0.0), shape: None })
 }
 
 #[cfg(test)]

@@ -5,6 +5,7 @@ use crate::mismatch::tried::{SpectralDataSet, Tried};
 use crate::numeric::cosine::inverse_dct2;
 use rand::SeedableRng as _;
 use rand_distr::{Distribution as _, StandardNormal};
+use statrs::distribution::{DiscreteCDF as _, Poisson};
 
 /// Seed of the draws for modes that are left out: a report is a function of recording and claim alone.
 const UNSEEN: u64 = 0x5a67_6e61_6320_0008;
@@ -21,12 +22,30 @@ pub struct Departure {
     /// Logarithm of the probability of as large a departure anywhere in the test. Of strong departures the probabilities
     /// are all too small to be told; which is the strongest is not.
     pub ln_p: f64,
+    /// What it looks like, where the test can say.
+    pub shape: Option<Shape>,
+}
+
+/// What a departure looks like.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Shape {
+    /// Events that stand out by themselves.
+    pub count: Option<usize>,
+    /// About how long each is, s.
+    pub each_s: Option<f64>,
+    /// Standard deviation of what it adds at its place, deg/h.
+    pub rms_deg_h: Option<f64>,
 }
 
 impl Departure {
     /// Probability of as large a departure anywhere in the test.
     pub fn p_value(&self) -> f64 {
         self.ln_p.exp().clamp(1e-300, 1.0)
+    }
+
+    /// True for a test that looks where others see the whole: their places come before its own.
+    pub fn narrows(&self) -> bool {
+        self.test == "track"
     }
 
     /// Whether it is below a probability in a family of so many tests.
@@ -61,6 +80,18 @@ impl White {
     }
 }
 
+/// Natural logarithm of the probability that a Poisson number is at least as large as it was seen.
+pub fn ln_at_least(seen: usize, expected: f64) -> f64 {
+    let k = seen as f64;
+    if seen == 0 || k <= expected {
+        return 0.0;
+    }
+    // The number is as large where a gamma variable of that order is below what is expected.
+    let exact = Poisson::new(expected).map_or(1.0, |law| law.sf(seen as u64 - 1));
+    // Where the law ends, the bound of Chernoff.
+    if exact > 1e-290 { exact.ln() } else { k * (expected / k).ln() + k - expected }
+}
+
 /// Dyadic windows of `values` positions from `shortest` up, each overlapping the next by half.
 pub fn windows(values: usize, shortest: usize, mut see: impl FnMut(usize, usize)) {
     let mut length = shortest;
@@ -81,6 +112,17 @@ mod tests {
     use crate::effect::Domain;
 
     #[test]
+    fn many_of_what_is_seldom_is_improbable() {
+        // 1 − e^−0.1 (1 + 0.1 + 0.005) for three or more of 0.1.
+        let three = 1.0 - (-0.1f64).exp() * 1.105;
+        assert!((ln_at_least(3, 0.1) - three.ln()).abs() < 1e-9);
+        assert_eq!((ln_at_least(0, 0.1), ln_at_least(2, 3.0)), (0.0, 0.0));
+        // 400 (ln 0.01 − ln 400) + 400, which the sum itself is below by few nats.
+        let bound = ln_at_least(400, 0.01);
+        assert!((bound - (400.0 * (0.01f64 / 400.0).ln() + 400.0 - 0.01)).abs() < 1e-6, "{bound}");
+    }
+
+    #[test]
     fn windows_double_and_overlap_by_half() {
         let mut seen = vec![];
         windows(9, 2, |from, to| seen.push((from, to)));
@@ -92,7 +134,7 @@ mod tests {
     #[test]
     fn departures_too_strong_for_a_double_are_ordered_by_their_logarithm() {
         let place = Place { domain: Domain::Time, from: 0.0, to: 1.0 };
-        let of = |ln_p: f64| Departure { test: "level", place, beside: None, ln_p };
+        let of = |ln_p: f64| Departure { test: "level", place, beside: None, ln_p, shape: None };
         assert_eq!(of(-5000.0).p_value(), 1e-300);
         assert!((of(0.05f64.ln()).p_value() - 0.05).abs() < 1e-12);
         // Among ten tests a probability is worth ten times as much.

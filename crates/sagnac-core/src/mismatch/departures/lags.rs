@@ -29,7 +29,7 @@ pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
     let dt = spectral.drivers.dt_s;
     let place = Place { domain: Domain::Lag, from: (lag as f64 - 0.5) * dt, to: (lag as f64 + 0.5) * dt };
     let ln_p = (ln_normal_two_sided(z) + (longest as f64).ln()).min(0.0);
-    Some(Departure { test: "lag", place, beside: None, ln_p })
+    Some(Departure { test: "lag", place, beside: None, ln_p, shape: None })
 }
 
 #[cfg(test)]

@@ -6,18 +6,19 @@
 
 mod columns;
 mod departure;
+mod episodes;
 mod lags;
 mod tiles;
 mod tracks;
 
-pub use departure::{Departure, White};
+pub use departure::{Departure, Shape, White};
 
 use super::spectral_data::SpectralData;
 use super::tried::{SpectralDataSet, Tried};
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided, normal_two_sided};
 use crate::numeric::sums::cumulated;
-use departure::windows;
+use departure::{ln_at_least, windows};
 use rand::{RngExt as _, SeedableRng as _};
 use statrs::distribution::{DiscreteCDF, Poisson};
 
@@ -49,7 +50,13 @@ impl Scan {
             return None;
         }
         let ln_p = (self.ln_smallest + self.trials.ln()).min(0.0);
-        Some(Departure { test, place: Place { domain, from: self.from, to: self.to }, beside: None, ln_p })
+        Some(Departure {
+            test,
+            place: Place { domain, from: self.from, to: self.to },
+            beside: None,
+            ln_p,
+            shape: None,
+        })
     }
 }
 
@@ -76,6 +83,7 @@ pub fn all(
     out.extend(lags::all(spectral, &white));
     out.extend(tiles::all(spectral, &white.modes));
     out.extend(tracks::all(spectral, &white));
+    out.extend(episodes::all(spectral, &white));
     out.extend(
         off_lattice(spectral, &white, spectra.grid_step_arcsec)
             .and_then(|values| tails(spectral, &values, usable)),
@@ -134,7 +142,7 @@ fn comb(spectral: &SpectralData, powers: &[f64]) -> Option<Departure> {
     let (p, cell, harmonics) = best?;
     let fundamental = cell / (2.0 * n as f64 * spectral.drivers.dt_s);
     let place = Place { domain: Domain::Frequency, from: fundamental, to: fundamental * harmonics as f64 };
-    Some(Departure { test: "comb", place, beside: None, ln_p: (p + trials.ln()).min(0.0) })
+    Some(Departure { test: "comb", place, beside: None, ln_p: (p + trials.ln()).min(0.0), shape: None })
 }
 
 /// The largest line of the whitened series.
@@ -151,7 +159,7 @@ fn lines(spectral: &SpectralData, powers: &[f64]) -> Option<Departure> {
     let ln_p = ((0.8 * n as f64).ln() - best).min(0.0);
     let place =
         Place { domain: Domain::Frequency, from: (at as f64 - 2.0) * step, to: (at as f64 + 2.0) * step };
-    Some(Departure { test: "line", place, beside: None, ln_p })
+    Some(Departure { test: "line", place, beside: None, ln_p, shape: None })
 }
 
 /// Mean of the whitened series over windows of time.
@@ -201,13 +209,8 @@ fn tails(spectral: &SpectralData, series: &[f64], usable: &[bool]) -> Option<Dep
         let expected = n * normal_two_sided(bound);
         let seen = values().filter(|e| *e > bound).count() as u64;
         let Ok(law) = Poisson::new(expected) else { continue };
-        let many = if seen == 0 { 1.0 } else { law.sf(seen - 1) };
-        let few = law.cdf(seen);
-        // Where the law ends, the bound of Chernoff.
-        let (k, l) = (seen as f64, expected);
-        let bound = if k > 0.0 { k * (l / k).ln() + k - l } else { -l };
-        let exact = many.min(few);
-        let ln_p = if exact > 1e-290 { exact.ln() } else { bound };
+        let few = law.cdf(seen).max(1e-300).ln();
+        let ln_p = ln_at_least(seen as usize, expected).min(few);
         scan.see((std::f64::consts::LN_2 + ln_p).min(0.0), 0.0, 0.0);
     }
     scan.see((n.ln() + ln_normal_two_sided(largest.0)).min(0.0), 0.0, 0.0);
@@ -319,7 +322,7 @@ mod tests {
     #[test]
     fn the_smallest_of_several_probabilities_is_multiplied_by_their_number() {
         let place = Place { domain: Domain::Time, from: 0.0, to: 1.0 };
-        let of = |p: f64| Departure { test: "level", place, beside: None, ln_p: p.ln() };
+        let of = |p: f64| Departure { test: "level", place, beside: None, ln_p: p.ln(), shape: None };
         assert!((family(&[of(0.5), of(0.01), of(0.2)]) - 0.03).abs() < 1e-12);
         assert_eq!(family(&[of(0.5), of(0.9)]), 1.0);
     }

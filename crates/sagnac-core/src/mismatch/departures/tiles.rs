@@ -9,7 +9,7 @@ use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_two_sided, ln_normal_two_sided};
 use crate::mismatch::spectral_data::SpectralData;
 use crate::numeric::cosine::inverse_dct2;
-use crate::numeric::special::f_normal;
+use crate::numeric::special::{chi_square_normal, f_normal};
 use crate::numeric::sums::cumulated;
 use rayon::prelude::*;
 
@@ -77,12 +77,6 @@ fn bands(modes: usize) -> Vec<(usize, usize)> {
     out
 }
 
-/// Standard normal number of a χ² (Wilson and Hilferty 1931).
-fn chi_square_normal(sum: f64, dof: f64) -> f64 {
-    let a = 2.0 / (9.0 * dof);
-    ((sum / dof).cbrt() - (1.0 - a)) / a.sqrt()
-}
-
 fn in_band(modes: &[f64], (first, m): (usize, usize)) -> Largest {
     let series = inverse_dct2(&modes[first..first + m]);
     let sums = cumulated(series.iter().map(|v| v * v));
@@ -131,6 +125,7 @@ pub fn all(spectral: &SpectralData, modes: &[f64]) -> Vec<Departure> {
         place: time,
         beside: Some(frequency),
         ln_p: (ln_normal_two_sided(relative.z) + found.trials.ln()).min(0.0),
+        shape: None,
     };
     let (time, frequency) = places(&absolute);
     let dof = (absolute.window.1 - absolute.window.0) as f64;
@@ -139,6 +134,7 @@ pub fn all(spectral: &SpectralData, modes: &[f64]) -> Vec<Departure> {
         place: frequency,
         beside: Some(time),
         ln_p: (ln_chi_square_two_sided(absolute.power, dof) + found.trials.ln()).min(0.0),
+        shape: None,
     };
     vec![local, tile]
 }

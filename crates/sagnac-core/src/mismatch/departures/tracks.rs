@@ -51,6 +51,7 @@ pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
         },
         beside: Some(Place { domain: Domain::Time, from: at(best.segments.0), to: at(best.segments.1) }),
         ln_p,
+        shape: None,
     })
 }
 

@@ -77,6 +77,7 @@ pub(super) fn of_course(
     for (name, list) in course.lists(nonlinear_parameters, &coefficients, drivers) {
         out.stated.insert(name.to_owned(), Value::List(list));
     }
+    out.formula = course.formula(nonlinear_parameters, &coefficients, drivers);
     for (name, text) in course.texts(nonlinear_parameters, drivers) {
         out.texts.insert(name.to_owned(), text.clone());
         out.stated.insert(name.to_owned(), Value::Text(text));

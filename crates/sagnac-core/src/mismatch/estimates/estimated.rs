@@ -19,6 +19,8 @@ pub struct Estimated {
     pub reported: BTreeMap<String, ParameterValue>,
     /// What it says in words, such as the column that it follows.
     pub texts: BTreeMap<String, String>,
+    /// The law that was found, as a formula in the units of the columns.
+    pub formula: Option<String>,
     /// As the augmented claim states them.
     pub stated: Values,
 }

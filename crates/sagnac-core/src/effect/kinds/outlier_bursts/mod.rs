@@ -30,7 +30,12 @@ describe! {
         Param::inner(TIMES, "s", f64::MIN, f64::MAX),
         Param::inner(DURATIONS, "s", 0.0, 1e6),
         Param::inner(SIZES, "deg/h", 0.0, 1e9)
-    ]
+    ],
+    with {
+        fn is_short_events(&self) -> bool {
+            true
+        }
+    }
 }
 
 /// A burst: first instant s, length s, size deg/h.

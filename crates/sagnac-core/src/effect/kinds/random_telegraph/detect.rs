@@ -5,6 +5,7 @@
 //! what the chain gains beyond that tells two levels from it.
 
 use super::chain::{Chain, Deviations};
+use super::dwell::{slope, spread};
 use super::path::Paths;
 use crate::effect::{Background, FlatResidual, averages};
 use crate::numeric::cosine::{dct2, inverse_dct2};
@@ -26,6 +27,12 @@ const SETTLING: usize = 40;
 const SETTLED: f64 = 1e-3;
 /// Averages in which paths are mended stretch by stretch at most.
 const PATHS: usize = 4096;
+/// Normal number of the slope within dwells from which they are no levels: seven in a million by chance.
+const SLOPE: f64 = 4.5;
+/// Mean square of the departure of dwells from their level, and the logarithm of its probability, from which they are no level.
+/// Slow noise that is estimated beside them leaves some.
+const SPREAD: f64 = 2.0;
+const LN_SPREAD: f64 = -14.0;
 /// Averages in the shortest period of a drift.
 const SLOWEST: usize = 64;
 
@@ -226,6 +233,14 @@ impl<'a> Ground<'a> {
         best
     }
 
+    /// Whether the values of each level are the same within its dwells and from one to the next.
+    fn is_level(&self, judged: &Judged) -> bool {
+        let left: Vec<f64> = self.residual.iter().zip(&judged.background).map(|(r, b)| r - b).collect();
+        let spread = spread(&judged.path, &left, self.white);
+        let level = spread.ratio < SPREAD || spread.ln_p > LN_SPREAD;
+        level && slope(&judged.path, &left, self.white).abs() < SLOPE
+    }
+
     /// Whether there is slow noise that paths must be told from.
     fn coloured(&self) -> bool {
         self.slow.iter().any(|s| *s >= 0.02)
@@ -259,7 +274,7 @@ pub(super) fn telegraph(background: &Background<'_>, rival_gain: &dyn Fn() -> f6
         }
         m /= 4;
     }
-    let best = best.filter(|b| b.gain > 0.0)?;
+    let best = best.filter(|b| b.gain > 0.0 && ground.is_level(b))?;
     let rival_gain = rival_gain();
     // A likelihood ratio against one fixed law exceeds e^g with a probability below e^−g; each of the three numbers is
     // fitted, ½ ln M nats.

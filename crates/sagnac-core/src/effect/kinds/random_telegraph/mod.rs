@@ -2,6 +2,7 @@
 
 mod chain;
 mod detect;
+mod dwell;
 mod path;
 
 use super::markov_long::MarkovLong;

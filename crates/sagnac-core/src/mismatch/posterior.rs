@@ -1,0 +1,69 @@
+//! How probable each name of a finding is, given that one of the catalogue's effects is there.
+
+use super::tried::Candidate;
+use crate::effect::UNKNOWN;
+
+/// A name with its probability.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Probable {
+    /// Kind of the format of explanations.
+    pub kind: &'static str,
+    /// 0 to 1.
+    pub probability: f64,
+}
+
+/// Physics differs from the formulas that are fitted, by more where it is better seen: log-likelihoods that differ by less than this
+/// share of the gain do not tell names apart. From the reliability of names on the development half of the laboratory.
+const MODEL_ERROR: f64 = 0.04;
+/// What names share at least, nats.
+const LEAST: f64 = 1.0;
+/// Probability below which a name is not listed.
+const LISTED: f64 = 0.01;
+
+/// Probabilities of the names of one finding by how much each explains; `worth` is in nats of log-likelihood less the price of the
+/// parameters. The likeliest first, those below a hundredth left out; the rest of the probability is theirs.
+pub fn probabilities(names: impl IntoIterator<Item = (&'static str, f64)>) -> Vec<Probable> {
+    let mut best: Vec<(&'static str, f64)> = vec![];
+    for (kind, worth) in names.into_iter().filter(|n| n.1.is_finite()) {
+        match best.iter_mut().find(|b| b.0 == kind) {
+            // Effects of one kind are one name, as likely as the likelier.
+            Some(b) => b.1 = b.1.max(worth),
+            None => best.push((kind, worth)),
+        }
+    }
+    let most = best.iter().map(|b| b.1).fold(f64::NEG_INFINITY, f64::max);
+    let scale = LEAST.max(MODEL_ERROR * most);
+    let sum: f64 = best.iter().map(|b| ((b.1 - most) / scale).exp()).sum();
+    let mut out: Vec<Probable> = best
+        .into_iter()
+        .map(|(kind, worth)| Probable { kind, probability: ((worth - most) / scale).exp() / sum })
+        .filter(|p| p.probability >= LISTED)
+        .collect();
+    out.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    out
+}
+
+/// The name of a candidate in reports, and what it is worth over a hypothesis without it, nats.
+pub fn name_of(candidate: &Candidate, rows: usize, bic_without: f64) -> (&'static str, f64) {
+    let kind = if candidate.effect.in_format() { candidate.effect.reported_kind() } else { UNKNOWN };
+    (kind, 0.5 * (bic_without - candidate.tried.rank(rows)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_share_by_what_they_are_worth() {
+        // Twenty nats: a scale of one. e⁰ : e⁻¹ : e⁻⁶, of which the last is below a hundredth.
+        let named = probabilities([("line", 19.0), ("comb", 20.0), ("bias_step", 14.0), ("comb", 3.0)]);
+        let sum = 1.0 + (-1f64).exp() + (-6f64).exp();
+        assert_eq!(named.iter().map(|p| p.kind).collect::<Vec<_>>(), ["comb", "line"]);
+        assert!((named[0].probability - 1.0 / sum).abs() < 1e-12, "{named:?}");
+        assert!((named[1].probability - (-1f64).exp() / sum).abs() < 1e-12);
+        // Of 500 nats, 20 are the model's own error.
+        let clear = probabilities([("line", 500.0), ("comb", 480.0)]);
+        assert!((clear[1].probability / clear[0].probability - (-1f64).exp()).abs() < 1e-9, "{clear:?}");
+        assert!(probabilities([("line", f64::NAN)]).is_empty());
+    }
+}
