@@ -56,6 +56,8 @@ pub struct Order {
     pub read: Vec<PathBuf>,
     /// Replaces a result of other inputs too.
     pub force: bool,
+    /// The place was named by the program, not by the user: whatever stands there stays, and the next free name is taken.
+    pub fresh: bool,
 }
 
 /// A record with what it was made from and the files of its folder.
@@ -76,7 +78,8 @@ pub struct Listed<T> {
 impl StagedFolder {
     /// Begins a folder that will appear at `target`. What stands there is looked at now, before any work is done: an
     /// earlier result of the same inputs is replaced on publication, one of others where the order says so; anything
-    /// else is refused. What killed runs left in the folder of `target` is removed.
+    /// else is refused. An order for a fresh place leaves all of these alone: publication takes the next free name. What
+    /// killed runs left in the folder of `target` is removed.
     ///
     /// # Errors
     /// [`OutputError`] when the place cannot be written or is taken.
@@ -85,14 +88,14 @@ impl StagedFolder {
             return Err(OutputError::NoName(target.to_owned()));
         };
         // A folder of another kind is refused for what it is.
-        if earlier::is_of(target, kind) {
+        if !order.fresh && earlier::is_of(target, kind) {
             outside(target, &order.read)?;
         }
         let replaces = match target.symlink_metadata() {
-            Ok(_) => {
+            Ok(_) if !order.fresh => {
                 replaceable(target, kind, &order)?.filter(|e| e.inputs != order.inputs).map(|e| e.what())
             }
-            Err(_) => None,
+            _ => None,
         };
         let parent = parent(target);
         fs::create_dir_all(parent).map_err(io("output_error.create_folder", parent))?;
@@ -160,10 +163,15 @@ impl StagedFolder {
             sync_folder(&figures)?;
         }
         sync_folder(self.staging.path())?;
-        let StagedFolder { target, staging, kind, order, .. } = self;
+        let StagedFolder { mut target, staging, kind, order, .. } = self;
         let (folder, entry) = staging.into_parts();
         let staged = folder.keep();
-        let outcome = put_in_place(&staged, &target, kind, &order);
+        let reserved = if order.fresh { reserve(&target).map(|free| target = free) } else { Ok(()) };
+        let outcome = reserved.and_then(|()| put_in_place(&staged, &target, kind, &order));
+        if outcome.is_err() && order.fresh {
+            // Goes only while it is empty.
+            let _ = fs::remove_dir(&target);
+        }
         if outcome.is_err() && staged.join(marks).exists() && is_own(&staged, &json) {
             // Best effort: what could not be published must not stay behind as clutter.
             let _ = fs::remove_dir_all(&staged);
@@ -174,6 +182,26 @@ impl StagedFolder {
         sync_folder(parent(&target))?;
         Ok(target)
     }
+}
+
+/// Makes an empty folder of a name, or of the next free one: `name_2`, `name_3` and so on. Only one of several runs can make
+/// it, so that no two take the same name.
+fn reserve(target: &Path) -> Result<PathBuf, OutputError> {
+    let mut free = target.to_owned();
+    for n in 2.. {
+        match fs::create_dir(&free) {
+            Err(e) if e.kind() == std::io::ErrorKind::AlreadyExists => {
+                let mut name = target.as_os_str().to_owned();
+                name.push(format!("_{n}"));
+                free = PathBuf::from(name);
+            }
+            made => {
+                made.map_err(io("output_error.put_in_place", &free))?;
+                break;
+            }
+        }
+    }
+    Ok(free)
 }
 
 /// A record with its inputs and the list of the files beside it, `marks` among them, as JSON.

@@ -51,7 +51,7 @@ fn known_composites_are_covered() {
     }
 }
 
-/// A term that the model lacks is told: above, and below where the model has too much.
+/// A term that the model lacks is reported: above, and below where the model has too much.
 #[test]
 fn a_model_that_is_wrong_is_told() {
     let gyro = simulate(&terms(0.0023, 0.0, 0.02, 0.0, 0.0), 10.0, 10.0, 5);

@@ -204,7 +204,7 @@ fn a_unit_of_a_lot_has_the_result_of_a_run_on_its_own() {
     each(dir.path(), &NAMED, &["--out", "out"]);
     for (recording, folder, serial) in [
         ("lot/SN-1001.csv", "SN-1001", Some("SN-1001")),
-        ("lot/b.csv", "SN-1002", Some("SN-1002")),
+        ("lot/b.csv", "SN-1002", None),
         ("lot/c.toml", "SN-1003", None),
         ("lot/d.csv", "d", Some("d")),
     ] {
@@ -249,6 +249,27 @@ fn the_exit_code_is_that_of_the_worst_verdict() {
     assert_eq!((pass_and_undecided.code, pass_and_undecided.out.as_str()), (3, "Report: o/index.html\n"));
     let said = each(dir.path(), &NAMED[..1], &["--out", "o", "--format", "json"]);
     assert_eq!(said.out.as_bytes(), std::fs::read(dir.path().join("o/index.json")).unwrap());
+}
+
+#[test]
+fn a_missing_column_is_said_at_the_line_of_the_procedure_once_for_all_units() {
+    let dir = lot();
+    for name in ["lot/SN-1001.csv", "lot/b.csv"] {
+        let path = dir.path().join(name);
+        let renamed = std::fs::read_to_string(&path).unwrap().replacen("rate_deg_h", "rate_degh", 1);
+        std::fs::write(path, renamed).unwrap();
+    }
+    let said = each(dir.path(), &["lot/SN-1001.csv", "lot/b.csv"], &["--out", "out"]);
+    assert_eq!(said.code, 2, "{said:?}");
+    assert_eq!(said.err.matches("error: ").count(), 1, "{}", said.err);
+    for part in [
+        "there is no column `rate_deg_h`",
+        "supply-sensitivity:",
+        "column = \"rate_deg_h\"",
+        "did you mean `rate_degh`?",
+    ] {
+        assert!(said.err.contains(part), "no `{part}` in\n{}", said.err);
+    }
 }
 
 #[test]

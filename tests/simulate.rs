@@ -83,6 +83,17 @@ fn bytes_depend_on_the_seed_and_on_nothing_else() {
 }
 
 #[test]
+fn quiet_prints_the_path_alone() {
+    let dir = tempdir().unwrap();
+    let arguments = ["simulate", &model("model-step.toml"), "--out", "q.csv", "--duration", "100 s"];
+    for quiet in ["--quiet", "-q"] {
+        let said = sagnac(dir.path(), &[&arguments[..], &[quiet]].concat());
+        assert_eq!((said.code, said.out.as_str()), (0, "q.csv\n"), "{said:?}");
+    }
+    assert!(sagnac(dir.path(), &arguments).out.contains("seed"), "and all of it without the option");
+}
+
+#[test]
 fn a_recording_lends_its_rows_and_columns() {
     let dir = tempdir().unwrap();
     let faulty = root().join("samples/unit-faults.csv");

@@ -186,6 +186,70 @@ fn what_init_writes_is_accepted_as_it_is() {
     }
 }
 
+#[test]
+fn init_reads_as_it_is_asked_to_and_the_procedure_says_how() {
+    let folder = tempdir().unwrap();
+    let at = folder.path();
+    // Two lines above the names, of which the first has as many fields as the data, and numbers with a comma.
+    let text = std::fs::read_to_string(sample("pass")).unwrap();
+    let rows: Vec<String> = text
+        .lines()
+        .skip_while(|l| l.starts_with('#'))
+        .map(|l| l.replace(',', ";").replace('.', ","))
+        .collect();
+    let odd = format!("station;north;7\nstarted;today;8\n{}\n", rows.join("\n"));
+    std::fs::write(at.join("odd.csv"), odd).unwrap();
+    let reading = ["--delimiter", "semicolon", "--decimal", "comma", "--header-line", "3"];
+    let done = printed(at, "80", &[], &[&["init", "odd.csv", "--out", "o"][..], &reading].concat());
+    assert_eq!(done.status.code(), Some(0), "{}", text_of(&done));
+    let procedure = std::fs::read_to_string(at.join("o/procedure.toml")).unwrap();
+    for key in ["delimiter = \"semicolon\"", "decimal = \"comma\"", "header_line = 3"] {
+        assert!(procedure.contains(key), "no `{key}` in\n{procedure}");
+    }
+    let check = printed(at, "80", &[], &["check", "o/procedure.toml", "o/limits.toml"]);
+    assert_eq!(check.status.code(), Some(0), "{}", text_of(&check));
+    let run =
+        ["run", "o/procedure.toml", "odd.csv", "--limits", "o/limits.toml", "--serial", "1", "--out", "r"];
+    let run = printed(at, "80", &[], &run);
+    assert_eq!(run.status.code(), Some(0), "{}", text_of(&run));
+    // What is shown next reads the same way.
+    let inspect = printed(at, "80", &[], &[&["inspect", "odd.csv"][..], &reading].concat());
+    let next = text_of(&inspect);
+    assert!(
+        next.ends_with("sagnac init odd.csv --delimiter semicolon --decimal comma --header-line 3\n"),
+        "{next}"
+    );
+}
+
+#[test]
+fn init_copies_the_layout_of_a_raw_file_to_where_its_procedure_finds_it() {
+    let folder = tempdir().unwrap();
+    let at = folder.path();
+    let layout = "format = \"layout/1\"\nrecord_bytes = 8\nsample_rate = \"100 Hz\"\n\n\
+        [[field]]\nname = \"rate_deg_h\"\noffset = 0\ntype = \"f64\"\n";
+    std::fs::write(at.join("logger.toml"), layout).unwrap();
+    let bytes: Vec<u8> = (0..60_000u64)
+        .flat_map(|i| {
+            ((i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64 / 2f64.powi(53) - 0.5).to_le_bytes()
+        })
+        .collect();
+    std::fs::write(at.join("raw.bin"), bytes).unwrap();
+    let done = printed(at, "80", &[], &["init", "raw.bin", "--layout", "logger.toml", "--out", "o"]);
+    assert_eq!(done.status.code(), Some(0), "{}", text_of(&done));
+    let procedure = std::fs::read_to_string(at.join("o/procedure.toml")).unwrap();
+    assert!(procedure.contains("layout = \"layout.toml\""), "{procedure}");
+    assert_eq!(std::fs::read_to_string(at.join("o/layout.toml")).unwrap(), layout);
+    let check = printed(at, "80", &[], &["check", "o/procedure.toml"]);
+    assert_eq!(check.status.code(), Some(0), "{}", text_of(&check));
+    let run = printed(at, "80", &[], &["run", "o/procedure.toml", "raw.bin", "--serial", "1", "--out", "r"]);
+    assert!(matches!(run.status.code(), Some(0 | 3)), "{}", text_of(&run));
+    // In its own folder it is used where it is.
+    let done = printed(at, "80", &[], &["init", "raw.bin", "--layout", "logger.toml"]);
+    assert_eq!(done.status.code(), Some(0), "{}", text_of(&done));
+    let procedure = std::fs::read_to_string(at.join("procedure.toml")).unwrap();
+    assert!(procedure.contains("layout = \"logger.toml\""), "{procedure}");
+}
+
 fn text_of(output: &Output) -> String {
     String::from_utf8_lossy(&[&output.stdout[..], &output.stderr].concat()).into_owned()
 }

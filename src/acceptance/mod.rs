@@ -34,7 +34,7 @@ pub use request::{Outcome, Request, RunError, Table, session};
 
 use crate::record::RunRecord;
 
-/// Runs a procedure on a recording. `progress` is told bytes read and bytes in all.
+/// Runs a procedure on a recording. `progress` gets bytes read and bytes in all.
 ///
 /// # Errors
 /// [`RunError`] when there is nothing to evaluate. Everything else, a missing serial number included, is a verdict.

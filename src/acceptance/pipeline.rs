@@ -109,6 +109,7 @@ fn judge(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<ConditionRecord>
         duration_s: reading.report.duration_s,
         stated_serials: &stated_serials,
         serial: request.unit.serial.as_deref(),
+        serial_of_recording: request.serial_of_recording,
         schedule: rest.schedule,
         today: request.now.date_naive(),
         checks: &reading.checks,

@@ -26,6 +26,8 @@ pub struct Request<'a> {
     pub use_stamps: bool,
     /// The unit.
     pub unit: UnitUnderTest,
+    /// True when nobody gave its serial number, and the one that the recording states is used.
+    pub serial_of_recording: bool,
     /// Who tests.
     pub operator: Option<String>,
     /// Station of the test.

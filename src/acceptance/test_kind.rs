@@ -86,7 +86,7 @@ pub(super) struct RestFacts<'e> {
 /// What may keep a recording from being evaluated.
 pub(super) type Run<T> = Result<T, RunError>;
 
-/// Is told bytes read and bytes in all.
+/// Gets bytes read and bytes in all.
 pub(super) type Progress<'p> = &'p mut dyn FnMut(u64, u64);
 
 /// An option that a test was evaluated with: name and value.

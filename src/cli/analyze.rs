@@ -6,14 +6,14 @@ use super::inputs::Inputs;
 use super::join::JoinArgs;
 use super::next_step;
 use super::options::{GridArgs, OutputArgs};
-use super::place;
+use super::place::{self, OutputPlace};
 use super::printer::Printer;
 use super::read::ReadArgs;
 use crate::acceptance::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::model::Procedure;
 use crate::i18n::{Lang, Note};
-use crate::ingest::{ReadOptions, open_recording};
+use crate::ingest::open_recording;
 use crate::output::Kind;
 use crate::record::{RunKind, UnitUnderTest};
 use crate::recording::Role;
@@ -52,7 +52,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let now = Utc::now();
     let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
-    let out = args.out.clone().unwrap_or_else(|| place::default_folder("analysis", Some(&stem), now));
+    let out = OutputPlace::new(args.out.as_deref(), "analysis", Some(&stem), now);
     let printer = Printer::new(&args.output, lang);
     let mut progress = printer.progress();
     progress.stage("progress.inputs");
@@ -92,6 +92,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         source: &source,
         use_stamps,
         unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },
+        serial_of_recording: false,
         operator: None,
         station: None,
         now,
@@ -99,10 +100,8 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         exact: args.grid.exact,
     };
     let code = run_and_finish(&request, folder, &renderer, printer, progress)?;
-    // The other verb reads a recording as it is found.
-    let as_found = args.read.options() == ReadOptions::default();
-    let step = next_step::init(&args.recording, &args.columns.as_typed()).filter(|_| as_found);
-    printer.next_step(step.as_ref());
+    let options = format!("{}{}", args.columns.as_typed(), args.read.as_typed());
+    printer.next_step(next_step::init(&args.recording, &options).as_ref());
     Ok(code)
 }
 

@@ -62,7 +62,7 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
     let now = Utc::now();
     let stamp = now.to_rfc3339_opts(SecondsFormat::Secs, true);
     let first = args.recording.first().map_or_else(|| "published".to_owned(), |p| stem(p));
-    let out = args.out.clone().unwrap_or_else(|| place::default_folder("comparison", Some(&first), now));
+    let out = place::OutputPlace::new(args.out.as_deref(), "comparison", Some(&first), now);
     let mut progress = printer.progress();
     progress.stage("progress.inputs");
     let folder = Inputs::new(args.output.force)
@@ -216,6 +216,7 @@ fn analysed(
         source: &source,
         use_stamps,
         unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },
+        serial_of_recording: false,
         operator: None,
         station: None,
         now,

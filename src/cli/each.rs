@@ -2,14 +2,15 @@
 
 use super::exit;
 use super::finish::write_files;
-use super::inputs::{Inputs, publish, serial};
+use super::inputs::{Inputs, publish};
 use super::phased_test::{PhasedTest, belong};
-use super::place;
+use super::place::{self, OutputPlace};
 use super::printer::Printer;
 use super::progress::{Measure, Progress};
 use super::run_args::RunArgs;
 use super::single_test::SingleTest;
 use crate::acceptance::lot;
+use crate::config::diagnostics::Problems;
 use crate::config::manifest::{self, is_manifest};
 use crate::config::procedure::phases::is_phased;
 use crate::i18n::{Lang, Localize, Note};
@@ -22,7 +23,7 @@ use crate::report::export::{EXPORTERS, export};
 use crate::report::lot::{LotUnitView, LotView};
 use crate::report::{Renderer, Results, RunResults, terminal};
 use chrono::{DateTime, SecondsFormat, Utc};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
@@ -45,13 +46,15 @@ trait UnitTest: Sync {
     /// How recordings are read.
     fn options(&self) -> &ReadOptions;
 
-    /// Tests one unit. What keeps it from being tested is in the result.
-    fn run(&self, member: &Member, progress: &mut Progress) -> RunResults;
+    /// Tests one unit. What keeps it from being tested is in the result; what is to be said of it at the lines of the
+    /// procedure stands beside it.
+    fn run(&self, member: &Member, progress: &mut Progress) -> (RunResults, Option<Problems>);
 }
 
-/// The serial number that a user would give on the command line: none where the manifest states it.
+/// The serial number that a user would give on the command line: none where the manifest or the recording states it.
 fn given(member: &Member) -> Option<&str> {
-    (member.serial_from != SerialSource::Manifest).then_some(member.serial.as_str())
+    let is_stated = matches!(member.serial_from, SerialSource::Manifest | SerialSource::Recording);
+    (!is_stated).then_some(member.serial.as_str())
 }
 
 impl UnitTest for SingleTest<'_> {
@@ -71,9 +74,10 @@ impl UnitTest for SingleTest<'_> {
         &self.procedure.value.recording.read
     }
 
-    fn run(&self, member: &Member, progress: &mut Progress) -> RunResults {
+    fn run(&self, member: &Member, progress: &mut Progress) -> (RunResults, Option<Problems>) {
         let recording = std::slice::from_ref(&member.recording);
-        self.evaluate(recording, self.open(recording), given(member), progress).results
+        let evaluated = self.evaluate(recording, self.open(recording), given(member), progress);
+        (evaluated.results, evaluated.problems)
     }
 }
 
@@ -100,17 +104,18 @@ impl UnitTest for PhasedUnits<'_> {
         &self.options
     }
 
-    fn run(&self, member: &Member, progress: &mut Progress) -> RunResults {
+    fn run(&self, member: &Member, progress: &mut Progress) -> (RunResults, Option<Problems>) {
         let loaded = manifest::load(&member.recording)
             .map_err(|problems| RecordingError::Manifest(problems).into_ingest(&member.recording).note());
         let checked = loaded.and_then(|manifest| {
             belong(&self.test.phased, &manifest)?;
-            serial(given(member), Some(&manifest)).map(|serial| (manifest, serial))
+            self.test.serial(given(member), &manifest).map(|serial| (manifest, serial))
         });
-        match checked {
+        let results = match checked {
             Ok((manifest, serial)) => self.test.evaluate(&manifest, serial, progress).results,
             Err(why) => self.test.not_run(why, Some(member.serial.clone())),
-        }
+        };
+        (results, None)
     }
 }
 
@@ -149,16 +154,15 @@ fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang)
     let pattern = args.each.serial_from.as_deref().map(SerialPattern::parse).transpose().map_err(error)?;
     let members =
         members(&args.recording, test.options(), pattern.as_ref()).map_err(|e| refused(&e, lang))?;
-    let told: Vec<BTreeMap<String, String>> = members.iter().map(|m| test.inputs(m).told()).collect();
+    let inputs: Vec<BTreeMap<String, String>> = members.iter().map(|m| test.inputs(m).identities()).collect();
     let recordings: Vec<PathBuf> = members.iter().map(|m| m.recording.clone()).collect();
-    let out =
-        args.out.clone().unwrap_or_else(|| place::default_folder(&test.procedure().id, Some("lot"), now));
-    let folder = test.common_inputs().lot(&told, files_read(&recordings, test.options())).begin(
+    let out = OutputPlace::new(args.out.as_deref(), &test.procedure().id, Some("lot"), now);
+    let folder = test.common_inputs().lot(&inputs, files_read(&recordings, test.options())).begin(
         &out,
         Kind::Lot,
         lang,
     )?;
-    let work = Work { test, members: &members, told: &told, folder: &folder, renderer: &renderer, lang };
+    let work = Work { test, members: &members, inputs: &inputs, folder: &folder, renderer: &renderer, lang };
     let jobs =
         args.each.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let units = work.run(jobs, printer, &mut progress)?;
@@ -174,7 +178,7 @@ fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang)
     Ok(code)
 }
 
-/// The diagnostic of units that cannot be told.
+/// The diagnostic of units that cannot be identified.
 fn refused(error: &LotError, lang: Lang) -> String {
     match error {
         LotError::Recording(e) => e.say(lang),
@@ -189,11 +193,22 @@ fn refused(error: &LotError, lang: Lang) -> String {
     }
 }
 
+/// The problems that were not said of another unit at the same place of the procedure, with the same advice. `None` where all
+/// were.
+fn unsaid(problems: Problems, said: &mut BTreeSet<(String, usize, String)>) -> Option<Problems> {
+    let mut new = problems;
+    new.list.retain(|p| {
+        let help = p.help.as_ref().map(|h| h.say(Lang::En)).unwrap_or_default();
+        said.insert((p.file.clone(), p.span.start, help))
+    });
+    (!new.list.is_empty()).then_some(new)
+}
+
 /// The units of a lot and where their results go.
 struct Work<'a> {
     test: &'a dyn UnitTest,
     members: &'a [Member],
-    told: &'a [BTreeMap<String, String>],
+    inputs: &'a [BTreeMap<String, String>],
     folder: &'a StagedFolder,
     renderer: &'a Renderer,
     lang: Lang,
@@ -211,6 +226,7 @@ impl Work<'_> {
         let total = self.members.len() as u64;
         let mut units: BTreeMap<usize, LotUnit> = BTreeMap::new();
         let mut failed = None;
+        let mut said = BTreeSet::new();
         std::thread::scope(|scope| {
             for _ in 0..jobs.min(self.members.len()) {
                 let send = send.clone();
@@ -228,9 +244,12 @@ impl Work<'_> {
             progress.update(&testing, Measure::Units, 0, total);
             for (i, done) in receive {
                 match done {
-                    Ok(unit) => {
+                    Ok((unit, problems)) => {
                         let view = LotUnitView::new(&unit, self.lang);
                         progress.beside(|| printer.line(|t| terminal::lot_unit(&view, t)));
+                        if let Some(new) = problems.and_then(|p| unsaid(p, &mut said)) {
+                            progress.beside(|| place::eprint_diagnostic(&new.say(self.lang)));
+                        }
                         units.insert(i, unit);
                     }
                     Err(why) => failed = failed.take().or(Some(why)),
@@ -242,12 +261,12 @@ impl Work<'_> {
     }
 
     /// Tests one unit and writes its folder; `None` after the last.
-    fn unit(&self, i: usize) -> Option<Result<LotUnit, String>> {
-        let (member, told) = (self.members.get(i)?, self.told.get(i)?);
-        let results = self.test.run(member, &mut Progress::silent(self.lang));
+    fn unit(&self, i: usize) -> Option<Result<(LotUnit, Option<Problems>), String>> {
+        let (member, inputs) = (self.members.get(i)?, self.inputs.get(i)?);
+        let (results, problems) = self.test.run(member, &mut Progress::silent(self.lang));
         let unit = lot::unit(member, &results.outcome.record);
         let results = Results::Run(Box::new(results));
-        let part = StagedPart::begin(self.folder, &member.folder, told.clone());
+        let part = StagedPart::begin(self.folder, &member.folder, inputs.clone());
         let written = write_files(
             &results,
             &|name, contents| part.write(name, contents),
@@ -257,7 +276,7 @@ impl Work<'_> {
         );
         Some(written.and_then(|()| {
             part.finish(results.whole(self.lang).record()).map_err(|e| place::error(&e.note(), self.lang))?;
-            Ok(unit)
+            Ok((unit, problems))
         }))
     }
 }

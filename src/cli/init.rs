@@ -4,12 +4,13 @@ use super::columns::{ColumnArgs, about, channels};
 use super::finish::with_progress;
 use super::join::JoinArgs;
 use super::progress::{Display, Progress};
+use super::read::ReadArgs;
 use super::{exit, place};
 use crate::acceptance::{Request, analysis};
 use crate::config::procedure::EffectiveLimits;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::lot::stated_serial;
-use crate::ingest::{ReadOptions, Source, open_recording};
+use crate::ingest::{Source, open_recording};
 use crate::measurand::{
     ANGLE_RANDOM_WALK, BIAS_INSTABILITY, QUANTIZATION, RATE_RAMP, RATE_RANDOM_WALK, RUSSIAN_ARW_10S,
     RUSSIAN_DRIFT_100S,
@@ -31,6 +32,8 @@ pub struct InitArgs {
     /// Folder for the files; existing files are not replaced
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
+    #[command(flatten)]
+    read: ReadArgs,
 }
 
 /// What a limit is proposed for.
@@ -47,16 +50,18 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
     let names = ["procedure.toml", "limits.toml", "ci.yml"];
     let paths = names.map(|name| args.out.join(name));
-    if let Some(path) = paths.iter().find(|p| p.exists()) {
+    let layout = args.read.layout().map(|path| Layout::of(path, &args.out));
+    let copied = layout.as_ref().and_then(|l| l.copy.as_ref());
+    if let Some(path) = paths.iter().chain(copied).find(|p| p.exists()) {
         return Err(say(Note::new("init.exists").with("path", place::shown(path))));
     }
     let recording = std::slice::from_ref(&args.recording);
     JoinArgs::default().check(recording, "join.help.init", lang)?;
-    let opened = open_recording(recording, &ReadOptions::default()).map_err(|e| e.say(lang))?;
+    let opened = open_recording(recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let source = opened.source;
     let channels = channels(&args.columns, &args.recording, &source).map_err(say)?;
     let (record, sample_rate_hz) = analysed(args, &channels, &source, lang)?;
-    let files = written(args, &channels, &source, &record, sample_rate_hz)
+    let files = written(args, layout.as_ref(), &channels, &source, (&record, sample_rate_hz))
         .map_err(|e| say(Note::new("init.template").with("reason", e.to_string())))?;
     let failed = |path: &Path, e: &std::io::Error| {
         let note = Note::new("procedures.not_saved").with("path", place::shown(path));
@@ -65,6 +70,9 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     std::fs::create_dir_all(&args.out).map_err(|e| failed(&args.out, &e))?;
     for (path, text) in paths.iter().zip(&files) {
         std::fs::write(path, text).map_err(|e| failed(path, &e))?;
+    }
+    if let (Some(from), Some(to)) = (args.read.layout(), copied) {
+        std::fs::copy(from, to).map_err(|e| failed(to, &e))?;
     }
     let shown = paths.each_ref().map(|p| place::shown(p));
     let note = Note::new("init.written")
@@ -100,6 +108,7 @@ fn analysed(
         source,
         use_stamps,
         unit: UnitUnderTest::default(),
+        serial_of_recording: false,
         operator: None,
         station: None,
         now: Utc::now(),
@@ -112,13 +121,32 @@ fn analysed(
     Ok((outcome.record, if use_stamps { None } else { sample_rate }))
 }
 
+/// The layout of a raw binary file as the procedure names it: a procedure refers to files in its folder only.
+struct Layout {
+    /// Path relative to the folder of the procedure.
+    name: String,
+    /// Where it is copied to, if it does not lie in that folder.
+    copy: Option<PathBuf>,
+}
+
+impl Layout {
+    fn of(path: &Path, folder: &Path) -> Layout {
+        let inside = path.canonicalize().ok().zip(folder.canonicalize().ok());
+        let inside = inside.and_then(|(path, folder)| Some(path.strip_prefix(folder).ok()?.to_owned()));
+        match inside {
+            Some(name) => Layout { name: name.display().to_string(), copy: None },
+            None => Layout { name: "layout.toml".to_owned(), copy: Some(folder.join("layout.toml")) },
+        }
+    }
+}
+
 /// The three files.
 fn written(
     args: &InitArgs,
+    layout: Option<&Layout>,
     channels: &[Channel],
     source: &Source,
-    record: &RunRecord,
-    sample_rate_hz: Option<f64>,
+    (record, sample_rate_hz): (&RunRecord, Option<f64>),
 ) -> Result<[String; 3], minijinja::Error> {
     let mut environment = Environment::empty();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
@@ -130,7 +158,11 @@ fn written(
     let channel_ids = ids_of(channels);
     let is_temperature = |(c, _): &(&Channel, &String)| c.role == Role::Temperature;
     let temperature = channels.iter().zip(&channel_ids).find(is_temperature).map(|(_, id)| id);
+    let mut read: Vec<(&str, String)> =
+        args.read.keys().into_iter().map(|(key, value)| (key, value.to_string())).collect();
+    read.extend(layout.map(|l| ("layout", toml_text(&l.name))));
     let values = context! {
+        read => read.into_iter().map(|(key, value)| context! { key, value }).collect::<Vec<_>>(),
         recording => name,
         recording_shell => place::for_shell(&args.recording.display().to_string()),
         procedure => "procedure.toml",

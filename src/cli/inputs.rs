@@ -1,10 +1,11 @@
 //! What a result is made from, so that it takes the place of none made from something else.
 
-use super::place;
+use super::place::{self, OutputPlace};
 use crate::config::manifest::Manifest;
 use crate::config::shipped;
 use crate::i18n::{Lang, Localize, Note};
-use crate::ingest::{ReadOptions, files_read};
+use crate::ingest::lot::stated_serial_of;
+use crate::ingest::{ReadOptions, Source, files_read};
 use crate::output::{Kind, Order, StagedFolder};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -36,17 +37,17 @@ impl Inputs {
         self.files("recording", &files_read(named, options))
     }
 
-    /// A file, told by its hash.
+    /// A file, identified by its hash.
     #[must_use]
     pub fn file(self, name: &str, path: Option<&Path>) -> Inputs {
         let files: Vec<PathBuf> = path.map(Path::to_owned).into_iter().collect();
         self.files(name, &files)
     }
 
-    /// Files in their order, told by their hashes.
+    /// Files in their order, identified by their hashes.
     #[must_use]
     pub fn files(mut self, name: &str, paths: &[PathBuf]) -> Inputs {
-        let told = match paths {
+        let identity = match paths {
             [] => return self,
             [one] => hash(one),
             several => {
@@ -54,12 +55,12 @@ impl Inputs {
                 hex(Sha256::digest(all.join("\n")))
             }
         };
-        self.0.inputs.insert(name.to_owned(), told);
+        self.0.inputs.insert(name.to_owned(), identity);
         self.0.read.extend_from_slice(paths);
         self
     }
 
-    /// A folder that is read and tells nothing of the result.
+    /// A folder that is read and decides nothing in the result.
     #[must_use]
     pub fn beside(mut self, path: Option<&Path>) -> Inputs {
         self.0.read.extend(path.map(Path::to_owned));
@@ -82,19 +83,19 @@ impl Inputs {
         self
     }
 
-    /// What is told of the inputs, by their names.
-    pub fn told(self) -> BTreeMap<String, String> {
+    /// What identifies the inputs, by their names.
+    pub fn identities(self) -> BTreeMap<String, String> {
         self.0.inputs
     }
 
-    /// The recordings of a lot, told by what is told of each; the files are read.
+    /// The recordings of a lot, identified by what identifies each; the files are read.
     #[must_use]
     pub fn lot(mut self, units: &[BTreeMap<String, String>], read: Vec<PathBuf>) -> Inputs {
-        let told: Vec<&str> = units
+        let identities: Vec<&str> = units
             .iter()
             .flat_map(|u| ["recording", "unit"].map(|n| u.get(n).map_or("", String::as_str)))
             .collect();
-        self.0.inputs.insert("recording".to_owned(), hex(Sha256::digest(told.join("\n"))));
+        self.0.inputs.insert("recording".to_owned(), hex(Sha256::digest(identities.join("\n"))));
         self.0.read.extend(read);
         self
     }
@@ -103,8 +104,33 @@ impl Inputs {
     ///
     /// # Errors
     /// The complaint, in words.
-    pub fn begin(self, out: &Path, kind: Kind, lang: Lang) -> Result<StagedFolder, String> {
-        StagedFolder::begin(out, kind, self.0).map_err(|e| place::error(&e.note(), lang))
+    pub fn begin(mut self, out: &OutputPlace, kind: Kind, lang: Lang) -> Result<StagedFolder, String> {
+        self.0.fresh = matches!(out, OutputPlace::Default(_));
+        StagedFolder::begin(out.path(), kind, self.0).map_err(|e| place::error(&e.note(), lang))
+    }
+}
+
+/// The serial number of a unit.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Serial {
+    /// The number; `None` where nothing states it.
+    pub number: Option<String>,
+    /// True when only the recording states it.
+    pub of_recording: bool,
+}
+
+impl Serial {
+    /// The number that the user gave, or else the manifest, or else the recording.
+    ///
+    /// # Errors
+    /// As [`serial`].
+    pub fn of(given: Option<&str>, manifest: Option<&Manifest>, sources: &[&Source]) -> Result<Serial, Note> {
+        let number = serial(given, manifest)?.filter(|n| !n.trim().is_empty());
+        if number.is_some() {
+            return Ok(Serial { number, of_recording: false });
+        }
+        let stated = stated_serial_of(sources);
+        Ok(Serial { of_recording: stated.is_some(), number: stated })
     }
 }
 

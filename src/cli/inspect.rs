@@ -34,7 +34,8 @@ pub fn main(args: &InspectArgs, lang: Lang) -> Result<u8, String> {
     });
     progress.finish();
     place::print(&report.map_err(|e| place::error(&e.note(), lang))?);
-    if let Some(step) = next_step::after_inspection(&args.recording, &recording.source) {
+    if let Some(step) = next_step::after_inspection(&args.recording, &recording.source, &args.read.as_typed())
+    {
         place::print(&format!("\n{}\n", step.say(lang)));
     }
     Ok(exit::PASS)

@@ -12,9 +12,9 @@ pub fn init(recording: &[PathBuf], options: &str) -> Option<Note> {
     Some(Note::new("next_step.init").with("recording", only(recording)?).with("options", options))
 }
 
-/// After a recording was inspected: as [`init`], with the options that its columns leave open. `None` without a column that
-/// looks like a gyro output.
-pub fn after_inspection(recording: &[PathBuf], source: &Source) -> Option<Note> {
+/// After a recording was inspected: as [`init`], with the options that its columns leave open and those by which it was `read`.
+/// `None` without a column that looks like a gyro output.
+pub fn after_inspection(recording: &[PathBuf], source: &Source, read: &str) -> Option<Note> {
     let mut gyros = source.columns().iter().filter(|c| c.numeric).map(|c| c.inferred());
     let gyro = gyros.find(|found| found.role.is_gyro())?;
     let mut options = String::new();
@@ -24,6 +24,7 @@ pub fn after_inspection(recording: &[PathBuf], source: &Source) -> Option<Note> 
     if source.time_column().is_none() && source.stated_sample_rate_hz().is_none() {
         options.push_str(" --sample-rate HZ");
     }
+    options.push_str(read);
     init(recording, &options)
 }
 

@@ -1,7 +1,7 @@
 //! A procedure of several phases, ready to be run on manifests: each phase on its files.
 
 use super::finish::{not_run, with_progress};
-use super::inputs::Inputs;
+use super::inputs::{Inputs, Serial};
 use super::place;
 use super::procedures::say_which;
 use super::progress::Progress;
@@ -81,20 +81,23 @@ impl<'a> PhasedTest<'a> {
     }
 
     /// Runs every phase on its files.
-    pub fn evaluate(
-        &self,
-        manifest: &Manifest,
-        serial: Option<String>,
-        progress: &mut Progress,
-    ) -> PhasesEvaluated {
-        let unit = self.unit(serial);
+    pub fn evaluate(&self, manifest: &Manifest, serial: Serial, progress: &mut Progress) -> PhasesEvaluated {
+        let of_recording = serial.of_recording;
+        let unit = self.unit(serial.number);
         let mut done: Vec<Done<'_>> = Vec::new();
         let mut who = None;
         let mut explained = vec![];
         for (phase, limits) in self.phased.phases.iter().zip(&self.limits) {
             let files = files(phase, manifest);
             let outcome = (!files.is_empty()).then(|| {
-                self.run(phase, limits, manifest, &files, (&unit, &mut who, &mut explained), progress)
+                self.run(
+                    phase,
+                    limits,
+                    manifest,
+                    &files,
+                    (&unit, of_recording, &mut who, &mut explained),
+                    progress,
+                )
             });
             done.push(Done { phase, outcome });
         }
@@ -131,6 +134,25 @@ impl<'a> PhasedTest<'a> {
         }
     }
 
+    /// The serial number of the unit: as given, or else by the manifest, or else by the files of the phases.
+    ///
+    /// # Errors
+    /// A note where the number given is not that of the manifest.
+    pub fn serial(&self, given: Option<&str>, manifest: &Manifest) -> Result<Serial, Note> {
+        let serial = Serial::of(given, Some(manifest), &[])?;
+        if serial.number.is_some() {
+            return Ok(serial);
+        }
+        let open = |phase: &Phase| {
+            let files = files(phase, manifest);
+            let name = files.first()?.path.clone();
+            let options = manifest.options_over(&phase.procedure.value.recording.read);
+            open_files(&name, &files, manifest.contiguous, &options).ok()
+        };
+        let sources: Vec<Source> = self.phased.phases.iter().filter_map(open).collect();
+        Serial::of(given, Some(manifest), &sources.iter().collect::<Vec<_>>())
+    }
+
     /// Runs one phase on its files; `who` gets who evaluates, by the first, and `explained` the phase whose missing columns were
     /// printed.
     fn run(
@@ -139,7 +161,7 @@ impl<'a> PhasedTest<'a> {
         limits: &EffectiveLimits,
         manifest: &Manifest,
         files: &[ManifestFile],
-        (unit, who, explained): (&UnitUnderTest, &mut Option<Session>, &mut Vec<String>),
+        (unit, of_recording, who, explained): (&UnitUnderTest, bool, &mut Option<Session>, &mut Vec<String>),
         progress: &mut Progress,
     ) -> Outcome {
         let options = manifest.options_over(&phase.procedure.value.recording.read);
@@ -156,6 +178,7 @@ impl<'a> PhasedTest<'a> {
             source: &source,
             use_stamps: true,
             unit: unit.clone(),
+            serial_of_recording: of_recording,
             operator: self.args.operator.clone(),
             station: self.args.station.clone(),
             now: self.now,

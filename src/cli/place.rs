@@ -41,8 +41,34 @@ pub fn warning(note: &Note, lang: Lang) -> String {
     format!("{}: {}\n", Note::new("diagnostic.warning").say(lang), note.say(lang))
 }
 
+/// Where a result goes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum OutputPlace {
+    /// The folder that the user named.
+    Named(PathBuf),
+    /// A name made by the program. If it is taken, the result goes to the next free name.
+    Default(PathBuf),
+}
+
+impl OutputPlace {
+    /// The folder named by the user, or else [`default_folder`].
+    pub fn new(named: Option<&Path>, what: &str, serial: Option<&str>, now: DateTime<Utc>) -> OutputPlace {
+        named.map_or_else(
+            || OutputPlace::Default(default_folder(what, serial, now)),
+            |path| OutputPlace::Named(path.to_owned()),
+        )
+    }
+
+    /// The folder; a default one may get a number.
+    pub fn path(&self) -> &Path {
+        match self {
+            OutputPlace::Named(path) | OutputPlace::Default(path) => path,
+        }
+    }
+}
+
 /// The default name of an output folder: what, which unit, when.
-pub fn default_folder(what: &str, serial: Option<&str>, now: DateTime<Utc>) -> PathBuf {
+fn default_folder(what: &str, serial: Option<&str>, now: DateTime<Utc>) -> PathBuf {
     let clean = |text: &str| -> String {
         let safe: String =
             text.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();

@@ -1,13 +1,14 @@
 //! Options that say how a recording is to be read.
 
+use super::place::for_shell;
 use crate::config::recording_keys::{DECIMALS, DELIMITERS, ENCODINGS, decimal, delimiter, encoding};
 use crate::ingest::layout::LayoutFile;
 use crate::ingest::{ReadOptions, TextOptions};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-/// What the user decides about the file; the rest is found from it, and the finding is told.
+/// What the user decides about the file; the rest is found from it, and the report says what was found.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "How the recording is read")]
 pub struct ReadArgs {
@@ -42,6 +43,55 @@ fn words(list: &'static [(&'static str, &'static str)]) -> impl Iterator<Item = 
 }
 
 impl ReadArgs {
+    /// The options as they are typed, each behind a space.
+    pub fn as_typed(&self) -> String {
+        let mut typed = String::new();
+        let mut add = |option: &str, value: &str| typed.push_str(&format!(" {option} {}", for_shell(value)));
+        let texts = [
+            ("--input-format", &self.input_format),
+            ("--encoding", &self.encoding),
+            ("--delimiter", &self.delimiter),
+            ("--decimal", &self.decimal),
+            ("--part", &self.part),
+        ];
+        for (option, value) in texts {
+            if let Some(value) = value {
+                add(option, value);
+            }
+        }
+        for (option, value) in [("--header-line", self.header_line), ("--first-line", self.first_line)] {
+            if let Some(line) = value {
+                add(option, &line.to_string());
+            }
+        }
+        if let Some(path) = &self.layout {
+            add("--layout", &path.display().to_string());
+        }
+        typed
+    }
+
+    /// The decisions as keys of the table `recording` of a procedure, without the layout: names and TOML values.
+    pub fn keys(&self) -> Vec<(&'static str, toml::Value)> {
+        let texts = [
+            ("format", &self.input_format),
+            ("encoding", &self.encoding),
+            ("delimiter", &self.delimiter),
+            ("decimal", &self.decimal),
+            ("part", &self.part),
+        ];
+        let texts = texts.into_iter().filter_map(|(key, v)| Some((key, toml::Value::String(v.clone()?))));
+        let lines = [("header_line", self.header_line), ("first_line", self.first_line)];
+        let lines = lines
+            .into_iter()
+            .filter_map(|(key, v)| Some((key, toml::Value::Integer(i64::try_from(v?).unwrap_or(i64::MAX)))));
+        texts.chain(lines).collect()
+    }
+
+    /// The layout of a raw binary file.
+    pub fn layout(&self) -> Option<&Path> {
+        self.layout.as_deref()
+    }
+
     /// The decisions.
     pub fn options(&self) -> ReadOptions {
         ReadOptions {

@@ -40,10 +40,7 @@ fn formats() -> PossibleValuesParser {
 pub fn main(args: &ReportArgs, lang: Lang) -> Result<u8, String> {
     let renderer = renderer(args.templates.as_deref(), lang)?;
     let stored = StoredResults::open(&args.result).map_err(|note| place::error(&note, lang))?;
-    let out = args
-        .out
-        .clone()
-        .unwrap_or_else(|| place::default_folder("report", stored.results.subject(), Utc::now()));
+    let out = place::OutputPlace::new(args.out.as_deref(), "report", stored.results.subject(), Utc::now());
     let folder = Inputs::new(args.force)
         .of_result(stored.inputs)
         .beside(Some(&args.result))

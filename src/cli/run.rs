@@ -1,11 +1,12 @@
 //! `sagnac run`: a procedure on a recording.
 
 use super::finish::settle;
-use super::inputs::serial;
+use super::inputs::Serial;
+use super::place::{self, OutputPlace};
 use super::printer::Printer;
 use super::run_args::RunArgs;
 use super::single_test::SingleTest;
-use super::{exit, next_step, place};
+use super::{exit, next_step};
 use crate::config::shipped::find;
 use crate::i18n::{Lang, Localize};
 use crate::ingest::RecordingError;
@@ -17,30 +18,30 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let now = Utc::now();
     let test = SingleTest::load(args, now, lang)?;
     let renderer = args.output.renderer(lang)?;
-    let out = args
-        .out
-        .clone()
-        .unwrap_or_else(|| place::default_folder(&test.procedure.value.id, args.serial.as_deref(), now));
     let printer = Printer::new(&args.output, lang);
     let mut progress = printer.progress();
     progress.stage("progress.inputs");
-    let folder = test.inputs(&args.recording, args.serial.as_deref()).begin(&out, Kind::Result, lang)?;
     // A recording that is there and cannot be opened still gets its report: the verdict is an error, and says why. A
     // name that is no file is a slip of the pen, which must not cost an earlier result.
+    let given = args.serial.as_deref();
     let opened = test.open(&args.recording);
-    match &opened {
+    let serial = match &opened {
         Ok(opened) => {
-            serial(args.serial.as_deref(), opened.manifest.as_ref())
-                .map_err(|note| place::error(&note, lang))?;
+            Serial::of(given, opened.manifest.as_ref(), &[&opened.source])
+                .map_err(|note| place::error(&note, lang))?
+                .number
         }
         Err(error) if !args.recording.iter().all(|r| r.exists()) => return Err(error.say(lang)),
-        // Of a manifest every problem is told; the report holds the first.
-        Err(RecordingError::Manifest(problems)) => {
-            progress.beside(|| place::eprint_diagnostic(&problems.say(lang)));
-        }
-        Err(RecordingError::File(_)) => {}
+        Err(_) => args.serial.clone(),
+    };
+    let id = &test.procedure.value.id;
+    let out = OutputPlace::new(args.out.as_deref(), id, serial.as_deref(), now);
+    let folder = test.inputs(&args.recording, given).begin(&out, Kind::Result, lang)?;
+    if let Err(RecordingError::Manifest(problems)) = &opened {
+        // Every problem of a manifest is printed; the report holds the first.
+        progress.beside(|| place::eprint_diagnostic(&problems.say(lang)));
     }
-    let evaluated = test.evaluate(&args.recording, opened, args.serial.as_deref(), &mut progress);
+    let evaluated = test.evaluate(&args.recording, opened, given, &mut progress);
     // A shipped procedure cannot be edited: one of its own suits the recording.
     let lacks = evaluated.problems.is_some() && find(&args.procedure).is_some();
     let own = next_step::init(&args.recording, "").filter(|_| lacks);

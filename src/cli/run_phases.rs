@@ -1,9 +1,8 @@
 //! `sagnac run` with a procedure of several phases: each on its files of a manifest, one report over all.
 
 use super::finish::finish;
-use super::inputs::serial;
 use super::phased_test::{PhasedTest, PhasesEvaluated, belong};
-use super::place;
+use super::place::{self, OutputPlace};
 use super::printer::Printer;
 use super::run_args::RunArgs;
 use crate::acceptance::phases::failure;
@@ -28,9 +27,9 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let manifest = manifest::load(path).map_err(|p| p.say(lang))?;
     belong(&test.phased, &manifest).map_err(error)?;
     let renderer = args.output.renderer(lang)?;
-    let serial = serial(args.serial.as_deref(), Some(&manifest)).map_err(error)?;
+    let serial = test.serial(args.serial.as_deref(), &manifest).map_err(error)?;
     let id = &test.phased.identity.id;
-    let out = args.out.clone().unwrap_or_else(|| place::default_folder(id, serial.as_deref(), now));
+    let out = OutputPlace::new(args.out.as_deref(), id, serial.number.as_deref(), now);
     let printer = Printer::new(&args.output, lang);
     let mut progress = printer.progress();
     progress.stage("progress.inputs");

@@ -38,6 +38,9 @@ pub struct SimulateArgs {
     like: Option<PathBuf>,
     #[command(flatten)]
     join: JoinArgs,
+    /// Print only errors and the path of the file
+    #[arg(long, short)]
+    quiet: bool,
 }
 
 pub fn main(args: &SimulateArgs, lang: Lang) -> Result<u8, String> {
@@ -61,7 +64,7 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
         return Err(say(&Note::new("simulate.both")));
     }
     let model = load_model(&args.model).map_err(|problems| problems.say(lang))?;
-    let mut progress = Progress::new(Display::unless(false), lang);
+    let mut progress = Progress::new(Display::unless(args.quiet), lang);
     let mut series = None;
     if let Some(path) = &args.like {
         let reading = Note::new("cli.reading").say(lang);
@@ -96,6 +99,9 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     if replaced {
         let note = Note::new("output_file.replaces").with("path", args.out.display().to_string());
         place::eprint_diagnostic(&format!("{}\n", note.say(lang)));
+    }
+    if args.quiet {
+        return Ok(format!("{}\n", place::shown(&args.out)));
     }
     Ok(summary(args, &model, series.as_ref(), &written, seed, lang))
 }

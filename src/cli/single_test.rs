@@ -1,7 +1,7 @@
 //! A procedure with its limits, ready to be run on recordings.
 
 use super::finish::{Against, Evaluated, evaluate};
-use super::inputs::{Inputs, serial};
+use super::inputs::{Inputs, Serial};
 use super::place;
 use super::procedures::say_which;
 use super::progress::Progress;
@@ -96,9 +96,9 @@ impl<'a> SingleTest<'a> {
             Ok(opened) => (opened.source, opened.manifest, None),
             Err(error) => (Source::unopened(name), None, Some(RunError::from(error.into_ingest(name)))),
         };
-        let serial = serial(given, manifest.as_ref()).unwrap_or_else(|note| {
+        let serial = Serial::of(given, manifest.as_ref(), &[&source]).unwrap_or_else(|note| {
             refused = Some(RunError::Nothing(note));
-            given.map(str::to_owned)
+            Serial { number: given.map(str::to_owned), of_recording: false }
         });
         let procedure = &self.procedure.value;
         let family = self.limits.as_ref().and_then(|l| l.value.family.clone());
@@ -110,12 +110,13 @@ impl<'a> SingleTest<'a> {
             source: &source,
             use_stamps: true,
             unit: UnitUnderTest {
-                serial,
+                serial: serial.number,
                 family: procedure.unit_under_test.family.clone().or(family),
                 part: procedure.unit_under_test.part.clone(),
                 revision: procedure.unit_under_test.revision.clone(),
                 lot: None,
             },
+            serial_of_recording: serial.of_recording,
             operator: self.args.operator.clone(),
             station: self.args.station.clone(),
             now: self.now,

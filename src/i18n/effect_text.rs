@@ -1,4 +1,4 @@
-//! What a reader is told of an effect: the entries of `effect.<kind>` in the locale tables.
+//! What a reader learns of an effect: the entries of `effect.<kind>` in the locale tables.
 
 use super::{Lang, lookup};
 

@@ -1,4 +1,4 @@
-//! Which language: chosen, or told by the locale of the environment.
+//! Which language: chosen, or given by the locale of the environment.
 
 /// A language a document can be written in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

@@ -28,12 +28,12 @@ pub struct Member {
     pub folder: String,
 }
 
-/// Why the units of a lot cannot be told.
+/// Why the units of a lot cannot be identified.
 #[derive(Debug, Clone, PartialEq)]
 pub enum LotError {
     /// A name or pattern stands for no file.
     Recording(RecordingError),
-    /// A serial number cannot be told, or is that of several recordings.
+    /// A serial number cannot be identified, or is that of several recordings.
     Serial {
         /// What is wrong, one note for each serial number or file.
         notes: Vec<Note>,
@@ -108,7 +108,12 @@ fn stated(recording: &Path, options: &ReadOptions) -> (String, SerialSource) {
 
 /// The serial number that a recording states in its header or metadata; `None` where it states none, or several.
 pub fn stated_serial(source: &Source) -> Option<String> {
-    let numbers = source.stated_serials();
+    stated_serial_of(&[source])
+}
+
+/// As [`stated_serial`], of several recordings of one unit.
+pub fn stated_serial_of(sources: &[&Source]) -> Option<String> {
+    let numbers: Vec<&str> = sources.iter().flat_map(|s| s.stated_serials()).collect();
     let different: BTreeSet<String> = numbers.iter().map(|s| plain(s)).filter(|s| !s.is_empty()).collect();
     let stated = numbers.iter().find(|s| !plain(s).is_empty()).filter(|_| different.len() == 1)?;
     Some(stated.trim().to_owned())

@@ -76,7 +76,7 @@ impl Model {
 /// recordings.
 ///
 /// # Errors
-/// [`Error::is_recording`] when the recording cannot be read; [`Error::is_argument`] when its rate column cannot be told,
+/// [`Error::is_recording`] when the recording cannot be read; [`Error::is_argument`] when its rate column cannot be identified,
 /// or when recording and model cannot be compared.
 pub fn explain(recording: &Recording, model: &Model) -> Result<Explanation, Error> {
     let series = recording.series(&recording.series_options())?;

@@ -100,7 +100,7 @@ impl Procedure {
         let procedure = &self.procedure.value;
         let anew = recording.read_by(&procedure.recording.read)?;
         let recording = anew.as_ref().unwrap_or(recording);
-        let mut unit = recording.complete(unit)?;
+        let (mut unit, serial_of_recording) = recording.complete(unit)?;
         let family = self.limits.as_ref().and_then(|l| l.value.family.clone());
         unit.family = unit.family.or_else(|| procedure.unit_under_test.family.clone()).or(family);
         unit.part = unit.part.or_else(|| procedure.unit_under_test.part.clone());
@@ -114,6 +114,7 @@ impl Procedure {
             source: recording.source(),
             use_stamps: true,
             unit,
+            serial_of_recording,
             operator: self.operator.clone(),
             station: self.station.clone(),
             now: self.evaluated_at.unwrap_or_else(Utc::now),

@@ -3,6 +3,7 @@
 use super::Error;
 use crate::config::manifest::Manifest;
 use crate::i18n::Note;
+use crate::ingest::lot::stated_serial;
 use crate::ingest::{ReadOptions, Source, are_several, open_recording};
 use crate::record::UnitUnderTest;
 use crate::series::{Series, SeriesOptions, load_series_of};
@@ -152,8 +153,18 @@ impl Recording {
         self.source.path().display().to_string()
     }
 
-    /// The unit with the serial number of the manifest where it has none.
-    pub(super) fn complete(&self, unit: &UnitUnderTest) -> Result<UnitUnderTest, Error> {
+    /// The unit with the serial number of the manifest, or else of the recording, where it has none; and whether it is that
+    /// of the recording.
+    pub(super) fn complete(&self, unit: &UnitUnderTest) -> Result<(UnitUnderTest, bool), Error> {
+        let unit = self.with_manifest(unit)?;
+        if unit.serial.as_deref().is_some_and(|s| !s.trim().is_empty()) {
+            return Ok((unit, false));
+        }
+        let stated = stated_serial(&self.source);
+        Ok((UnitUnderTest { serial: stated.clone().or(unit.serial), ..unit }, stated.is_some()))
+    }
+
+    fn with_manifest(&self, unit: &UnitUnderTest) -> Result<UnitUnderTest, Error> {
         let Some(manifest) = &self.manifest else { return Ok(unit.clone()) };
         match (unit.serial.as_deref(), manifest.serial.as_deref()) {
             (Some(given), Some(stated)) if given.trim() != stated.trim() => Err(Error::argument(

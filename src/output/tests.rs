@@ -69,6 +69,29 @@ fn a_result_of_other_inputs_is_replaced_by_force_only() {
 }
 
 #[test]
+fn runs_that_name_their_own_place_take_the_next_free_one() {
+    let dir = tempfile::tempdir().unwrap();
+    let target = dir.path().join("result");
+    let fresh = || staged_by(&target, Order { fresh: true, ..order("1", false) });
+    let begun: Vec<StagedFolder> = (0..4).map(|_| fresh()).collect();
+    let mut places: Vec<PathBuf> = std::thread::scope(|scope| {
+        let runs: Vec<_> =
+            begun.into_iter().map(|run| scope.spawn(|| run.publish(record(1)).unwrap())).collect();
+        runs.into_iter().map(|run| run.join().unwrap()).collect()
+    });
+    places.sort();
+    let names = ["result", "result_2", "result_3", "result_4"];
+    assert_eq!(places, names.map(|name| dir.path().join(name)));
+    assert_eq!(entries(dir.path()), names);
+    for place in &places {
+        assert_eq!(entries(place), ["figures", "result.json"]);
+    }
+    fs::write(dir.path().join("result_5"), "of the user").unwrap();
+    assert_eq!(fresh().publish(record(2)).unwrap(), dir.path().join("result_6"));
+    assert_eq!((round(&target), entries(dir.path()).len()), (1, 6));
+}
+
+#[test]
 fn an_input_in_the_folder_of_the_result_is_refused() {
     let dir = tempfile::tempdir().unwrap();
     let target = dir.path().join("result");

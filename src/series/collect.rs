@@ -10,10 +10,10 @@ use std::path::PathBuf;
 
 /// Reads a recording: a file of any kind that is read, several in sequence, a pattern, or a manifest.
 ///
-/// `progress` is told bytes done and bytes in all.
+/// `progress` gets bytes done and bytes in all.
 ///
 /// # Errors
-/// What keeps it from being read, and columns that cannot be told.
+/// What keeps it from being read, and columns that cannot be identified.
 pub fn load_series(
     named: &[PathBuf],
     options: &SeriesOptions,
@@ -25,7 +25,7 @@ pub fn load_series(
 /// Reads an opened recording; [`SeriesOptions::read`] plays no part.
 ///
 /// # Errors
-/// What keeps it from being read, and columns that cannot be told.
+/// What keeps it from being read, and columns that cannot be identified.
 pub fn load_series_of(
     source: &Source,
     options: &SeriesOptions,

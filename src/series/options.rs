@@ -13,7 +13,7 @@ pub struct SeriesOptions {
     pub rate: Option<String>,
     /// Unit of that column; found from its name where it is left out.
     pub unit: Option<String>,
-    /// Take the first column that looks like an output, in whatever unit, where it is not told which is meant: for those
+    /// Take the first column that looks like an output, in whatever unit, where it is not stated which is meant: for those
     /// who need the rows and not the rate.
     pub any_rate: bool,
     /// Channels as a procedure declares them; empty: found by their names.
@@ -29,7 +29,7 @@ pub enum SeriesError {
     Open(RecordingError),
     /// It cannot be read.
     Read(IngestError),
-    /// Time, rate or unit cannot be told from it.
+    /// Time, rate or unit is not evident from it.
     Unclear(Note),
 }
 

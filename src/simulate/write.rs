@@ -81,7 +81,7 @@ impl From<OutputError> for WriteError {
     }
 }
 
-/// Runs a simulation to its end and writes it; the file appears whole or not at all. `progress` is told samples done
+/// Runs a simulation to its end and writes it; the file appears whole or not at all. `progress` gets samples done
 /// and samples in all.
 ///
 /// # Errors

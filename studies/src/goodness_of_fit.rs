@@ -136,8 +136,8 @@ fn mixes() -> Vec<Mix> {
             samples: 65_536,
             ..fitted("N K Q, blocks of 16", terms(0.002, 0.0, 0.02, 0.0, 0.1))
         },
-        Mix { told: true, ..fitted("N Markov, told", markov) },
-        Mix { told: true, ..fitted("N B quasi-periodic, told", periodic) },
+        Mix { told: true, ..fitted("N Markov, given", markov) },
+        Mix { told: true, ..fitted("N B quasi-periodic, given", periodic) },
     ]
 }
 

@@ -199,6 +199,7 @@ fn run(rate: Vec<f64>, tau0_s: f64, limits: &EffectiveLimits) -> RunRecord {
         source: &source,
         use_stamps: false,
         unit: UnitUnderTest::default(),
+        serial_of_recording: false,
         operator: None,
         station: None,
         now: chrono::DateTime::UNIX_EPOCH,

@@ -156,7 +156,7 @@ fn a_procedure_of_phases_shows_its_manifest_and_runs_by_name() {
     assert_eq!(said.code, 1, "{said:?}");
     assert!(said.err.contains("acceptance: the shipped file"), "{}", said.err);
     assert_eq!(result(&dir.path().join("r"))["phases"].as_array().unwrap().len(), 3);
-    // A manifest that is not there is told as such.
+    // A manifest that is not there is reported as such.
     let said = sagnac(dir.path(), &["run", "acceptance", "none.toml"]);
     assert!(
         said.code == 2 && said.err.contains("none.toml") && said.err.contains("cannot be read"),

@@ -109,7 +109,8 @@ fn faults_of_the_sample_are_found_where_they_were_put() {
 #[test]
 fn a_missing_serial_is_an_error_and_the_report_is_written() {
     let dir = tempdir().unwrap();
-    let run = ["run", &procedure(), &sample("pass"), "--limits", &limits(), "--out", "o"];
+    let unnamed = altered(dir.path(), "unnamed.csv", &sample("pass"), &[("# serial: SN-0001\n", "")]);
+    let run = ["run", &procedure(), &unnamed, "--limits", &limits(), "--out", "o"];
     for serial in [None, Some(""), Some("  ")] {
         let mut args = run.to_vec();
         args.extend(serial.map(|s| ["--serial", s]).into_iter().flatten());
@@ -121,6 +122,24 @@ fn a_missing_serial_is_an_error_and_the_report_is_written() {
         assert_eq!(result["errors"][0]["id"], "error.serial_missing");
         assert_eq!(measurand(&result, "static_bias")["verdict"], "pass", "rows are evaluated all the same");
     }
+}
+
+#[test]
+fn the_serial_number_that_a_recording_states_is_used_and_said_to_be() {
+    let dir = tempdir().unwrap();
+    let said = sagnac(dir.path(), &["run", &procedure(), &sample("pass"), "--limits", &limits()]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.out.starts_with("PASS  Static bias and noise · SN-0001"), "{}", said.out);
+    let words = said.out.split_whitespace().collect::<Vec<_>>().join(" ");
+    let used = "The recording states `SN-0001`. No other serial number was given, so this one is used.";
+    assert!(words.contains(&format!("remark: Serial number in the recording: {used}")), "{}", said.out);
+    let folder = names(dir.path()).pop().unwrap();
+    assert!(folder.starts_with("static-bias_SN-0001_"), "{folder}");
+    let result = result(&dir.path().join(folder));
+    assert_eq!(result["unit_under_test"]["serial"], "SN-0001");
+    let conditions = result["conditions"].as_array().unwrap();
+    let named = conditions.iter().find(|c| c["id"] == "unit_named").unwrap();
+    assert_eq!((&named["status"], &named["note"]), (&"remark".into(), &used.into()));
 }
 
 #[test]

@@ -94,6 +94,32 @@ fn a_step_is_found_and_the_loop_closes() {
 }
 
 #[test]
+fn candidates_stand_by_what_they_are_worth_and_columns_under_their_own_names() {
+    let dir = tempdir().unwrap();
+    case(dir.path(), "r.csv", 15, 0.2);
+    let path = dir.path().join("r.csv");
+    let text = std::fs::read_to_string(&path).unwrap().replacen("temp_degC", "Housing [degC]", 1);
+    std::fs::write(&path, text).unwrap();
+    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    assert_eq!(said.code, 1, "{said:?}");
+    let e = dir.path().join("e");
+    let all = json(&e.join("explain.json"));
+    let worth: Vec<f64> = all["candidates"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|c| c["delta_bic"].as_f64().unwrap_or(f64::NEG_INFINITY))
+        .collect();
+    assert!(worth.len() > 5 && worth.is_sorted_by(|a, b| a >= b), "{worth:?}");
+    let column = &all["columns"][0];
+    assert_eq!((&column["name"], &column["recorded_as"]), (&"temp_degC".into(), &"Housing [degC]".into()));
+    for page in ["report.html", "report.md"] {
+        let page = std::fs::read_to_string(e.join(page)).unwrap();
+        assert!(page.contains("Housing [degC]") && !page.contains("temp_degC"), "{page}");
+    }
+}
+
+#[test]
 fn a_level_that_leaves_and_returns_was_not_recorded() {
     let dir = tempdir().unwrap();
     with(dir.path(), "r.csv", 16, |i| if (1000..2200).contains(&i) { 0.4 } else { 0.0 });

@@ -23,7 +23,7 @@ fn number(name: &str, otherwise: &str) -> u64 {
     environment(name, otherwise).parse().expect("a number")
 }
 
-/// Runs `explain` and returns its exit code; nothing is hidden from it and nothing told but claim and recording.
+/// Runs `explain` and returns its exit code; nothing is hidden from it and nothing given but claim and recording.
 fn by_the_program(recording: &Path, model: &Path, out: &Path, without: &[&str]) -> Option<i32> {
     let mut command = Command::new(env!("CARGO_BIN_EXE_sagnac"));
     command.arg("explain").arg(recording).arg("--model").arg(model).arg("--out").arg(out);

@@ -1,4 +1,4 @@
-//! The judge of the study is judged: scores of hand-made reports, and the fit told the truth against closed forms.
+//! The judge of the study is judged: scores of hand-made reports, and the fit given the truth against closed forms.
 
 use sagnac_studies::explain::case::{Case, single};
 use sagnac_studies::explain::classes::{CLASSES, SUBSTITUTES, same_class};

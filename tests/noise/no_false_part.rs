@@ -1,5 +1,5 @@
 //! No part of a record that is not there: white noise is not split, no part exceeds the record, a record that moves shows no
-//! noise at rest, clipped values are told.
+//! noise at rest, clipped values are reported.
 
 use crate::support::{result, sagnac};
 use sagnac_studies::noise_source::{NoiseSource, add, csv};

@@ -28,7 +28,7 @@ fn a_check_that_lacks_what_it_needs_is_listed_with_the_reason() {
     assert_eq!(check(&r, "earth_rate")["evidence"], "earth_rate");
     assert_eq!(check(&r, "serial_number")["status"], "made");
     assert_eq!(check(&r, "column_units")["status"], "made");
-    // Without the site the sign of the output cannot be told, and the report says so.
+    // Without the site the sign of the output cannot be checked, and the report says so.
     std::fs::write(
         dir.path().join("bare.toml"),
         "format = \"procedure/1\"\n[procedure]\nid = \"p\"\ntitle = \"P\"\nrevision = \"A\"\n[[channel]]\nid = \"time\"\n\

@@ -172,7 +172,7 @@ fn a_full_scale_far_below_the_rates_and_an_exchanged_unit_are_named() {
         |_| {},
     );
     assert!(names(&low, "on_table.beyond"), "{low:?}");
-    // A dead zone takes a part of the output away, and the unit is told all the same.
+    // A dead zone takes a part of the output away, and the unit is identified all the same.
     let unit = mistaken("threshold", &[], "threshold-pass", |v| v[1] /= 3600.0);
     assert!(unit.iter().any(|(id, said)| id == "on_table.mistaken" && said.contains("deg/s")), "{unit:?}");
 }

@@ -47,7 +47,7 @@ const LISTED: &[(&str, &[&str])] = &[
     ),
     ("excluded", &["warm_up", "declared", "gap", "pause"]),
     ("clause", &["here", "elsewhere", "not_applicable", "not_done", "partly"]),
-    // The inputs by which a result is told from another.
+    // The inputs that distinguish a result from another.
     (
         "output_error",
         &[

@@ -18,6 +18,7 @@ pub fn tested(procedure: &Loaded<Procedure>, recording: &Path) -> Result<RunReco
         source: &source,
         use_stamps: true,
         unit: UnitUnderTest { serial: Some("SN-0001".into()), ..UnitUnderTest::default() },
+        serial_of_recording: false,
         operator: None,
         station: None,
         now: chrono::DateTime::from_timestamp(1_795_000_000, 0).unwrap(),

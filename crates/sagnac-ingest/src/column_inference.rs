@@ -331,7 +331,7 @@ fn role_without_dimension(name: &NameWords<'_>, counts: bool) -> Role {
         _ if increment => Role::AngleIncrement,
         _ if gyro => Role::Rate,
         _ if name.any(&["time", "timestamp", "время"]) || name.0 == ["t"] => Role::Time,
-        // `seconds_of_day`: nothing but time is counted in them. Seconds of a week are told by the reader.
+        // `seconds_of_day`: nothing but time is counted in them. Seconds of a week are recognised by the reader.
         _ if name.any(&["seconds", "sod", "секунды"]) => Role::Time,
         _ if name.temperature() => Role::Temperature,
         _ if name.any(SUPPLY) => Role::Supply,

@@ -116,7 +116,7 @@ pub(super) fn run_pipeline(
     })
 }
 
-/// Hashes a file unless told to stop.
+/// Hashes a file unless asked to stop.
 fn digest(path: &Path, stop: &AtomicBool) -> Result<Option<Digested>, IngestError> {
     let mut stream = ByteStream::open(path, Packing::Plain)?;
     let mut buffer = vec![0; 1 << 18];

@@ -55,7 +55,7 @@ pub(super) struct RowClock<'a> {
     angles: Angles,
     /// The next sample block of differences begins a stretch.
     broken: bool,
-    /// Losses of the plan that were told.
+    /// Losses of the plan that were reported.
     lost: usize,
 }
 

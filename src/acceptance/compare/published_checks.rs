@@ -97,7 +97,7 @@ impl Remarks {
     }
 }
 
-/// A factor of which three digits are told.
+/// A factor of which three digits are stated.
 fn factor(v: f64) -> Arg {
     Arg::figures(v, 3)
 }

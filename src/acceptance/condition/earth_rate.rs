@@ -26,7 +26,7 @@ use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct EarthRate;
 
-/// Least Earth rate along the axis that a unit is told by where nothing is known of the bias, deg/h.
+/// Least Earth rate along the axis by which a unit is recognised where nothing is known of the bias, deg/h.
 const MIN_EARTH_RATE_DEG_H: f64 = 1.0;
 /// Share of the Earth rate within which an exchange of unit brings the mean then.
 const EXCHANGE_TOLERANCE: f64 = 0.125;
@@ -56,7 +56,7 @@ fn of_gyro(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
     Some(comparison(gyro, earth, (status, key, mistakes), required, facts))
 }
 
-/// Why sign, axis and unit cannot be told by the Earth rate.
+/// Why sign, axis and unit cannot be checked by the Earth rate.
 fn why_not(gyro: &GyroFact, facts: &Facts<'_>) -> Option<&'static str> {
     if gyro.earth_deg_h.is_none() {
         return Some("check_list.no_site");
@@ -111,7 +111,7 @@ fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Cond
     Some(comparison(gyro, earth, (ConditionStatus::Invalid, "earth_rate.mistake", found), required, facts))
 }
 
-/// A reversed sign, or an Earth rate taken out before, told by how little the bias moves in a test over temperature or of the
+/// A reversed sign, or an Earth rate taken out before, shown by how little the bias moves in a test over temperature or of the
 /// warm-up.
 fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let moves = gyro.moves_deg_h?;

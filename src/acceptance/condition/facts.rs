@@ -46,6 +46,8 @@ pub struct Facts<'a> {
     pub stated_serials: &'a [&'a str],
     /// Serial number under which the unit is tested.
     pub serial: Option<&'a str>,
+    /// True when that is the number that the recording states, since nobody gave one.
+    pub serial_of_recording: bool,
     /// The schedule of a test over temperature, where there is a temperature.
     pub schedule: Option<&'a Schedule>,
     /// Day of the test.

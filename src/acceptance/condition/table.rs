@@ -86,7 +86,7 @@ const MAX_RATE_TO_FULL_SCALE: f64 = 3.0;
 const MAX_INNER_RATE_RATIO: f64 = 3e-4;
 /// Share of the Earth rate within which a bias is twice that of the other sign.
 const SIGN_TOLERANCE: f64 = 0.05;
-/// Least Earth rate along the axis by which that is told, deg/h.
+/// Least Earth rate along the axis by which that is checked, deg/h.
 const MIN_EARTH_RATE_DEG_H: f64 = 3.0;
 
 /// Share of the tolerance of the rate by which steps may be off on average where the settling is a little short.

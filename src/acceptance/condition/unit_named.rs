@@ -17,18 +17,21 @@ impl Condition for UnitNamed {
             facts.checks.not_made("serial_number", None, "check_list.no_serial_stated");
             return vec![];
         };
-        match given {
+        match given.filter(|_| !facts.serial_of_recording) {
             Some(_) => facts.checks.made("serial_number", None, "unit_named"),
             None => facts.checks.not_made("serial_number", None, "check_list.no_serial_given"),
         }
         let (status, key) = match given {
+            Some(_) if facts.serial_of_recording => (ConditionStatus::Remark, "unit_named.used"),
             Some(given) if plain(given) == plain(stated) => (ConditionStatus::Ok, "unit_named.same"),
             Some(_) => (ConditionStatus::Invalid, "unit_named.other"),
             None => (ConditionStatus::Remark, "unit_named.not_given"),
         };
         let note =
             Note::new(key).with("stated", format!("`{stated}`")).with("given", given.unwrap_or_default());
-        let required = given.map(|given| Note::new("unit_named.required").with("serial", given));
+        let required = given
+            .filter(|_| !facts.serial_of_recording)
+            .map(|given| Note::new("unit_named.required").with("serial", given));
         vec![record("unit_named", status, &[], required, note)]
     }
 }

@@ -166,7 +166,7 @@ fn spec(time: &TimeBase) -> TimeBaseSpec {
         TimeBase::Declared(hz, _) => {
             TimeBaseSpec { declared_sample_rate_hz: Some(*hz), use_stamps: false, ..TimeBaseSpec::default() }
         }
-        // One row a second, so that positions can be told; no time is shown.
+        // One row a second, so that positions can be identified; no time is shown.
         TimeBase::Rows(_) => {
             TimeBaseSpec { declared_sample_rate_hz: Some(1.0), use_stamps: false, ..TimeBaseSpec::default() }
         }

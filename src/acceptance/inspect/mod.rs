@@ -19,7 +19,7 @@ use crate::ingest::Source;
 use std::path::Path;
 
 /// Reads a recording and says what it holds. `sample_rate_hz` is used where no time column serves, and
-/// before what the file states; `progress` is told bytes read and bytes in all.
+/// before what the file states; `progress` gets bytes read and bytes in all.
 ///
 /// # Errors
 /// [`RunError::Ingest`] when the file cannot be read at all, or holds no column of numbers.

@@ -80,7 +80,7 @@ pub struct EffectView {
     pub heldout_gain: String,
     /// Share of the misfit removed; empty where there is none.
     pub removed: String,
-    /// What cannot be told from it.
+    /// What cannot be distinguished from it.
     pub equivalents: Vec<EquivalentView>,
 }
 

@@ -181,7 +181,11 @@ fn identity(all: &Explanation, context: &Context, words: Translator) -> Vec<Fiel
     put("explain.fact.interval", duration(r.sample_interval_s, words.lang));
     put("explain.fact.length", duration(r.duration_s(), words.lang));
     let list = |names: &[String]| names.join(&words.t("number.list"));
-    put("explain.fact.columns", list(&r.columns));
+    let in_file = |name: &String| {
+        let column = all.columns.iter().find(|c| c.name == *name);
+        column.and_then(|c| c.recorded_as.as_ref()).unwrap_or(name).clone()
+    };
+    put("explain.fact.columns", list(&r.columns.iter().map(in_file).collect::<Vec<_>>()));
     put("explain.fact.hidden", list(&r.hidden));
     put("explain.fact.alpha", digits(all.alpha, 1, words.lang));
     out

@@ -56,7 +56,7 @@ fn places(pattern: &str) -> impl Iterator<Item = &str> {
     pattern.split('{').skip(1).filter_map(|p| p.split_once('}')).map(|p| p.0)
 }
 
-/// The sentences on one finding: what it is, where it shows, what it cannot be told from.
+/// The sentences on one finding: what it is, where it shows, what it cannot be distinguished from.
 pub fn finding(finding: &Finding, explanation: &Explanation, words: Translator) -> Vec<String> {
     let shown: Vec<String> =
         finding.places.iter().map(|p| place(p, explanation.recording.length_s, words)).collect();

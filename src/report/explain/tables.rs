@@ -66,7 +66,7 @@ pub struct CandidateRow {
     pub chosen: bool,
 }
 
-/// Candidates in their order.
+/// Candidates in their order, the largest ΔBIC first.
 pub(super) fn candidates(all: &Explanation, words: Translator) -> Vec<CandidateRow> {
     all.candidates
         .iter()
@@ -105,7 +105,7 @@ pub struct ColumnRow {
 /// The columns beside time and rate.
 pub(super) fn columns(all: &Explanation, words: Translator) -> Vec<ColumnRow> {
     let row = |c: &ColumnRecord| ColumnRow {
-        name: c.name.clone(),
+        name: c.recorded_as.as_ref().unwrap_or(&c.name).clone(),
         status: match c.reason {
             Some(reason) => words.name("explain.columns", reason.id()),
             None => words.name("explain.columns", c.status.id()),

@@ -47,6 +47,9 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     page(&id, &title, &description.join(". "), height, &body)
 }
 
+/// Size of the words of an ordinate on two lines, px.
+const SMALL: f64 = 10.0;
+
 /// A panel with its axes, its layers cut off at the frame, and its words.
 fn draw_panel(body: &mut String, plot: &Plot<'_>, panel: &Panel, clip: &str, last: bool, lang: Lang) {
     axes(body, plot, last);
@@ -120,10 +123,22 @@ fn axes(out: &mut String, plot: &Plot<'_>, last: bool) {
         let words = write::cut(&plot.x.title, FONT, plot.width);
         text(out, (0.5 * (left + right), bottom + 35.0), Anchor::Middle, FONT, "", &words);
     }
-    let words = write::cut(&plot.y.title, FONT, plot.height + 16.0);
-    let (x, y) = (13.0, 0.5 * (top + bottom));
-    let turn = format!(" transform=\"rotate(-90 {} {})\"", px(x), px(y));
-    text(out, (x, y), Anchor::Middle, FONT, &turn, &words);
+    ordinate_title(out, plot);
+}
+
+/// The words of the ordinate, turned: on one line, or where they are too long, smaller and with the unit on a second line.
+fn ordinate_title(out: &mut String, plot: &Plot<'_>) {
+    let (title, room) = (plot.y.title.as_str(), plot.height + 16.0);
+    let fits = width(title, FONT) <= room;
+    let lines: Vec<(f64, f64, &str)> = match title.rsplit_once(", ").filter(|_| !fits) {
+        Some((quantity, unit)) => vec![(9.0, SMALL, quantity), (20.0, SMALL, unit)],
+        None => vec![(13.0, FONT, title)],
+    };
+    let y = plot.top + 0.5 * plot.height;
+    for (x, size, line) in lines {
+        let turn = format!(" transform=\"rotate(-90 {} {})\"", px(x), px(y));
+        text(out, (x, y), Anchor::Middle, size, &turn, &write::cut(line, size, room));
+    }
 }
 
 fn frame(out: &mut String, plot: &Plot<'_>) {

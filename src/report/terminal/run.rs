@@ -6,7 +6,6 @@ use crate::i18n::{Lang, visible};
 use crate::report::translator::Translator;
 use crate::report::view::{PhaseView, Row, View};
 use anstyle::Style;
-use std::fmt::Write;
 
 /// The outcome: verdict, quantities, reasons, conditions that are not met, faults.
 pub fn run(view: &View, lang: Lang, terminal: Terminal) -> String {
@@ -199,8 +198,7 @@ fn conditions(view: &View, words: Translator, terminal: Terminal) -> String {
             let found = if c.note.is_empty() { &c.found } else { &c.note };
             let args = [("name", c.name.as_str()), ("required", &c.required), ("found", found)];
             let key = if c.required.is_empty() { "terminal.condition_plain" } else { "terminal.condition" };
-            let _ = writeln!(out, "  {}", terminal.verdict(&c.status_word, c.status));
-            out += &terminal.indented([words.with(key, &args)]);
+            out += &terminal.marked(&c.status_word, c.status, &words.with(key, &args));
         }
     }
     if !faults.is_empty() {

@@ -39,6 +39,16 @@ impl Terminal {
         }
     }
 
+    /// A sentence behind a word in the colour of its state, wrapped as by [`Terminal::indented`].
+    pub(super) fn marked(self, word: &str, id: &str, sentence: &str) -> String {
+        let plain = self.indented([format!("{word}: {sentence}")]);
+        // The first line may be too narrow for a word that has a space.
+        match plain.strip_prefix("  ").and_then(|text| text.strip_prefix(word)) {
+            Some(rest) => format!("  {}{rest}", self.verdict(word, id)),
+            None => plain,
+        }
+    }
+
     /// Sentences, each wrapped to the width behind an indent of two columns.
     pub(super) fn indented(self, sentences: impl IntoIterator<Item = impl AsRef<str>>) -> String {
         let mut out = String::new();
@@ -63,4 +73,20 @@ pub(super) fn verdict_style(id: &str) -> Style {
         _ => return Style::new(),
     };
     Style::new().bold().fg_color(Some(colour.into()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_state_stands_before_its_sentence_on_one_line() {
+        let plain = Terminal { width: 40, colour: false };
+        let sentence = "Warm-up excluded: the fitted tail would need 0.62 h.";
+        let shown = plain.marked("remark", "remark", sentence);
+        assert_eq!(shown, "  remark: Warm-up excluded: the fitted\n    tail would need 0.62 h.\n");
+        let coloured = Terminal { width: 40, colour: true }.marked("remark", "remark", sentence);
+        assert!(coloured.starts_with("  \u{1b}["), "{coloured:?}");
+        assert_eq!(anstream::adapter::strip_str(&coloured).to_string(), shown);
+    }
 }

@@ -3,6 +3,7 @@
 use super::common::MODEL_NOTES;
 use crate::estimate::{Rule, Verdict};
 use crate::i18n::Arg;
+use crate::measurand;
 use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
 use crate::report::number::{Rounding, acceptance, bound, digits, limit, limit_digits, percent};
 use crate::report::translator::Translator;
@@ -194,11 +195,31 @@ pub fn reason(m: &MeasurandRecord, several_channels: bool, words: Translator) ->
     };
     let limit = if l.unit == m.unit { words.quantity(&limit, &m.unit) } else { limit };
     let mut text = words.with(key, &[("name", &name), ("value", &value), ("limit", &limit)]);
-    if !accepted.is_empty() && l.rule == Rule::GuardBand {
+    if out_of_reach(m) {
+        text = words.with("reason.no_value_passes", &[("reason", &text)]);
+    } else if !accepted.is_empty() && l.rule == Rule::GuardBand {
         let accepted = words.quantity(&accepted, &m.unit);
         text = words.with("reason.with_acceptance", &[("reason", &text), ("acceptance", &accepted)]);
     }
     Some(format!("{text}."))
+}
+
+/// True where no measured value could be accepted: the guard bands leave nothing between two limits, or nothing above zero
+/// of a quantity that is never negative.
+fn out_of_reach(m: &MeasurandRecord) -> bool {
+    let Some(l) = m.limit.as_ref().filter(|l| l.rule == Rule::GuardBand) else { return false };
+    let is_signed = measurand::find(&m.id).is_none_or(|m| m.signed);
+    let crossed = l.acceptance_min.zip(l.acceptance_max).is_some_and(|(low, high)| low > high);
+    crossed || !is_signed && l.acceptance_max.is_some_and(|high| high < 0.0)
+}
+
+/// The number of a footnote, counted from 1; one that is not there yet is added.
+fn footnote(sentence: String, footnotes: &mut Vec<String>) -> usize {
+    let found = footnotes.iter().position(|f| *f == sentence);
+    found.unwrap_or_else(|| {
+        footnotes.push(sentence);
+        footnotes.len() - 1
+    }) + 1
 }
 
 fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> Row {
@@ -211,15 +232,13 @@ fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> R
             id if MODEL_NOTES.contains(&id) || (SEARCHED.contains(&id) && searched(m)) => continue,
             _ => words.say(note),
         };
-        let at = footnotes.iter().position(|f| *f == sentence).unwrap_or_else(|| {
-            footnotes.push(sentence);
-            footnotes.len() - 1
-        });
-        if !numbers.contains(&(at + 1)) {
-            numbers.push(at + 1);
-        }
+        numbers.push(footnote(sentence, footnotes));
+    }
+    if out_of_reach(m) {
+        numbers.push(footnote(words.t("report.no_value_passes"), footnotes));
     }
     numbers.sort_unstable();
+    numbers.dedup();
     Row {
         id: m.id.clone(),
         channel: m.channel.clone(),
@@ -237,7 +256,11 @@ fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> R
             words.t("report.not_shown_by_record")
         },
         limit: m.limit.as_ref().map_or_else(String::new, |l| limits(l, &m.unit, words)),
-        acceptance: m.limit.as_ref().map_or_else(String::new, |l| accepted(l, words)),
+        acceptance: match &m.limit {
+            Some(_) if out_of_reach(m) => words.t("report.none_passes"),
+            Some(l) => accepted(l, words),
+            None => String::new(),
+        },
         rule: m.limit.as_ref().map_or_else(String::new, |l| rule(l, words)),
         margin: m.margin.map_or_else(String::new, |margin| match m.value {
             Some(_) => digits(margin, 3, lang),
@@ -290,5 +313,72 @@ fn rule(l: &LimitRecord, words: Translator) -> String {
     match l.rule {
         Rule::Simple => words.t("rule.simple"),
         Rule::GuardBand => words.with("rule.guard_band", &[("risk", &percent(l.risk, words.lang))]),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::i18n::Lang;
+
+    fn judged(id: &str, accepted: [Option<f64>; 2], limits: [Option<f64>; 2]) -> MeasurandRecord {
+        MeasurandRecord {
+            id: id.into(),
+            channel: "rate".into(),
+            phase: None,
+            value: Some(0.4),
+            unit: "deg/h".into(),
+            interval: None,
+            identifiable: true,
+            upper_limit: None,
+            most_likely: None,
+            lower_limit: None,
+            method: "mean".into(),
+            limit: Some(LimitRecord {
+                min: limits[0],
+                max: limits[1],
+                unit: "deg/h".into(),
+                rule: Rule::GuardBand,
+                risk: 0.05,
+                acceptance_min: accepted[0],
+                acceptance_max: accepted[1],
+                source: "limits.toml".into(),
+            }),
+            reference: None,
+            verdict: Verdict::Indeterminate,
+            margin: None,
+            specific_risk: None,
+            notes: vec![],
+        }
+    }
+
+    #[test]
+    fn an_acceptance_limit_that_no_value_could_meet_is_no_number() {
+        let never_negative = judged("dead_zone", [None, Some(-0.2)], [None, Some(0.5)]);
+        let crossed = judged("static_bias", [Some(0.3), Some(-0.3)], [Some(-0.5), Some(0.5)]);
+        let said = [
+            (Lang::En, "none", "no value could pass", "exceeds the limit"),
+            (Lang::Ru, "нет", "ни одно значение не могло бы пройти", "больше нормы"),
+        ];
+        for (lang, none, passes, why) in said {
+            let words = Translator { lang };
+            for m in [&never_negative, &crossed] {
+                let mut footnotes = vec![];
+                let shown = row(m, words, &mut footnotes);
+                assert_eq!((shown.acceptance.as_str(), shown.footnotes.as_slice()), (none, &[1][..]));
+                assert!(footnotes.iter().all(|f| f.contains(why)), "{footnotes:?}");
+                let reason = reason(m, false, words).unwrap();
+                assert!(
+                    reason.contains(passes) && !reason.contains("0.2") && !reason.contains("0,2"),
+                    "{reason}"
+                );
+            }
+        }
+        // A signed quantity may lie below zero.
+        let words = Translator { lang: Lang::En };
+        let signed = judged("static_bias", [None, Some(-0.2)], [None, Some(0.5)]);
+        assert_eq!(row(&signed, words, &mut vec![]).acceptance, "≤\u{202f}−0.2");
+        let inside = judged("dead_zone", [None, Some(0.2)], [None, Some(0.5)]);
+        assert_eq!(row(&inside, words, &mut vec![]).acceptance, "≤\u{202f}0.2");
     }
 }

@@ -95,7 +95,7 @@ impl Sweep {
         up.iter().copied().chain(down).collect()
     }
 
-    /// Half width of the 95 % interval of a bias, all else told.
+    /// Half width of the 95 % interval of a bias, all else given.
     fn bias_oracle(&self) -> f64 {
         1.96 * self.of_step() / (self.steps().len() as f64).sqrt()
     }

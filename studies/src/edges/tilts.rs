@@ -42,7 +42,7 @@ impl Bench {
         }
     }
 
-    /// Half width of the 95 % interval of a tilt in mrad, told everything else: half of the rows show it whole, or all by
+    /// Half width of the 95 % interval of a tilt in mrad, everything else given: half of the rows show it whole, or all by
     /// their sines.
     fn oracle(&self) -> f64 {
         // 42 s less the settling of 4 s: two turns of 18 s.

@@ -1,4 +1,4 @@
-//! What a fit reaches that is told the kind, the true shape and the true noise: widths of intervals, removed variance.
+//! What a fit reaches that is given the kind, the true shape and the true noise: widths of intervals, removed variance.
 
 use super::case::{Case, Left, Realisation};
 use super::claim::Claim;
@@ -8,7 +8,7 @@ use super::noise::{markov_variance, resonance_variance};
 use super::strength::{Spectrum, solve};
 use std::f64::consts::TAU;
 
-/// Figures of the fit told the truth.
+/// Figures of the fit given the truth.
 #[derive(Clone, Debug, Default)]
 pub struct Told {
     /// Parameter and the width of its 95 % interval.
@@ -149,7 +149,7 @@ fn spectral(case: &Case, left: &Left, lambda: &[f64]) -> Vec<(&'static str, f64,
     out
 }
 
-/// The fit told the truth, for a case with one effect.
+/// The fit given the truth, for a case with one effect.
 pub fn told(case: &Case, made: &Realisation) -> Told {
     let [left] = case.left_out.as_slice() else { return Told::default() };
     let s = &case.setting;

@@ -1,4 +1,4 @@
-//! Functions of time made of straight pieces, with their integrals: what table, chamber and supply were told to do.
+//! Functions of time made of straight pieces, with their integrals: what table, chamber and supply were set to do.
 
 use super::draw::Draw;
 

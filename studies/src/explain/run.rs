@@ -13,7 +13,7 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Explains a recording by a model without some effects of the catalogue and leaves `explain.json`, `augmented.toml` and, where
-/// there is one, `correction.csv` in a folder; the exit code. Nothing is hidden from it and nothing told but claim and
+/// there is one, `correction.csv` in a folder; the exit code. Nothing is hidden from it and nothing given but claim and
 /// recording.
 pub type Explainer = dyn Fn(&Path, &Path, &Path, &[&str]) -> Option<i32> + Sync;
 

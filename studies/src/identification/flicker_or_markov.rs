@@ -21,7 +21,7 @@ pub static STUDY: Study = Study {
     cases: || vec![Case::new("10 h", rows)],
 };
 
-/// Deviance of the best Markov process less that of flicker, each beside white noise, and told there is nothing else.
+/// Deviance of the best Markov process less that of flicker, each beside white noise, and given that there is nothing else.
 fn flicker_over_markov(mix: &Mix, samples: usize, records: u64, seed: u64) -> Vec<f64> {
     let layout = Layout::new(samples, &mix.truth);
     let white: Composite = NoiseModel { n: mix.truth.terms.n, ..Default::default() }.into();

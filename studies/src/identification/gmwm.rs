@@ -1,6 +1,6 @@
 //! The generalised method of wavelet moments (Guerrier, Skaloud, Stebler and Victoria-Feser, JASA 108, 2013): Haar
 //! wavelet variances, which are half the overlapping Allan variances, matched to those of the model with weights
-//! 1/variance. As its users do, it is told which terms there are.
+//! 1/variance. As its users do, it is given which terms there are.
 
 use super::allan::Point;
 use super::mixes::TAU0_S;

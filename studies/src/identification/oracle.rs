@@ -1,4 +1,4 @@
-//! A maximum-likelihood fit that is told the true structure: what nobody could do much better than.
+//! A maximum-likelihood fit given the true structure: what nobody could do much better than.
 //!
 //! Fisher scoring in the logarithms of the parameters, the ramp by least squares; intervals from the profile of the
 //! deviance.

@@ -66,7 +66,7 @@ fn of_quantity(tally: &Tally, i: usize) -> Vec<Row> {
     let told: Vec<f64> = tally.outcomes(i).filter_map(|o| o.rise).collect();
     if !told.is_empty() {
         let hits = told.iter().filter(|r| **r > TELLING).count() as u64;
-        rows.push(share("the record itself tells the term", Asked::Nothing, hits, told.len() as u64));
+        rows.push(share("the record itself shows the term", Asked::Nothing, hits, told.len() as u64));
     }
     rows
 }

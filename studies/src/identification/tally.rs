@@ -5,7 +5,7 @@ use crate::coverage::median;
 
 /// The methods of the comparison: our claims, our most likely values whether claimed or not, and the usual ones.
 pub const METHODS: [&str; 7] =
-    ["Sagnac", "Sagnac, most likely", "log-log LSQ", "slopes", "minimum/0.664", "NNLS", "GMWM, told"];
+    ["Sagnac", "Sagnac, most likely", "log-log LSQ", "slopes", "minimum/0.664", "NNLS", "GMWM, given"];
 
 /// One value of one method in one record, relative to the truth; `None`: not found.
 pub type Relative = Option<f64>;

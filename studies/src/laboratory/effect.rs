@@ -1,4 +1,4 @@
-//! An effect, and how it is made as strong as asked: an oracle gains a drawn number of nats from being told of it.
+//! An effect, and how it is made as strong as asked: an oracle gains a drawn number of nats from knowing it.
 
 use super::bench::Bench;
 use super::dice::Dice;
@@ -60,7 +60,7 @@ impl Facts {
 
 /// An effect of its size.
 pub struct Hidden {
-    /// What is told of it.
+    /// What is known of it.
     pub told: Concealed,
     /// What it adds to the rate, deg/h; of a level of noise too, which nobody can predict.
     pub added_deg_h: Vec<f64>,

@@ -1,4 +1,4 @@
-//! An oracle that is told the truth: how much likelier a recording is to it than to the claim.
+//! An oracle that knows the truth: how much likelier a recording is to it than to the claim.
 //!
 //! Cosine modes and the claimed density (Whittle). The claim may move its linear terms and its noise within their stated
 //! uncertainties; so may the oracle. Likelihoods are penalised by how far they moved.
@@ -73,20 +73,20 @@ impl Oracle {
         Modes::of(contribution, self.rate_hz).value
     }
 
-    /// Gain of the oracle that is told the course of what was added, of which the modes are given.
+    /// Gain of the oracle that knows the course of what was added, of which the modes are given.
     pub fn course_gain(&self, added: &[f64]) -> f64 {
         let with: Vec<f64> = self.residual.iter().zip(added).map(|(r, a)| r + a).collect();
         let told = self.likelihood(&self.residual, &self.claimed());
         told - self.likelihood(&with, &self.claimed())
     }
 
-    /// Gain of the oracle that is told the density, where what was added is a random process of the given modes.
+    /// Gain of the oracle that knows the density, where what was added is a random process of the given modes.
     pub fn law_gain(&self, added: &[f64], density: &Density) -> f64 {
         let with: Vec<f64> = self.residual.iter().zip(added).map(|(r, a)| r + a).collect();
         self.likelihood(&with, density) - self.likelihood(&with, &self.claimed())
     }
 
-    /// Gain of the oracle that is told by how much the level of the noise differs from row to row.
+    /// Gain of the oracle that knows by how much the level of the noise differs from row to row.
     pub fn spread_gain(&self, added: &[f64], spread: &[f64]) -> f64 {
         let whitened: Vec<f64> =
             self.residual.iter().zip(added).zip(&self.sigma).map(|((r, a), s)| (r + a) / s).collect();

@@ -83,7 +83,7 @@ fn in_positions(model: Noise, seed: u64) -> [Coverage; 2] {
     counts
 }
 
-/// Standard uncertainties of bias and factor of a fit that is told the strengths of the noise. `inputs` have theirs.
+/// Standard uncertainties of bias and factor of a fit given the strengths of the noise. `inputs` have theirs.
 fn told(model: Noise, inputs: &[(f64, f64)], each_s: f64) -> [f64; 2] {
     let rows = Rows {
         mid_s: (0..inputs.len()).map(|k| (k as f64 + 0.5) * each_s).collect(),

@@ -13,7 +13,7 @@ use sagnac::temperature::findings::Findings;
 use sagnac::temperature::gls::Modes;
 use sagnac::temperature::read::of_distribution;
 
-/// Width of the sensitivity's interval over that of a fit told everything, and whether it holds the truth, for a fit told
+/// Width of the sensitivity's interval over that of a fit given everything, and whether it holds the truth, for a fit told
 /// lag, play, order and N, and of B and K that they are evenly spread below `most` (`None`: what the program takes).
 fn told_a_range(u: &Unit, f: &Findings, most: Option<f64>) -> Option<(f64, bool)> {
     const STEPS: usize = 12;

@@ -42,6 +42,7 @@ pub fn analyse(
         source: &source,
         use_stamps: time.is_ok(),
         unit: UnitUnderTest::default(),
+        serial_of_recording: false,
         operator: None,
         station: None,
         now: chrono::DateTime::UNIX_EPOCH,

@@ -1,7 +1,7 @@
 //! The catalogue of physics that a simulation can leave out: one file an effect.
 //!
 //! An effect says what its parameters are and how it acts. There is one forward model of each: simulation, fitting and
-//! the stated effects of a claim all go through it. Its description for readers (mechanism, signature, the experiment
+//! the stated effects of a claim all go through it. Its description for readers (physical cause, signature, the experiment
 //! that would confirm it, source) stands under `effect.<kind>` of the locale tables, not here.
 //!
 //! | file | what it has |

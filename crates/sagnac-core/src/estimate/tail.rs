@@ -5,7 +5,7 @@ use statrs::function::gamma::ln_gamma;
 
 /// Probabilities below this are computed by their logarithms.
 const SMALL: f64 = 1e-290;
-/// The least probability that is told.
+/// The least probability that is reported.
 const MIN_PROBABILITY: f64 = 1e-300;
 
 /// Probability that χ² with `dof` degrees of freedom exceeds `value`; 1e-300 stands for less.

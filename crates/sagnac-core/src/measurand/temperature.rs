@@ -445,7 +445,7 @@ impl Lag {
     }
 }
 
-/// How well the terms were told apart.
+/// How well the terms were distinguished.
 fn separation_note(a: &Analysis) -> Note {
     let s = a.separation;
     let inflation = |f: fn(crate::temperature::separate::Separation) -> f64| {

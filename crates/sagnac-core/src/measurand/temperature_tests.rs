@@ -39,7 +39,7 @@ fn profile((from, count): (f64, i32), (middle, deviation): (f64, f64), with_lag:
     Profile { weight: 1.0, longest_s: 7200.0, lags: (0..count).map(at).collect() }
 }
 
-/// A lag of 120 s that is told to 5 s.
+/// A lag of 120 s, known to 5 s.
 fn told() -> Vec<Profile> {
     vec![profile((60.0, 61), (120.0, 5.0), 0.0)]
 }

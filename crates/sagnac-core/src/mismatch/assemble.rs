@@ -26,6 +26,7 @@ use crate::claim::{Claim, Stated};
 use crate::effect::{
     Detection, Domain, Effect, Family, Model, Place, SpectralContext, UNKNOWN, find, stateable,
 };
+use crate::series::ReadFrom;
 use std::collections::BTreeMap;
 
 /// Everything that an explanation rests on.
@@ -52,13 +53,15 @@ pub(super) struct Evidence<'a> {
     pub options: &'a Options,
 }
 
-/// What is told of a recording after its rows are on the grid.
-#[derive(Debug, Clone, Copy)]
+/// What is known of a recording after its rows are on the grid.
+#[derive(Debug, Clone)]
 pub(super) struct Recorded {
     /// Rows.
     pub rows: usize,
     /// Time from the first to the last, s.
     pub length_s: f64,
+    /// Which column of the file each quantity was read from.
+    pub read_from: Vec<ReadFrom>,
 }
 
 /// Puts everything together.
@@ -68,8 +71,10 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let (best, spectra) = (&selection.best, &problem.spectra);
     let local_gain = found.local_gain();
     let observed = with(Some(problem.residual.clone()), found.taken.as_deref()).unwrap_or_default();
-    // What single samples show stands before what was tried in modes.
-    let ranked = found.named.iter().map(told).chain(selection.first.iter().map(candidate)).collect();
+    // Of equal ones, what single samples show stands before what was tried in modes.
+    let mut ranked: Vec<Candidate> =
+        found.named.iter().map(of_samples).chain(selection.first.iter().map(candidate)).collect();
+    ranked.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
     let halves = Halves::new(problem);
     let nothing = selection.chosen.is_empty() && found.named.is_empty();
     let held_best = if nothing { held_base } else { halves.judge(best) };
@@ -83,7 +88,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let principal = principal_places(&found.named, after);
     let gained = best.fit.log_likelihood - base.fit.log_likelihood + local_gain;
     let (findings, rest) = causes(&found.named, gained, problem, after, options);
-    let columns = columns::records(problem, best, &found.named);
+    let columns = columns::records(problem, best, &found.named, &recorded.read_from);
     let added = contribution::correction(best, spectra);
     let stated = found
         .named
@@ -114,7 +119,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
         candidates: ranked,
         tests: tests(before, after),
         nuisances: nuisances(problem, base, best),
-        recording: facts(problem, recorded, options),
+        recording: facts(problem, &recorded, options),
         columns,
         experiments: experiment::deciding(&selection.chosen, best, spectra),
     };
@@ -307,7 +312,7 @@ fn figures(tried: &Tried, held: &HeldOut, rows: usize, local_gain: f64) -> FitFi
     }
 }
 
-fn told(named: &Named) -> Candidate {
+fn of_samples(named: &Named) -> Candidate {
     Candidate {
         kind: named.effect.kind().to_owned(),
         delta_bic: named.delta_bic,
@@ -339,7 +344,7 @@ fn finding(named: &Named) -> Finding {
         shape: None,
         equivalents: named.equivalents.iter().map(|e| (*e).to_owned()).collect(),
         probabilities: named.names.iter().map(|n| (n.kind.to_owned(), n.probability)).collect(),
-        // Of a course of no kind, what is told of its parts is no parameter of the format.
+        // Of a course of no kind, what is known of its parts is no parameter of the format.
         parameters: if own { BTreeMap::new() } else { named.estimated.reported.clone() },
         places: named.places.iter().map(PlaceRecord::of).take(3).collect(),
         delta_bic: named.delta_bic,
@@ -428,7 +433,7 @@ fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {
     before.iter().enumerate().map(one).collect()
 }
 
-fn facts(problem: &Problem, recorded: Recorded, options: &Options) -> RecordingFacts {
+fn facts(problem: &Problem, recorded: &Recorded, options: &Options) -> RecordingFacts {
     RecordingFacts {
         rows: recorded.rows,
         missing: problem.grid.missing(),

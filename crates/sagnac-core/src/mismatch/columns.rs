@@ -6,11 +6,22 @@ use super::problem::Problem;
 use super::tried::Tried;
 use crate::effect::Column;
 use crate::numeric::cosine::dct2;
+use crate::series::ReadFrom;
 
 /// Standard deviations from the estimate to a one-sided 95 % limit.
 const ONE_SIDED_95: f64 = 1.644_854;
-/// Every column with its part in what was found. `best` is what was selected.
-pub(super) fn records(problem: &Problem, best: &Tried, named: &[Named]) -> Vec<ColumnRecord> {
+
+/// Every column with its part in what was found. `best` is what was selected, `read_from` the names in the file.
+pub(super) fn records(
+    problem: &Problem,
+    best: &Tried,
+    named: &[Named],
+    read_from: &[ReadFrom],
+) -> Vec<ColumnRecord> {
+    let recorded_as = |column: Column| {
+        let read = read_from.iter().find(|r| r.name == column.name());
+        read.map(|r| r.column.clone()).filter(|name| name != column.name())
+    };
     let drives = |column: Column| {
         named.iter().any(|n| {
             let named = n.estimated.texts.get("column").or_else(|| n.estimated.texts.get("column2"));
@@ -21,6 +32,7 @@ pub(super) fn records(problem: &Problem, best: &Tried, named: &[Named]) -> Vec<C
         let is_used = drives(column);
         ColumnRecord {
             name: column.name().to_owned(),
+            recorded_as: recorded_as(column),
             status: if is_used { ColumnStatus::Used } else { ColumnStatus::Silent },
             reason: None,
             at_most_deg_h: if is_used { None } else { linear_limit(column, problem, best) },
@@ -28,6 +40,7 @@ pub(super) fn records(problem: &Problem, best: &Tried, named: &[Named]) -> Vec<C
     };
     let unusable = |(column, reason): &(Column, UnusableColumn)| ColumnRecord {
         name: column.name().to_owned(),
+        recorded_as: recorded_as(*column),
         status: ColumnStatus::Unusable,
         reason: Some(*reason),
         at_most_deg_h: None,

@@ -37,7 +37,7 @@ pub fn explain(
 ) -> Result<Outcome, Note> {
     let length_s =
         series.time_s.last().copied().unwrap_or(0.0) - series.time_s.first().copied().unwrap_or(0.0);
-    let recorded = Recorded { rows: series.time_s.len(), length_s };
+    let recorded = Recorded { rows: series.time_s.len(), length_s, read_from: series.read_from.clone() };
     let mut regular = on_grid(series, claim, options)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
     let mut found = Found::default();

@@ -116,7 +116,7 @@ fn distance(
     Some((-nearest).max(0.0))
 }
 
-/// The shortest record, in lengths of this one, of which `told` is true: by doubling, then between the last two. `None`
+/// The shortest record, in lengths of this one, for which `told` is true: by doubling, then between the last two. `None`
 /// where no record up to [`MAX_TIMES_LONGER`] will do.
 fn shortest(told: impl Fn(f64) -> bool) -> Option<f64> {
     let mut high = 1.0;

@@ -27,7 +27,7 @@ pub struct Explanation {
     pub family_p_value_after: f64,
     /// Significance asked for.
     pub alpha: f64,
-    /// Everything that was tried on the baseline, the best first.
+    /// Everything that was tried on the baseline, the largest ΔBIC first.
     pub candidates: Vec<Candidate>,
     /// Tests of the residual, before and after.
     pub tests: Vec<Test>,
@@ -293,8 +293,11 @@ impl RecordingFacts {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ColumnRecord {
-    /// Its name.
+    /// Its name: the standard one (`temp_degC`) where it has one, else that of the file.
     pub name: String,
+    /// Its name in the file, where that is another.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub recorded_as: Option<String>,
     /// Its part in what was found.
     pub status: ColumnStatus,
     /// Why it cannot be used.

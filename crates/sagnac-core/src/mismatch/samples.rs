@@ -18,7 +18,7 @@ use crate::estimate::chi_square_tail;
 
 /// Laws that compete: forms over time, over columns, over the rate.
 const LAWS: f64 = 16.0;
-/// Fewest samples from which a level is told.
+/// Fewest samples from which a level is determined.
 const FEWEST: usize = 128;
 
 /// The detectors that are asked: those of effects that are thought of, and of those that the claim states. `true` with the

@@ -13,7 +13,7 @@
 //! | sums of the Allan family | the head of every lane is replayed, moved to the phase that the earlier part ends at |
 //!
 //! A window, a segment and a phase are counted from the beginning of an unbroken stretch. A part that continues one must
-//! therefore be told how many samples of it precede ([`PartStart`]). It holds back its *head*, the samples or phases that
+//! therefore be given how many samples of it precede ([`PartStart`]). It holds back its *head*, the samples or phases that
 //! windows begun before it need; merging replays the head into the earlier part.
 //!
 //! What cannot be merged, because one pass decides it from data that a part has not seen: a periodogram that chooses its
@@ -38,7 +38,7 @@ pub enum MergeError {
         "the later part continues a stretch after {expected} samples; the earlier part ends after {found}"
     )]
     Position {
-        /// Samples of the stretch that precede the later part, as it was told.
+        /// Samples of the stretch that precede the later part, as it was stated.
         expected: u64,
         /// Samples of the stretch at the end of the earlier part.
         found: u64,

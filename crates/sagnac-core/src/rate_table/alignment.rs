@@ -78,7 +78,7 @@ fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64
     if at[0].is_none() && at[1].is_none() {
         return Err(of_inner());
     }
-    // A row more than there are unknowns: the scatter of the turns is told by nothing else.
+    // A row more than there are unknowns: nothing else shows the scatter of the turns.
     let few = || Note::new("known.few_outer_turns").with("n", n).with("least", columns.len() + 1);
     if n <= columns.len() {
         return Err(few());

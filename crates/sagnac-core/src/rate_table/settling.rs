@@ -2,7 +2,7 @@
 
 use super::blocks::Block;
 
-/// Part of a step at its end by which its rate is told.
+/// Part of a step at its end by which its rate is determined.
 const END: f64 = 0.25;
 /// Deviations of the rate of a block from which the table was not at its rate yet.
 const BEYOND_NOISE: f64 = 8.0;

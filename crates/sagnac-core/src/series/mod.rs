@@ -66,7 +66,9 @@ impl Series {
             }
         }
         for (column, count) in &faults.interpolated {
-            out.push(Note::new("explain.note.mended").with("count", *count).with("column", column.name()));
+            let read = self.read_from.iter().find(|r| r.name == column.name());
+            let name = read.map_or(column.name(), |r| r.column.as_str());
+            out.push(Note::new("explain.note.mended").with("count", *count).with("column", name));
         }
         out
     }

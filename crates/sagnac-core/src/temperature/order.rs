@@ -3,7 +3,7 @@
 //! Each ramp with the dwell behind it is held out in turn. With Q = P⁻¹ − P⁻¹X(XᵀP⁻¹X)⁻¹XᵀP⁻¹ the prediction error of a
 //! held-out stretch from all the rest, coefficients fitted and slow noise carried over from it, is Q_BB⁻¹(Qy)_B, with
 //! covariance Q_BB⁻¹ (deletion formula of best linear unbiased prediction). The lowest order is taken whose predictive density
-//! falls short of the largest by no more than one standard error of the difference, told by its scatter over the stretches
+//! falls short of the largest by no more than one standard error of the difference, estimated from its scatter over the stretches
 //! (Breiman et al. 1984).
 
 use super::course::{Course, Span, Terms};

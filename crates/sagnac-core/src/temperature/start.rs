@@ -8,7 +8,7 @@ use super::track::Means;
 
 /// Share of its later value from which a supply counts as on.
 const ON_SHARE: f64 = 0.5;
-/// Times the tolerance that a thermometer must rise to show that it would have told a warm start.
+/// Times the tolerance that a thermometer must rise to show that it would have shown a warm start.
 const MIN_RISE: f64 = 3.0;
 /// Time over which the first temperature is read, s.
 const FIRST_S: f64 = 30.0;

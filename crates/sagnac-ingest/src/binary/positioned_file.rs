@@ -114,7 +114,7 @@ impl io::Seek for FileRange {
     }
 }
 
-/// Hashes a file beside its reading, until told to stop.
+/// Hashes a file beside its reading, until asked to stop.
 ///
 /// # Errors
 /// As [`ByteStream::open`] and [`ByteStream::finish`].

@@ -4,7 +4,7 @@ use super::fit::{Fit, Measured};
 use super::nominal::MAX_GAP_SAMPLES;
 use super::tracker::SET_BACK_AFTER;
 
-/// Times that stamps and counter may differ about one step before it is told, in intervals.
+/// Times that stamps and counter may differ about one step before it is reported, in intervals.
 const DISAGREEMENT: f64 = 1.5;
 
 /// What the value of a sample counter means for its row.

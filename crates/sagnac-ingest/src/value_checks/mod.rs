@@ -30,7 +30,7 @@ use summary::{CHUNK, Summary, summary};
 /// Samples after which a channel that never changed is remarked on.
 const CONSTANT_AFTER: u64 = 1000;
 
-/// Largest step of the quantization grid, in standard deviations, at which straight lines between samples can be told.
+/// Largest step of the quantization grid, in standard deviations, at which straight lines between samples can be detected.
 const FINE: f64 = 1e-2;
 
 /// Minimum number of samples of a gyro channel for a kind of fault to be detectable.

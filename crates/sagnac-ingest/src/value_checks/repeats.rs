@@ -138,7 +138,7 @@ impl RepetitionCheck {
     }
 
     /// Samples in stretches that occurred before, and where those are; empty where the output repeats itself so readily
-    /// that it cannot be told.
+    /// that it cannot be detected.
     pub(super) fn finish(&mut self) -> (u64, Vec<Repeat>) {
         if self.shift == 0 {
             self.choose();

@@ -51,7 +51,7 @@ pub(super) struct Stuck {
     pub(super) count: u64,
     pub(super) listed: Vec<(Place, u64)>,
     pub(super) longest_by_chance: u64,
-    /// Mean length of a run, where the values repeat so readily that stuck ones cannot be told.
+    /// Mean length of a run, where the values repeat so readily that stuck ones cannot be detected.
     pub(super) held: Option<f64>,
 }
 
@@ -126,7 +126,7 @@ impl StuckCheck {
         self.counts.iter().skip(1).sum::<u64>() + u64::from(self.beyond > 0)
     }
 
-    /// Shortest run that chance does not explain; `u64::MAX` when none can be told.
+    /// Shortest run that chance does not explain; `u64::MAX` when none can be detected.
     fn limit(&self) -> u64 {
         let runs = self.runs();
         if runs <= 1 {

@@ -162,7 +162,7 @@ pub(crate) static UNIT_UNDER_TEST: TableSpec = TableSpec {
             Kind::Flag,
             "true",
             "true",
-            "Whether a run without a serial number is an error.",
+            "Whether a run is an error if neither `--serial` nor the recording states a serial number.",
         ),
     ],
 };

@@ -9,7 +9,7 @@ pub(super) const TWO_SIDED_95: f64 = 1.959_964;
 /// Drop of the log-likelihood at the ends of a 95 % profile interval.
 pub(super) const DROP_95: f64 = 1.920_729;
 
-/// Factor either way within which a parameter must be told for it to be stated.
+/// Factor either way within which a parameter must be known for it to be stated.
 const OPEN: f64 = 100.0;
 
 /// An effect's parameters.

@@ -1,4 +1,4 @@
-//! One course among the columns of its hypothesis: how well its numbers are told, the noise held.
+//! One course among the columns of its hypothesis: how well its numbers are known, the noise held.
 
 use super::estimated::DROP_95;
 use crate::effect::MeanModel;

@@ -143,7 +143,7 @@ fn join(path: &str, name: &str) -> String {
 /// Groups and datasets in a group, and what was passed over.
 type Members = (Vec<Group>, Vec<Dataset>, Vec<Note>);
 
-/// Groups and datasets in a group. A member that cannot be opened is told and passed over, unless none can.
+/// Groups and datasets in a group. A member that cannot be opened is reported and passed over, unless none can.
 fn members(group: &Group, path: &str) -> Result<Members, Error> {
     let whole = match group.members() {
         Ok((groups, datasets)) => return Ok((groups, datasets, Vec::new())),

@@ -60,7 +60,7 @@ pub(super) fn unfiltered(
                     Pick::Field { .. } => slice::<Bytes>(&dataset, place.pick, 0, 1, (0, 0)).map(drop),
                     _ => slice::<Number>(&dataset, place.pick, 0, 1, (0, 0)).map(drop),
                 };
-                // Other faults are told when the rows are read.
+                // Other faults are reported when the rows are read.
                 let filter = match first {
                     Err(Error::UnsupportedFilter(f)) => Some(f),
                     Err(Error::Context { source, .. }) => match *source {

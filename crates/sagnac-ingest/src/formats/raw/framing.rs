@@ -4,7 +4,7 @@ use crate::binary::records::{FramedRecords, Framer};
 use crate::layout::{Checksum, Layout};
 use memchr::memmem;
 
-/// Rows of passed-over bytes that are told at once, so that a stretch without records needs no memory.
+/// Rows of passed-over bytes that are reported at once, so that a stretch without records needs no memory.
 const AT_ONCE: u64 = 1000;
 
 /// Finds records in a stream.
@@ -15,7 +15,7 @@ pub(super) struct Scanner {
     pending: Vec<u8>,
     /// Place of the first pending byte in the unpacked file.
     at: u64,
-    /// Where the bytes begin that belong to no record, and whether rows of them were told already.
+    /// Where the bytes begin that belong to no record, and whether rows of them were reported already.
     lost: Option<(u64, bool)>,
 }
 

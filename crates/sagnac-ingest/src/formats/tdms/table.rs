@@ -27,7 +27,7 @@ pub(super) enum Origin {
 }
 
 impl Origin {
-    /// The values of a channel; stamps are told from `base_s`, in s from 1970.
+    /// The values of a channel; stamps are counted from `base_s`, in s from 1970.
     pub fn channel(channel: &Channel, steps: Vec<Step>, base_s: i64) -> Origin {
         Origin::Channel { kind: channel.kind, pieces: channel.pieces.clone(), steps, base_s }
     }

@@ -1,4 +1,4 @@
-//! What the columns of a text hold, told from the fields of its first lines: numbers, stamps, halves of stamps.
+//! What the columns of a text hold, inferred from the fields of its first lines: numbers, stamps, halves of stamps.
 
 use super::fields::bare;
 use super::number::{self, Field};
@@ -169,7 +169,7 @@ fn add_dated(found: &mut Kinds, first: usize, second: usize, name: Option<String
     add(found, pair, epoch_s, "ingest.delimited.stamps_two_columns", name);
 }
 
-/// One column of GPS week and seconds of week, stated or told by their names.
+/// One column of GPS week and seconds of week, stated or recognised by their names.
 fn week_and_seconds(
     found: &mut Kinds,
     names: &[String],

@@ -371,7 +371,7 @@ impl Sniffed<'_> {
     }
 }
 
-/// A separator as it is told.
+/// A separator as it is reported.
 fn sign(separator: Separator) -> Arg {
     match separator {
         Separator::Byte(b'\t') => Arg::Key("ingest.tab".to_owned()),

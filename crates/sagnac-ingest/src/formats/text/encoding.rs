@@ -10,7 +10,7 @@ use std::path::Path;
 /// Bytes that are taken into the decoder at a time.
 const RAW: usize = 256 << 10;
 
-/// First bytes from which UTF-16 without a mark is told.
+/// First bytes from which UTF-16 without a mark is recognised.
 const PROBED: usize = 4096;
 
 /// Share of the bytes beyond ASCII that must be Cyrillic letters for the text to be taken for Windows-1251.

@@ -66,7 +66,7 @@ pub(super) struct LineParser<'a> {
     pairs: Vec<(usize, [usize; 2], Pair)>,
     /// Fields after the last wanted one.
     rest: usize,
-    /// True when the first field of a line is not looked at, so that a comment must be told before.
+    /// True when the first field of a line is not looked at, so that a comment must be recognised before.
     watched: bool,
 }
 

@@ -14,7 +14,7 @@ const ROWS: usize = 8;
 
 /// A sentence where the last row is not ended and is shorter than the rows before it are written: fewer fields, or a last
 /// field with fewer decimals where all others have the same. Whole rows without a line end are usual at the end of a
-/// file; where the rows vary in their decimals nothing can be told.
+/// file; where the rows vary in their decimals nothing can be detected.
 pub(super) fn look(file: &Candidate) -> Result<Vec<Note>, IngestError> {
     if file.packing != Packing::Plain {
         return Ok(Vec::new());

@@ -208,10 +208,10 @@ pub(crate) fn broken(path: &Path, note: &'static str, at: u64) -> IngestError {
         .hint("ingest.hint.damaged")
 }
 
-/// Unpacks a chunk of which the unpacked size is told; more than a recording could give is refused.
+/// Unpacks a chunk of which the unpacked size is stated; more than a recording could give is refused.
 ///
 /// # Errors
-/// An unknown packing, damaged bytes, another size than told.
+/// An unknown packing, damaged bytes, another size than stated.
 pub(crate) fn unpack(
     path: &Path,
     at: u64,
@@ -234,7 +234,7 @@ pub(crate) fn unpack(
         let note = Note::new("ingest.ros.chunk").with("at", at).with("reason", e.to_string());
         IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.damaged")
     };
-    // One byte more than told shows that there is more.
+    // One byte more than stated shows that there is more.
     let limit = size.saturating_add(1);
     match packing {
         "lz4" => {

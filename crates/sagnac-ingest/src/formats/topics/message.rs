@@ -3,7 +3,7 @@
 /// How messages are written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Encoding {
-    /// Common Data Representation of ROS 2, with its byte order told in each message.
+    /// Common Data Representation of ROS 2, with its byte order stated in each message.
     Cdr,
     /// ROS 1: little endian, nothing aligned.
     Ros1,

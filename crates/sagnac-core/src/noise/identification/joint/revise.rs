@@ -159,7 +159,7 @@ fn confounds_white(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> bool {
 }
 
 /// What a filter costs at a maximum. Beside a short Markov process it falls where the process does, and the white level
-/// under the process is then told by the filter alone.
+/// under the process is then shown by the filter alone.
 pub(super) fn filter_price(
     joint: &Joint<'_>,
     point: &JointPoint,
