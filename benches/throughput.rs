@@ -40,6 +40,7 @@ fn analyse(source: &Source) -> usize {
         source,
         use_stamps: true,
         unit: UnitUnderTest::default(),
+        serial_of_recording: false,
         operator: None,
         station: None,
         now: chrono::DateTime::UNIX_EPOCH,

@@ -1,5 +1,6 @@
 //! The verb `explain`, as a user runs it.
 
+mod columns;
 mod in_run;
 mod on_table;
 mod simulation;

