@@ -209,6 +209,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         duration_s: 1e9,
         stated_serials: &["SN-2"],
         serial: Some("SN-1"),
+        serial_of_recording: false,
         schedule: Some(&schedule),
         today: chrono::NaiveDate::from_ymd_opt(2100, 1, 1).unwrap(),
         checks: &CheckLog::default(),
