@@ -22,8 +22,9 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
             &["noise"],
             &["effect", "rate_table", "temperature"],
             &["claim", "series"],
+            &["schedule"],
             &["influence", "mismatch", "simulate"],
-            &["measurand"],
+            &["measurand", "plan"],
         ],
     ),
     (
@@ -55,8 +56,10 @@ const FACADE: &[&str] = &[
     "mismatch",
     "noise",
     "numeric",
+    "plan",
     "rate_table",
     "recording",
+    "schedule",
     "temperature",
     "units",
 ];

@@ -19,6 +19,7 @@ mod next_step;
 mod options;
 mod phased_test;
 mod place;
+mod plan;
 mod printer;
 mod procedures;
 mod progress;
@@ -92,7 +93,8 @@ enum Verb {
     /// Simulate a recording from a model: noise, mean, effects and columns, reproducible to the bit
     #[command(
         after_help = "Examples:\n  sagnac simulate samples/model-static.toml --out static.csv --duration 10h --seed 7\n  \
-        sagnac simulate model.toml --out simulated.parquet --like unit-0042.csv"
+        sagnac simulate model.toml --out simulated.parquet --like unit-0042.csv\n  \
+        sagnac simulate model.toml --out next.csv --schedule next/schedule.toml"
     )]
     Simulate(simulate::SimulateArgs),
     /// List the effects known to models and explanations, or describe one
@@ -105,6 +107,13 @@ enum Verb {
         sagnac explain recording.csv --simulation simulated.csv --hide temp_degC"
     )]
     Explain(explain::ExplainArgs),
+    /// Plan the next test: the shortest schedule that tells the explanations of a recording apart
+    #[command(
+        after_help = "Exit codes: 0 the schedule decides, or nothing is to be decided, 2 could not run, 3 not decided within limits and budget.\n\n\
+        Examples:\n  sagnac plan explained --model model.toml --budget 8h --out next\n  \
+        sagnac simulate model.toml --schedule next/schedule.toml --out simulated.csv"
+    )]
+    Plan(plan::PlanArgs),
     /// List, print or save the shipped procedures and limits
     #[command(
         after_help = "Examples:\n  sagnac procedures\n  sagnac procedures show static-bias > mine.toml"
@@ -161,6 +170,7 @@ pub fn main() -> ExitCode {
         Verb::Simulate(args) => simulate::main(&args, lang),
         Verb::Effects(args) => effects::main(&args, lang),
         Verb::Explain(args) => explain::main(&args, lang),
+        Verb::Plan(args) => plan::main(&args, lang),
         Verb::Procedures(args) => procedures::main(&args, lang),
         Verb::Demo(args) => demo::main(args, lang),
         Verb::Completions { shell } => {

@@ -17,7 +17,7 @@ use std::path::{Component, Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct ReportArgs {
-    /// Result: a result.json, explain.json, comparison.json or index.json, or the folder that holds one
+    /// Result: a result.json, explain.json, comparison.json, index.json or plan.json, or the folder that holds one
     result: PathBuf,
     /// Forms to write, separated by commas; result.json is always written [default: all]
     #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = formats())]

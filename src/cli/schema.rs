@@ -2,6 +2,7 @@
 
 use super::exit;
 use crate::output::Listed;
+use crate::plan::Plan;
 use crate::record::explanation::Explanation;
 use crate::record::{LotRecord, RunRecord};
 use clap::{Args, ValueEnum};
@@ -30,6 +31,12 @@ pub enum SchemaKind {
     Explain,
     /// index.json of a lot
     Lot,
+    /// plan.json
+    Plan,
+    /// A schedule: what chamber and table do in a test
+    Schedule,
+    /// alternatives.toml: what would explain a recording as well
+    Alternatives,
 }
 
 pub fn main(args: &SchemaArgs) -> Result<u8, String> {
@@ -39,6 +46,9 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Manifest => crate::config::procedure::schema::manifest(),
         SchemaKind::Layout => crate::config::procedure::schema::layout(),
         SchemaKind::Model => crate::config::procedure::schema::model(),
+        SchemaKind::Schedule => crate::config::procedure::schema::schedule(),
+        SchemaKind::Alternatives => crate::config::procedure::schema::alternatives(),
+        SchemaKind::Plan => serde_json::to_value(schemars::schema_for!(Listed<Plan>)).unwrap_or_default(),
         SchemaKind::Lot => serde_json::to_value(schemars::schema_for!(Listed<LotRecord>)).unwrap_or_default(),
         SchemaKind::Explain => {
             serde_json::to_value(schemars::schema_for!(Listed<Explanation>)).unwrap_or_default()

@@ -3,8 +3,10 @@
 use super::join::JoinArgs;
 use super::progress::{Display, Measure, Progress};
 use super::{exit, place};
-use crate::config::model::{ModelFile, load_model};
+use crate::config::model::{ModelFile, Profile, load_model};
 use crate::config::quantity;
+use crate::config::schedule::{self, Schedule};
+use crate::effect::Column;
 use crate::i18n::{Arg, Lang, Localize, Note};
 use crate::ingest::{ReadOptions, files_read};
 use crate::output::StagedFile;
@@ -36,6 +38,9 @@ pub struct SimulateArgs {
     /// Recording that provides rows and columns: timestamps, gaps, temperatures, table rates
     #[arg(long, value_name = "RECORDING")]
     like: Option<PathBuf>,
+    /// Schedule (TOML) that gives length and columns: what chamber and table do, as `sagnac plan` writes it
+    #[arg(long, value_name = "FILE")]
+    schedule: Option<PathBuf>,
     #[command(flatten)]
     join: JoinArgs,
     /// Print only errors and the path of the file
@@ -55,15 +60,23 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     args.join.check(&like, "join.help.other", lang)?;
     let mut read = files_read(&like, &ReadOptions::default());
     read.push(args.model.clone());
+    read.extend(args.schedule.clone());
     if read.iter().any(|input| same(input, &args.out)) {
         let note = Note::new("simulate.onto_itself").with("path", args.out.display().to_string());
         return Err(say(&note));
     }
-    let asked_s = args.duration.as_deref().map(|d| duration(d, lang)).transpose()?;
+    let asked_s = args.duration.as_deref().map(|d| duration("--duration", d, lang)).transpose()?;
     if asked_s.is_some() && args.like.is_some() {
         return Err(say(&Note::new("simulate.both")));
     }
-    let model = load_model(&args.model).map_err(|problems| problems.say(lang))?;
+    if args.schedule.is_some() && (asked_s.is_some() || args.like.is_some()) {
+        return Err(say(&Note::new("simulate.schedule_and")));
+    }
+    let mut model = load_model(&args.model).map_err(|problems| problems.say(lang))?;
+    if let Some(path) = &args.schedule {
+        let schedule = schedule::load(path).map_err(|problems| problems.say(lang))?;
+        follow(&schedule, &mut model);
+    }
     let mut progress = Progress::new(Display::unless(args.quiet), lang);
     let mut series = None;
     if let Some(path) = &args.like {
@@ -106,6 +119,19 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     Ok(summary(args, &model, series.as_ref(), &written, seed, lang))
 }
 
+/// Gives a model the length and the columns of a schedule. The noise of a sensor, and columns that the schedule does not
+/// speak of, stay those of the model.
+fn follow(schedule: &Schedule, model: &mut ModelFile) {
+    let of = |column: Column| model.drivers.iter().find(|d| d.column == column);
+    let noise = |column: Column| of(column).map_or(0.0, |d| d.noise);
+    let mut drivers = schedule.profiles(model.simulation.start_s, noise);
+    let kept = model.drivers.iter().filter(|d| !drivers.iter().any(|own| own.column == d.column));
+    let kept: Vec<Profile> = kept.cloned().collect();
+    drivers.extend(kept);
+    model.drivers = drivers;
+    model.simulation.duration_s = Some(schedule.duration_s());
+}
+
 /// True when both paths are one file.
 fn same(a: &Path, b: &Path) -> bool {
     match (a.canonicalize(), b.canonicalize()) {
@@ -114,10 +140,10 @@ fn same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// A length in seconds.
-fn duration(text: &str, lang: Lang) -> Result<f64, String> {
+/// A length in seconds, given to an option.
+pub(super) fn duration(option: &str, text: &str, lang: Lang) -> Result<f64, String> {
     let refused = |what: Note| {
-        let note = Note::new("cli.of_option").with("option", "--duration").with("what", what);
+        let note = Note::new("cli.of_option").with("option", option).with("what", what);
         let help = Note::new("simulate.help.duration");
         let help = format!("  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang));
         format!("{}{help}", place::error(&note, lang))

@@ -1,8 +1,10 @@
 //! TOML files whose keys are described once, as data: reading with every problem placed, and the parts of schema and
 //! guide that follow from the description.
 //!
-//! [`procedure`], [`model`], [`manifest`] and [`layout`] are the files; the other modules know none of them.
+//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`manifest`] and [`layout`] are the files; the other modules
+//! know none of them.
 
+pub mod alternatives;
 pub(crate) mod contained_files;
 pub mod diagnostics;
 pub mod layout;
@@ -16,6 +18,7 @@ pub(crate) mod reader;
 pub mod recording_keys;
 pub(crate) mod recording_options;
 pub(crate) mod role_words;
+pub mod schedule;
 pub(crate) mod section;
 pub mod shipped;
 pub mod spec;

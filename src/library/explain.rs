@@ -139,7 +139,8 @@ impl Explanation {
     }
 
     /// Writes the explanation in some forms into a folder, which is created where it is missing. Files of the same names
-    /// are replaced. Tables are `correction.csv`, where there is a correction, and `augmented.toml`.
+    /// are replaced. Tables are `correction.csv`, where there is a correction, `augmented.toml`, and `alternatives.toml`, where an
+    /// effect has equivalents.
     ///
     /// # Errors
     /// [`Error::is_output`] when a file cannot be written.

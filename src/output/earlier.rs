@@ -42,6 +42,7 @@ impl Earlier {
                 Kind::Lot => "output_error.why.foreign_lot".into(),
                 Kind::Comparison => "compare.more.foreign_folder".into(),
                 Kind::Explanation => "explain.error.foreign_folder".into(),
+                Kind::Plan => "plan.error.foreign_folder".into(),
             });
         }
         let Some(earlier) = Earlier::read(target, kind) else {
@@ -84,6 +85,7 @@ impl Earlier {
                     .with("serial", serial)
             }
             Kind::Comparison => note("output_error.what.comparison"),
+            Kind::Plan => note("output_error.what.plan"),
             Kind::Lot => {
                 let units = self.record.get("units").and_then(Value::as_array).map_or(0, Vec::len);
                 note("output_error.what.lot").with("n", units)

@@ -11,11 +11,13 @@ pub enum Kind {
     Explanation,
     /// A lot: an index, and a result folder for each unit.
     Lot,
+    /// The plan of the next test.
+    Plan,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 4] = [Kind::Result, Kind::Comparison, Kind::Explanation, Kind::Lot];
+    pub const ALL: [Kind; 5] = [Kind::Result, Kind::Comparison, Kind::Explanation, Kind::Lot, Kind::Plan];
 
     /// The JSON file that a folder of this kind holds, and by which it is known.
     pub fn record_file(self) -> &'static str {
@@ -24,13 +26,14 @@ impl Kind {
             Kind::Comparison => "comparison.json",
             Kind::Explanation => "explain.json",
             Kind::Lot => "index.json",
+            Kind::Plan => "plan.json",
         }
     }
 
     /// Name of its pages without the ending, such as `report` for `report.html`.
     pub fn page_stem(self) -> &'static str {
         match self {
-            Kind::Result | Kind::Explanation => "report",
+            Kind::Result | Kind::Explanation | Kind::Plan => "report",
             Kind::Comparison => "comparison",
             Kind::Lot => "index",
         }
@@ -43,6 +46,7 @@ impl Kind {
             Kind::Comparison => "{\"format\":\"comparison/",
             Kind::Explanation => "{\"format\":\"explain/",
             Kind::Lot => "{\"format\":\"lot/",
+            Kind::Plan => "{\"format\":\"plan/",
         }
     }
 
@@ -56,8 +60,11 @@ impl Kind {
                         && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
             }
             Kind::Comparison => name == "comparison.csv",
-            Kind::Explanation => matches!(name, "correction.csv" | "augmented.toml"),
+            Kind::Explanation => {
+                matches!(name, "correction.csv" | "augmented.toml" | "alternatives.toml")
+            }
             Kind::Lot => name == "index.csv",
+            Kind::Plan => name == "schedule.toml",
         }
     }
 
@@ -66,7 +73,7 @@ impl Kind {
         let page = match self {
             Kind::Result => matches!(name, "report.html" | "report.md" | "explain" | "phases"),
             Kind::Comparison => matches!(name, "comparison.html" | "comparison.md"),
-            Kind::Explanation => matches!(name, "report.html" | "report.md"),
+            Kind::Explanation | Kind::Plan => matches!(name, "report.html" | "report.md"),
             Kind::Lot => matches!(name, "index.html" | "index.md" | "junit.xml"),
         };
         page || name == "figures" || name == self.record_file() || self.is_table(name)

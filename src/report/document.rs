@@ -3,6 +3,7 @@
 use super::compare::CompareView;
 use super::explain::{ExplainFile, ExplainView};
 use super::lot::LotView;
+use super::plan::{PlanFile, PlanView};
 use super::render::{run_context, view_context};
 use super::results::{ExplanationResults, Results};
 use super::view::{PhasePart, View};
@@ -38,6 +39,7 @@ enum Record<'a> {
     Explanation(&'a ExplainFile),
     Comparison(&'a Comparison),
     Lot(&'a LotRecord),
+    Plan(&'a PlanFile),
 }
 
 impl<'a> Document<'a> {
@@ -119,6 +121,18 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// The document of a plan.
+    pub fn of_plan(file: &'a PlanFile, tables: &'a [(String, String)], lang: Lang) -> Document<'a> {
+        Document {
+            lang,
+            context: view_context(&PlanView::new(file, lang), lang),
+            template: "plan",
+            figures: Cow::Borrowed(&[]),
+            tables,
+            record: Record::Plan(file),
+        }
+    }
+
     /// The lot that the document is of.
     pub fn lot(&self) -> Option<&'a LotRecord> {
         match self.record {
@@ -134,6 +148,7 @@ impl<'a> Document<'a> {
             Record::Explanation(_) => Kind::Explanation,
             Record::Comparison(_) => Kind::Comparison,
             Record::Lot(_) => Kind::Lot,
+            Record::Plan(_) => Kind::Plan,
         }
     }
 
@@ -176,6 +191,7 @@ impl Results {
                 Document::of_comparison(comparison, figures, tables, lang)
             }
             Results::Lot(lot, tables) => Document::of_lot(lot, tables, lang),
+            Results::Plan(file, tables) => Document::of_plan(file, tables, lang),
         }
     }
 

@@ -11,6 +11,7 @@ mod figure_file;
 pub mod lot;
 pub mod methods;
 pub mod number;
+pub mod plan;
 mod prose;
 pub mod render;
 mod results;
@@ -22,7 +23,7 @@ pub mod view;
 
 pub use document::Document;
 pub use render::{Renderer, ReportError, render_html, render_markdown};
-pub use results::{ExplanationResults, Results, RunResults, StoredResults};
+pub use results::{ALTERNATIVES_FILE, ExplanationResults, Results, RunResults, StoredResults};
 
 use crate::figure::Figure;
 use crate::i18n::Lang;

@@ -40,6 +40,8 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("lot.md", include_str!("../../templates/lot.md")),
     ("explain.html", include_str!("../../templates/explain.html")),
     ("explain.md", include_str!("../../templates/explain.md")),
+    ("plan.html", include_str!("../../templates/plan.html")),
+    ("plan.md", include_str!("../../templates/plan.md")),
 ];
 
 /// Largest template file that is read.

@@ -3,13 +3,15 @@
 use super::explain::{Context, ExplainFile};
 use super::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
 use super::lot;
+use super::plan::PlanFile;
 use crate::acceptance::Outcome;
 use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, csv, figures};
-use crate::config::model;
+use crate::config::{alternatives, model, schedule};
 use crate::figure::Figure;
 use crate::i18n::Note;
 use crate::mismatch;
 use crate::output::Kind;
+use crate::plan::record::PLAN_FORMAT;
 use crate::record::explanation::Explanation;
 use crate::record::read::{self, ReadError};
 use crate::record::{FigureRecord, LOT_FORMAT, LotRecord, RESULT_FORMAT, RunRecord};
@@ -18,6 +20,10 @@ use std::collections::BTreeMap;
 use std::fmt::Write;
 use std::path::{Component, Path, PathBuf};
 
+/// What would explain a recording as well, beside `explain.json`.
+pub const ALTERNATIVES_FILE: &str = "alternatives.toml";
+/// The schedule beside `plan.json`.
+const SCHEDULE_FILE: &str = "schedule.toml";
 /// Version of `explain.json`.
 const EXPLAIN_FORMAT: &str = "explain/1";
 
@@ -44,7 +50,8 @@ pub struct ExplanationResults {
     pub file: ExplainFile,
     /// The figures, in the order of the page.
     pub figures: Vec<Figure>,
-    /// `correction.csv`, where there is a correction, and `augmented.toml`.
+    /// `correction.csv`, where there is a correction, `augmented.toml`, and `alternatives.toml`, where an effect has
+    /// equivalents.
     pub tables: Vec<(String, String)>,
 }
 
@@ -54,10 +61,13 @@ impl ExplanationResults {
         let correction =
             outcome.correction.as_ref().map(|c| ("correction.csv".to_owned(), correction_csv(c)));
         let augmented = ("augmented.toml".to_owned(), model::write(&outcome.augmented));
+        let equal = outcome.explanation.effects.iter().any(|f| !f.equivalents.is_empty());
+        let alternatives =
+            equal.then(|| (ALTERNATIVES_FILE.to_owned(), alternatives::write(&outcome.alternatives)));
         ExplanationResults {
             file: ExplainFile { explanation: outcome.explanation.clone(), context },
             figures: outcome.figures.clone(),
-            tables: correction.into_iter().chain([augmented]).collect(),
+            tables: correction.into_iter().chain([augmented]).chain(alternatives).collect(),
         }
     }
 }
@@ -82,6 +92,8 @@ pub enum Results {
     Comparison(Box<Comparison>, Vec<Figure>, Vec<(String, String)>),
     /// Of a lot: the record and tables. The results of its units stand in folders of their own.
     Lot(Box<LotRecord>, Vec<(String, String)>),
+    /// Of a plan: the record and its schedule.
+    Plan(Box<PlanFile>, Vec<(String, String)>),
 }
 
 impl Results {
@@ -98,6 +110,13 @@ impl Results {
         Results::Lot(Box::new(record), vec![("index.csv".into(), rows)])
     }
 
+    /// The results of a plan.
+    pub fn of_plan(file: PlanFile) -> Results {
+        let planned = file.plan.schedule.as_ref();
+        let schedule = planned.map(|s| (SCHEDULE_FILE.to_owned(), schedule::write(&s.schedule)));
+        Results::Plan(Box::new(file), schedule.into_iter().collect())
+    }
+
     /// What the folder of the results holds.
     pub fn kind(&self) -> Kind {
         match self {
@@ -105,6 +124,7 @@ impl Results {
             Results::Explanation(_) => Kind::Explanation,
             Results::Comparison(..) => Kind::Comparison,
             Results::Lot(..) => Kind::Lot,
+            Results::Plan(..) => Kind::Plan,
         }
     }
 
@@ -117,6 +137,7 @@ impl Results {
             }
             Results::Comparison(..) => None,
             Results::Lot(lot, _) => Some(&lot.procedure.id),
+            Results::Plan(file, _) => Some(file.plan.case.as_str()).filter(|c| !c.is_empty()),
         }
     }
 }
@@ -141,7 +162,8 @@ struct Listing {
 }
 
 impl StoredResults {
-    /// Reads a `result.json`, `explain.json`, `comparison.json` or `index.json`, or the folder of one, with what stands beside it.
+    /// Reads a `result.json`, `explain.json`, `comparison.json`, `index.json` or `plan.json`, or the folder of one, with what
+    /// stands beside it.
     ///
     /// # Errors
     /// A note that names the file and what is wrong with it.
@@ -157,6 +179,9 @@ impl StoredResults {
             Some("explain") => Results::Explanation(Box::new(from.explanation("", &bytes).map_err(wrong)?)),
             Some("comparison") => {
                 Results::of_comparison(read::of_format(&bytes, COMPARISON_FORMAT).map_err(wrong)?)
+            }
+            Some("plan") => {
+                Results::of_plan(read::of_format::<PlanFile>(&bytes, PLAN_FORMAT).map_err(wrong)?)
             }
             Some("lot") => Results::of_lot(read::of_format::<LotRecord>(&bytes, LOT_FORMAT).map_err(wrong)?),
             _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),

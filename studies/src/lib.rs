@@ -17,6 +17,7 @@ pub mod influence;
 pub mod laboratory;
 pub mod noise_source;
 pub mod pages;
+pub mod planned;
 pub mod rate_table;
 pub mod results;
 pub mod single_samples;
@@ -62,4 +63,5 @@ pub static STUDIES: &[&Study] = &[
     &explain::studies::CLOSED_LOOP,
     &explain::studies::OTHERS,
     &laboratory::study::STUDY,
+    &planned::STUDY,
 ];

@@ -194,6 +194,11 @@ const LATIN: &[&str] = &[
     "mine",
     "share",
     "show",
+    "alternatives",
+    "budget",
+    "next",
+    "plan",
+    "schedule",
 ];
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
@@ -250,6 +255,7 @@ const SAME: &[&str] = &[
     "explain.plus_minus",
     "explain.with_interval",
     "help.schema.value.kind.explain",
+    "help.schema.value.kind.plan",
     "reason.with_interval",
     "terminal.condition_plain",
 ];

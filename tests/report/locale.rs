@@ -51,6 +51,7 @@ const LISTED: &[(&str, &[&str])] = &[
     (
         "output_error",
         &[
+            "input.explanation",
             "input.recording",
             "input.procedure",
             "input.limits",

@@ -27,6 +27,8 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/recording_keys.rs", "keys of procedures and manifests: documentation, as of procedures"),
     ("src/config/layout/tables.rs", "the key tables of layouts: documentation, as of procedures"),
     ("src/config/model/tables.rs", "the key tables of claims: documentation, as of procedures"),
+    ("src/config/alternatives/tables.rs", "the key tables of alternatives: documentation, as of procedures"),
+    ("src/config/schedule/tables.rs", "the key tables of schedules: documentation, as of procedures"),
     (
         "crates/sagnac-ingest/src/formats/matlab/element_reader.rs",
         "faults of the decoder, quoted as it says them",

@@ -26,7 +26,9 @@
 //! | [`rate_table`], [`temperature`], [`influence`] | tests on a rate table, over temperature, under an influence |
 //! | [`effect`] | the catalogue of physical effects that a simulation can omit |
 //! | [`claim`], [`series`] | a simulation as its author states it; a recording held in memory |
+//! | [`schedule`] | what chamber and table do in a test |
 //! | [`mismatch`], [`simulate`] | why a recording departs from a claim; recordings made from a claim |
+//! | [`plan`] | the next test: which schedule tells the explanations that are left apart |
 //! | [`measurand`] | measured quantities of every kind of test: one registry, one file each |
 //!
 //! Nothing here panics on any input: what cannot be computed is `None`, an error, or an estimate without a value.
@@ -42,10 +44,12 @@ pub mod message;
 pub mod mismatch;
 pub mod noise;
 pub mod numeric;
+pub mod plan;
 pub mod rate_table;
 mod real;
 pub mod recording;
 pub mod render;
+pub mod schedule;
 pub mod series;
 pub mod simulate;
 pub mod spelling;

@@ -100,7 +100,8 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> ModelFile {
     ModelFile { claim, simulation: simulation.unwrap_or_default(), drivers: drivers(root, reader) }
 }
 
-fn stated(section: &Section, reader: &mut Reader<'_>) -> Option<Stated> {
+/// An effect with its parameters, checked.
+pub(crate) fn stated(section: &Section, reader: &mut Reader<'_>) -> Option<Stated> {
     let kind = section.text("kind")?;
     let Some(effect) = effect::find(&kind) else {
         let help = match nearest(&kind, EFFECTS.iter().map(|e| e.kind())) {

@@ -210,7 +210,8 @@ static UNCERTAINTY: TableSpec = TableSpec {
     ],
 };
 
-static EFFECT: TableSpec = TableSpec {
+/// An effect with its parameters.
+pub(crate) static EFFECT: TableSpec = TableSpec {
     name: "effect",
     doc: "An effect that the claim states. `sagnac effects` lists the kinds, `sagnac effects KIND` the parameters of one.",
     keys: &[

@@ -71,13 +71,14 @@ pub fn write(claim: &Claim) -> String {
         let _ = writeln!(out, "{key} = {}", float(value));
     }
     for stated in &claim.effects {
-        effect(stated, &mut out);
+        effect(stated, "effect", &mut out);
     }
     out
 }
 
-fn effect(stated: &Stated, out: &mut String) {
-    let _ = write!(out, "\n[[effect]]\nkind = {}\n[effect.parameters]\n", quoted(stated.effect.kind()));
+/// Appends an effect as a table of some name.
+pub(crate) fn effect(stated: &Stated, table: &str, out: &mut String) {
+    let _ = write!(out, "\n[[{table}]]\nkind = {}\n[{table}.parameters]\n", quoted(stated.effect.kind()));
     let (numbers, lists): (Vec<_>, Vec<_>) =
         stated.values.iter().partition(|(_, value)| !matches!(value, Value::List(_)));
     let declared = |name: &str| stated.effect.params().iter().position(|p| p.name == name);

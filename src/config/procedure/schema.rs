@@ -6,9 +6,11 @@ use super::spec::{KeySpec, Kind, Need, Range, TableSpec, Word};
 use super::tables::PROCEDURE_FILE;
 use super::tables::limits::LIMITS_FILE;
 use super::tables::phases::PHASES_FILE;
+use crate::config::alternatives::ALTERNATIVES_FILE;
 use crate::config::layout::tables::LAYOUT_FILE;
 use crate::config::manifest::tables::MANIFEST_FILE;
 use crate::config::model::tables::MODEL_FILE;
+use crate::config::schedule::tables::SCHEDULE_FILE;
 use crate::effect::EFFECTS;
 use crate::i18n::{EffectText, Lang, effect_text};
 use crate::measurand::MEASURANDS;
@@ -41,12 +43,27 @@ pub fn manifest() -> Value {
 
 /// The schema of a claim.
 pub fn model() -> Value {
-    let mut schema = document(&MODEL_FILE, "Sagnac model");
+    with_kinds(document(&MODEL_FILE, "Sagnac model"), "/properties/effect/items/properties/kind")
+}
+
+/// The schema of a schedule.
+pub fn schedule() -> Value {
+    document(&SCHEDULE_FILE, "Sagnac schedule")
+}
+
+/// The schema of alternatives.
+pub fn alternatives() -> Value {
+    let kind = "/properties/alternative/items/properties/effect/items/properties/kind";
+    with_kinds(document(&ALTERNATIVES_FILE, "Sagnac alternatives"), kind)
+}
+
+/// A schema in which the kinds of effects are listed at some place.
+fn with_kinds(mut schema: Value, place: &str) -> Value {
     let title = |kind: &str| effect_text(kind, EffectText::Title, Lang::En);
     // Editors offer the kinds; the reader knows them from the catalogue.
     let kinds: Vec<Value> =
         EFFECTS.iter().map(|e| json!({"const": e.kind(), "description": title(e.kind())})).collect();
-    if let Some(kind) = schema.pointer_mut("/properties/effect/items/properties/kind")
+    if let Some(kind) = schema.pointer_mut(place)
         && let Some(object) = kind.as_object_mut()
     {
         object.remove("type");

@@ -153,7 +153,7 @@ impl ExplainView {
             stated: effect::stated_rows(all, words),
             methods: method::all(words),
             figures: figures.iter().enumerate().map(|(i, f)| FigureView::of(f, i + 1, words)).collect(),
-            files: files(context, words),
+            files: files(all, context, words),
             footer: footer.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" · "),
             generator,
         }
@@ -191,12 +191,15 @@ fn identity(all: &Explanation, context: &Context, words: Translator) -> Vec<Fiel
     out
 }
 
-fn files(context: &Context, words: Translator) -> Vec<FileView> {
+fn files(all: &Explanation, context: &Context, words: Translator) -> Vec<FileView> {
     let mut names = vec![("explain.json", "explain.wrote.for_programs")];
     if context.correction {
         names.push(("correction.csv", "explain.wrote.correction"));
     }
     names.push(("augmented.toml", "explain.wrote.augmented"));
+    if all.effects.iter().any(|f| !f.equivalents.is_empty()) {
+        names.push(("alternatives.toml", "explain.wrote.alternatives"));
+    }
     names.push(("report.html", "explain.wrote.page"));
     names.push(("report.md", "explain.wrote.markdown"));
     names.push(("figures/*.svg", "explain.wrote.figures"));

@@ -4,6 +4,7 @@
 
 mod explanation;
 mod lot;
+mod plan;
 mod run;
 mod screen;
 mod table;
@@ -11,5 +12,6 @@ mod wrap;
 
 pub use explanation::explanation;
 pub use lot::{lot, lot_unit};
+pub use plan::plan;
 pub use run::run;
 pub use screen::Terminal;

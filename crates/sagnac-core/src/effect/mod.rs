@@ -34,7 +34,7 @@ pub use model::{
     Background, Detection, Detector, FlatResidual, JumpDetector, Jumps, Knot, Law, Level, LevelDetector,
     LevelLaw, OutlierDetector, Outliers, Reported, Rounding, RowDetector, Rows, RowsFound, Samples,
 };
-pub use model::{Effect, Family, Model, StatedByCourse, UNKNOWN, plausible, stateable};
+pub use model::{Effect, Family, Later, Model, StatedByCourse, UNKNOWN, plausible, stateable};
 pub use param::{Param, Value, Values, list, number, text};
 pub use shared::low_pass::LowPass;
 pub use spectral::{ModeBin, SpectralContext, Spectrum, SpectrumAct};

@@ -4,7 +4,7 @@
 //! The search for a mismatch knows no effect by name. It asks an effect on samples for its [`Detector`], whose class says on
 //! what the effect is looked for and what is done with the record where it is found.
 
-use super::{Column, Domain, Drivers, MeanModel, Param, Place, Spectrum, Value, Values};
+use super::{ClaimedMean, Column, Domain, Drivers, MeanModel, Param, Place, Spectrum, Value, Values};
 
 /// Kind, in `explain.json`, of a cause that the format has no kind for.
 pub const UNKNOWN: &str = "unknown";
@@ -86,6 +86,21 @@ pub trait Effect: Sync {
     fn stated_course(&self, _values: &Values, _drivers: &Drivers) -> Option<Vec<f64>> {
         None
     }
+    /// What a later recording of the same unit shows of it. `claim` is the mean that the unit is stated to have.
+    fn later(&self, _values: &Values, _claim: &ClaimedMean) -> Later {
+        Later::Same
+    }
+}
+
+/// What a later recording of a unit shows of an effect.
+#[derive(Clone)]
+pub enum Later {
+    /// The same effect: its cause is still there.
+    Same,
+    /// Nothing: it happened once, and the bias holds it.
+    Nothing,
+    /// Another effect, which is what it left behind.
+    As(&'static dyn Effect, Values),
 }
 
 /// Effects that are alike. Several of one family at once are one cause: lines side by side are a line that is modulated,

@@ -1,5 +1,6 @@
 //! The result of an explanation, put together from its parts.
 
+use super::alternatives;
 use super::augmented::{augmented, nuisances};
 use super::columns;
 use super::contribution;
@@ -88,6 +89,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let principal = principal_places(&found.named, after);
     let gained = best.fit.log_likelihood - base.fit.log_likelihood + local_gain;
     let (findings, rest) = causes(&found.named, gained, problem, after, options);
+    let alternatives = alternatives::all(selection, &findings, problem);
     let columns = columns::records(problem, best, &found.named, &recorded.read_from);
     let added = contribution::correction(best, spectra);
     let stated = found
@@ -132,7 +134,8 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
         places: &principal,
     };
     let figures = draw::all(problem, &drawn);
-    Outcome { explanation, correction: correction.map(|c| on_rows(&c, problem)), augmented, figures }
+    let correction = correction.map(|c| on_rows(&c, problem));
+    Outcome { explanation, correction, augmented, alternatives, figures }
 }
 
 /// A series with another one added, where there is one; of none with another, that one.

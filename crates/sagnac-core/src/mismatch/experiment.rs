@@ -2,9 +2,10 @@
 
 use super::finding::Experiment;
 use super::hypothesis::{PartModes, columns, kept};
-use super::noise_fit;
+use super::noise_fit::{self, Noise};
 use super::nonlinear_search::LocalSearch;
 use super::select::{Chosen, ENOUGH, Slot};
+use super::spectral_data::SpectralData;
 use super::terms::CourseIn;
 use super::tried::{Candidate, SpectralDataSet, Tried};
 use crate::effect::{MeanModel, ModeBin, Model};
@@ -13,6 +14,7 @@ use rand::SeedableRng as _;
 use rand_distr::{ChiSquared, Distribution as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use rayon::prelude::*;
+use std::borrow::Cow;
 
 /// Records simulated for each length.
 const DRAWS: u64 = 60;
@@ -47,24 +49,33 @@ pub fn deciding(chosen: &[Chosen], best: &Tried, spectra: &SpectralDataSet) -> V
 fn processes(best: &Tried, rival: &Tried, spectra: &SpectralDataSet) -> Option<f64> {
     let told = |times: f64| {
         let spectral = spectra.full.longer(times);
-        let densities = best.hypothesis.noise.densities(&spectral);
         let price = (rival.parameters as f64 - best.parameters as f64) * (spectra.rows as f64 * times).ln();
-        let decides = |draw: &u64| {
-            let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED + draw);
-            let power = |(bin, s): (&ModeBin, &f64)| {
-                let dof = bin.modes as f64;
-                ChiSquared::new(dof).map_or(*s, |law| s * law.sample(&mut rng) / dof)
-            };
-            let drawn: Vec<f64> = spectral.bins.iter().zip(&densities).map(power).collect();
-            let fitted = |tried: &Tried| {
-                let mut noise = tried.hypothesis.noise.clone();
-                noise_fit::fit(&mut noise, &spectral, &drawn).log_likelihood
-            };
-            2.0 * (fitted(best) - fitted(rival)) + price >= ENOUGH
-        };
-        (0..DRAWS).into_par_iter().filter(decides).count() >= DECIDED
+        records_decided(&best.hypothesis.noise, &rival.hypothesis.noise, &spectral, price) >= DECIDED
     };
     shortest(told)
+}
+
+/// Of [`DRAWS`] spectra drawn from a noise, those that tell it from a rival, both fitted to each. `price` is what BIC charges
+/// the rival more.
+fn records_decided(own: &Noise, rival: &Noise, spectral: &SpectralData, price: f64) -> usize {
+    let densities = own.densities(spectral);
+    let decides = |draw: &u64| {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED + draw);
+        let power = |(bin, s): (&ModeBin, &f64)| {
+            let dof = bin.modes as f64;
+            ChiSquared::new(dof).map_or(*s, |law| s * law.sample(&mut rng) / dof)
+        };
+        let drawn: Vec<f64> = spectral.bins.iter().zip(&densities).map(power).collect();
+        let fitted = |noise: &Noise| noise_fit::fit(&mut noise.clone(), spectral, &drawn).log_likelihood;
+        2.0 * (fitted(own) - fitted(rival)) + price >= ENOUGH
+    };
+    (0..DRAWS).into_par_iter().filter(decides).count()
+}
+
+/// The share of records, 0 to 1, that tell a noise from a rival: the ΔBIC between them is [`ENOUGH`] in favour of the one
+/// that is true. `price` is what BIC charges the rival more.
+pub(crate) fn share_decided(own: &Noise, rival: &Noise, spectral: &SpectralData, price: f64) -> f64 {
+    records_decided(own, rival, spectral, price) as f64 / DRAWS as f64
 }
 
 /// In closed form: the test repeated m times gives m times the squared distance δ² of the course to the nearest that its
@@ -102,18 +113,47 @@ fn distance(
     for (column, c) in parts.columns.iter().zip(&own.coefficients) {
         subtract(&mut modes, column, -c);
     }
-    let nuisances = kept(spectral, std::slice::from_ref(other));
+    Some(nearest(&modes, other, course, spectral, &powers).squared)
+}
+
+/// What a mean model leaves of a course, brought as near to it as it comes.
+pub(crate) struct Nearest {
+    /// Its nonlinear parameters.
+    pub nonlinear_parameters: Vec<f64>,
+    /// Sum of squares of what is left, in deviations of the noise, with the price of nuisances that moved.
+    pub squared: f64,
+}
+
+/// The nearest course of a mean model to given modes, found from the nonlinear parameters of `rival`; coefficients, bias and
+/// the nuisances of the claim are free, the latter under their priors.
+pub(crate) fn nearest(
+    modes: &[f64],
+    rival: &CourseIn,
+    course: &dyn MeanModel,
+    spectral: &SpectralData,
+    powers: &[f64],
+) -> Nearest {
+    let nuisances = kept(spectral, std::slice::from_ref(rival));
     let left = |nonlinear_parameters: &[f64]| {
-        let rival = PartModes::of_shape(course, nonlinear_parameters, spectral);
-        let mut data = modes.clone();
-        if let Some(fixed) = &rival.offset {
-            subtract(&mut data, fixed, 1.0);
+        let parts = PartModes::of_shape(course, nonlinear_parameters, spectral);
+        let mut data = Cow::Borrowed(modes);
+        if let Some(fixed) = &parts.offset {
+            subtract(data.to_mut(), fixed, 1.0);
         }
-        Normal::new(&columns(&nuisances, [&rival]), &data, &powers).solve().2
+        Normal::new(&columns(&nuisances, [&parts]), &data, powers).solve().2
     };
     let local = LocalSearch::of(course, &spectral.drivers);
-    let (_, nearest) = local.refine(&other.nonlinear_parameters, EVALUATIONS, |s| -left(s));
-    Some((-nearest).max(0.0))
+    let start = &rival.nonlinear_parameters;
+    let (nonlinear_parameters, found) = match start.as_slice() {
+        [] => (vec![], -left(&[])),
+        start => local.refine(start, EVALUATIONS, |s| -left(s)),
+    };
+    Nearest { nonlinear_parameters, squared: (-found).max(0.0) }
+}
+
+/// Nonlinear parameters of a mean model that a local search moves.
+pub(crate) fn free_parameters(course: &dyn MeanModel, spectral: &SpectralData) -> usize {
+    LocalSearch::of(course, &spectral.drivers).free()
 }
 
 /// The shortest record, in lengths of this one, for which `told` is true: by doubling, then between the last two. `None`
@@ -139,8 +179,6 @@ mod tests {
     use super::*;
     use crate::effect::{Drivers, find};
     use crate::mismatch::hypothesis::{Hypothesis, fit};
-    use crate::mismatch::noise_fit::Noise;
-    use crate::mismatch::spectral_data::SpectralData;
     use crate::mismatch::terms::SpectrumIn;
 
     const N: f64 = 0.004;

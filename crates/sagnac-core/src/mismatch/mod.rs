@@ -14,10 +14,11 @@
 //! | effects on single samples, by their detectors | `flat`, `samples`, `jumps` |
 //! | parameters with intervals, what effects add, what they improve | `estimates`, `contribution`, `heldout`, `improvement` |
 //! | what became of each column | `columns` |
-//! | causes, equivalents, the augmented claim, figures | `single_cause`, `unnamed`, `experiment`, `augmented`, `draw`, `figures`, `assemble` |
+//! | causes, equivalents, the augmented claim, figures | `single_cause`, `unnamed`, `experiment`, `alternatives`, `augmented`, `draw`, `figures`, `assemble` |
 //! | all of it in order | `engine` |
 //! | a claim from a simulated recording, and what that recording shows itself | `identify`, `witness`, `taken` |
 
+mod alternatives;
 mod assemble;
 mod augmented;
 pub mod candidates;
@@ -28,7 +29,7 @@ pub mod departures;
 pub mod draw;
 pub mod engine;
 pub mod estimates;
-mod experiment;
+pub(crate) mod experiment;
 pub mod figures;
 pub mod filtered;
 pub mod finding;
@@ -53,12 +54,13 @@ pub mod select;
 mod single_cause;
 pub mod spectral_data;
 mod taken;
-mod terms;
+pub mod terms;
 pub mod tried;
 mod unnamed;
 mod usable;
 mod witness;
 
+pub use alternatives::Alternative;
 pub use engine::explain;
 pub use identify::identify;
 pub use options::{Options, Progress};

@@ -1,5 +1,6 @@
 //! Everything that an explanation leaves behind.
 
+use super::alternatives::Alternative;
 use super::finding::Explanation;
 use crate::claim::Claim;
 use crate::figure::Figure;
@@ -13,6 +14,9 @@ pub struct Outcome {
     pub correction: Option<Vec<(f64, f64)>>,
     /// The claim with re-estimated nuisances and the effects found.
     pub augmented: Claim,
+    /// For each cause that has equivalents, what would explain the recording as well: the chosen explanation and the others,
+    /// each with its parameters.
+    pub alternatives: Vec<Alternative>,
     /// What there is to see, the located view first.
     pub figures: Vec<Figure>,
 }

@@ -296,7 +296,8 @@ fn slow_grid(samples: usize) -> (usize, usize) {
     (m, fast_length(samples / m))
 }
 
-fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {
+/// Stated deviations of the nuisances that have a column.
+pub(crate) fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {
     let u = &claim.uncertainty;
     [
         (Nuisance::TemperatureCoefficient, u.temperature_coefficient_deg_h_per_degc),

@@ -3,8 +3,8 @@
 use super::unobserved_driver::UnobservedDriver;
 use crate::effect::shared::step::{instants, step};
 use crate::effect::{
-    Domain, Drivers, Effect, Family, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values,
-    number,
+    ClaimedMean, Domain, Drivers, Effect, Family, Later, MeanModel, Param, Place, Regressors, SearchContext,
+    Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -24,6 +24,9 @@ describe! {
         }
         fn reversed_pair(&self) -> Option<&'static dyn Effect> {
             Some(&UnobservedDriver)
+        }
+        fn later(&self, _values: &Values, _claim: &ClaimedMean) -> Later {
+            Later::Nothing
         }
     }
 }

@@ -4,7 +4,7 @@ use crate::effect::shared::reach::varies;
 use crate::effect::shared::sinusoid::{polar, wave};
 use crate::effect::shared::table_angle::{columns, visited};
 use crate::effect::{
-    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Value, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -16,6 +16,15 @@ static PARAMS: [Param; 2] =
 describe! {
     EarthRateProjection, "earth_rate_projection", Mean in Angle, needs [TableAngle],
     confusers ["table_harmonic", "heading_change", "line"]
+}
+
+impl EarthRateProjection {
+    /// What a claim states of cos·cos(angle) + sin·sin(angle), deg/h.
+    pub(super) fn stated(cos: f64, sin: f64) -> Values {
+        let (amplitude, phase) = polar(&[cos, sin]);
+        let values = [(PARAMS[0].name, amplitude), (PARAMS[1].name, phase)];
+        values.map(|(name, value)| (name.to_owned(), Value::Number(value))).into()
+    }
 }
 
 impl MeanModel for EarthRateProjection {
@@ -65,7 +74,6 @@ impl MeanModel for EarthRateProjection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
 
     #[test]
     fn a_resting_table_shows_the_projection_at_its_angle() {

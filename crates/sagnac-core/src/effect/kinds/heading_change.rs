@@ -1,12 +1,15 @@
 //! The gyro moved: another projection of the Earth rate from some time on.
 
+use super::earth_rate_projection::EarthRateProjection;
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::step::{instants, step};
 use crate::effect::{
-    Domain, Drivers, Family, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
-    number,
+    ClaimedMean, Domain, Drivers, Earth, Family, Later, MeanModel, Param, Place, Regressors, Resolution,
+    SearchContext, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
+use crate::units::EARTH_RATE_DEG_H;
+use std::f64::consts::PI;
 
 pub struct HeadingChange;
 
@@ -34,7 +37,29 @@ describe! {
         fn family(&self) -> Option<Family> {
             Some(Family::Jump)
         }
+        fn later(&self, values: &Values, claim: &ClaimedMean) -> Later {
+            let number = |i: usize| number(values, PARAMS[i].name);
+            let (cos, sin) = match (number(2), number(3), number(0)) {
+                (Some(cos), Some(sin), _) => (cos, sin),
+                (_, _, Some(step)) => projection_of(step, claim.earth),
+                _ => return Later::Same,
+            };
+            Later::As(&EarthRateProjection, EarthRateProjection::stated(cos, sin))
+        }
     }
+}
+
+/// The change of the projection, as cosine and sine of the table's angle, by the smallest turn of the gyro that changes
+/// the rate at angle 0 by `step` deg/h. Where no latitude is stated, the change at angle 0 is all that is known of it.
+fn projection_of(step: f64, earth: Option<Earth>) -> (f64, f64) {
+    let Some(earth) = earth else { return (step, 0.0) };
+    let horizontal = EARTH_RATE_DEG_H * earth.latitude_deg.to_radians().cos();
+    let before = earth.azimuth_deg.to_radians();
+    let heading = (before.cos() + step / horizontal).clamp(-1.0, 1.0).acos();
+    let apart = |h: f64| (h - before + PI).rem_euclid(2.0 * PI) - PI;
+    let turn = [heading, -heading].map(apart).into_iter().min_by(|a, b| a.abs().total_cmp(&b.abs()));
+    let after = before + turn.unwrap_or(0.0);
+    (horizontal * (after.cos() - before.cos()), -horizontal * (after.sin() - before.sin()))
 }
 
 /// How far the table's angle changes at an instant, deg, against how far it moves in as long a time elsewhere.
@@ -156,5 +181,19 @@ mod tests {
         drivers.table_angle = Some(angle(500));
         assert!(HeadingChange.odds(&[500.0], &drivers) > 0.0);
         assert!(HeadingChange.odds(&[200.0], &drivers) < 0.0);
+    }
+
+    #[test]
+    fn a_gyro_that_turned_sees_another_projection_at_every_angle_of_the_table() {
+        let earth = Earth { latitude_deg: 60.0, azimuth_deg: 40.0 };
+        let horizontal = 0.5 * EARTH_RATE_DEG_H;
+        let at = |heading: f64| horizontal * heading.to_radians().cos();
+        // Turned by 3°, from 40° to 43°.
+        let (cos, sin) = projection_of(at(43.0) - at(40.0), Some(earth));
+        for angle in [0.0f64, 50.0, 200.0] {
+            let seen = cos * angle.to_radians().cos() + sin * angle.to_radians().sin();
+            assert!((seen - (at(43.0 + angle) - at(40.0 + angle))).abs() < 1e-9, "{angle}: {seen}");
+        }
+        assert_eq!(projection_of(0.3, None), (0.3, 0.0));
     }
 }
