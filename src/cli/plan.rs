@@ -65,10 +65,8 @@ pub fn main(args: &PlanArgs, lang: Lang) -> Result<u8, String> {
     let printer = Printer::new(&args.output, lang);
     let mut progress = printer.progress();
     progress.stage("progress.inputs");
-    let out = args.out.clone().unwrap_or_else(|| {
-        let case = Some(claim.case.as_str()).filter(|c| !c.is_empty());
-        place::default_folder("plan", case, now)
-    });
+    let case = Some(claim.case.as_str()).filter(|c| !c.is_empty());
+    let out = OutputPlace::new(args.out.as_deref(), "plan", case, now);
     let read =
         if args.explained.is_dir() { args.explained.join(ALTERNATIVES_FILE) } else { args.explained.clone() };
     let folder = Inputs::new(args.output.force)
