@@ -16,6 +16,7 @@ pub mod index;
 pub mod influence;
 pub mod laboratory;
 pub mod noise_source;
+pub mod noticeable;
 pub mod pages;
 pub mod rate_table;
 pub mod results;
@@ -62,4 +63,5 @@ pub static STUDIES: &[&Study] = &[
     &explain::studies::CLOSED_LOOP,
     &explain::studies::OTHERS,
     &laboratory::study::STUDY,
+    &noticeable::STUDY,
 ];

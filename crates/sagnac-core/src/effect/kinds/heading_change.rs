@@ -1,10 +1,10 @@
 //! The gyro moved: another projection of the Earth rate from some time on.
 
 use crate::effect::shared::search::gain_of;
-use crate::effect::shared::step::{instants, step};
+use crate::effect::shared::step::{instants, sizing, step};
 use crate::effect::{
-    Domain, Drivers, Family, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
-    number,
+    Domain, Drivers, Family, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts,
+    Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -112,6 +112,13 @@ impl MeanModel for HeadingChange {
             ([at], [cos, sin]) => vec![f64::NAN, drivers.start_s + at, *cos, *sin],
             _ => vec![f64::NAN; 4],
         }
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        if turning(drivers).is_some() {
+            return vec![];
+        }
+        vec![sizing(&PARAMS[0], &PARAMS[1], drivers)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
