@@ -3,6 +3,7 @@
 use super::finish::write;
 use super::inputs::Inputs;
 use super::options::OutputArgs;
+use super::place::OutputPlace;
 use super::printer::Printer;
 use super::progress::{Measure, Progress};
 use super::{exit, place, simulate};

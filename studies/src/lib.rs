@@ -16,6 +16,7 @@ pub mod index;
 pub mod influence;
 pub mod laboratory;
 pub mod noise_source;
+pub mod noticeable;
 pub mod pages;
 pub mod planned;
 pub mod rate_table;
@@ -64,4 +65,5 @@ pub static STUDIES: &[&Study] = &[
     &explain::studies::OTHERS,
     &laboratory::study::STUDY,
     &planned::STUDY,
+    &noticeable::STUDY,
 ];

@@ -2,12 +2,14 @@
 
 mod effect;
 mod method;
+mod noticeable;
 mod print;
 mod sentence;
 mod tables;
 
 pub use effect::{EffectView, EquivalentView, ParameterRow, StatedRow};
 pub use method::MethodView;
+pub use noticeable::{NotComputedRow, NoticeableRow};
 pub use tables::{CandidateRow, ColumnRow, FitRow, TestRow};
 
 use super::number::{count, date_time, digits, duration};
@@ -87,6 +89,10 @@ pub struct ExplainView {
     pub candidates: Vec<CandidateRow>,
     /// Columns of the recording.
     pub columns: Vec<ColumnRow>,
+    /// Sizes of effects that would have been noticed, the most useful first.
+    pub noticeable: Vec<NoticeableRow>,
+    /// Kinds without such a size.
+    pub not_computed: Vec<NotComputedRow>,
     /// Causes.
     pub effects: Vec<EffectView>,
     /// The fit before and after.
@@ -146,6 +152,8 @@ impl ExplainView {
             tests: tables::tests(all, words),
             candidates: tables::candidates(all, words),
             columns: tables::columns(all, words),
+            noticeable: noticeable::sizes(all, words),
+            not_computed: noticeable::not_computed(all, words),
             effects: effects.map(|(i, f)| EffectView::new(i + 1, f, all, words)).collect(),
             fit: tables::fit(all, words),
             fit_summary: tables::fit_summary(all, words),

@@ -3,7 +3,7 @@
 use super::screen::Terminal;
 use super::table::{Align, Cell, Column, table};
 use crate::i18n::{Lang, visible};
-use crate::report::explain::{EffectView, ExplainView};
+use crate::report::explain::{EffectView, ExplainView, NoticeableRow};
 use crate::report::translator::Translator;
 
 /// The outcome: verdict in sentences, each effect with its parameters, the fit before and after.
@@ -19,6 +19,28 @@ pub fn explanation(view: &ExplainView, lang: Lang, terminal: Terminal) -> String
     if !view.unchanged && !view.fit_summary.is_empty() {
         out += &format!("\n{}\n", terminal.heading(&words.t("terminal.gained")));
         out += &terminal.indented([&view.fit_summary]);
+    }
+    if !view.noticeable.is_empty() {
+        out += &format!("\n{}\n", terminal.heading(&words.t("explain.noticeable.terminal")));
+        out += &noticeable(&view.noticeable, words, terminal);
+    }
+    out
+}
+
+/// Rows that a terminal shows of the sizes that would have been noticed.
+const NOTICEABLE: usize = 8;
+
+fn noticeable(all: &[NoticeableRow], words: Translator, terminal: Terminal) -> String {
+    let column = |id: &str, align| Column { head: words.name("terminal_column", id), align, optional: false };
+    let place = Column { optional: true, ..column("place", Align::Left) };
+    let columns = [column("effect", Align::Left), column("noticed_from", Align::Right), place];
+    let shown = all.iter().take(NOTICEABLE);
+    let rows: Vec<Vec<Cell>> =
+        shown.map(|n| vec![n.title.clone().into(), n.size.clone().into(), n.at.clone().into()]).collect();
+    let mut out = table(&columns, &rows, terminal);
+    if all.len() > NOTICEABLE {
+        let left = (all.len() - NOTICEABLE).to_string();
+        out += &terminal.indented([words.with("explain.noticeable.further", &[("n", &left)])]);
     }
     out
 }

@@ -150,6 +150,8 @@ pub fn consistent() -> Explanation {
             hidden: vec![],
         },
         columns: vec![],
+        noticeable: vec![],
+        noticeable_not_computed: vec![],
         experiments: vec![],
     }
 }

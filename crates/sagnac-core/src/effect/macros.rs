@@ -124,6 +124,9 @@ macro_rules! linear {
                 let coefficient = $crate::effect::number(values, PARAMS[0].name)?;
                 Some(column(drivers)?.into_iter().map(|x| coefficient * x).collect())
             }
+            fn sizings(&self, _drivers: &Drivers) -> Vec<$crate::effect::Sizing> {
+                vec![$crate::effect::Sizing::linear(&PARAMS[0])]
+            }
             fn places(
                 &self,
                 _shape: &[f64],

@@ -1,6 +1,6 @@
 //! Effects on the mean: what a parameter and the recorded columns add to the rate.
 
-use super::{Drivers, Place, Values};
+use super::{Drivers, Place, Sizing, Values};
 use crate::numeric::range::Bounds;
 
 /// A nuisance of the claim: a value that it states with an uncertainty.
@@ -176,6 +176,23 @@ pub trait MeanModel: Sync {
     /// Columns that are fitted when a claim states the effect: a state before the record that no claim can know.
     fn nuisance_columns(&self, _values: &Values, _drivers: &Drivers) -> Vec<Vec<f64>> {
         vec![]
+    }
+
+    /// How large it is and where that is asked, to tell which size would have been noticed; one entry for each column that
+    /// can drive it. Empty for an effect whose size no single number tells.
+    fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
+        vec![]
+    }
+
+    /// The course of a size at a place, deg/h, one value a sample.
+    fn sized_course(
+        &self,
+        sizing: &Sizing,
+        place: &Values,
+        size: f64,
+        drivers: &Drivers,
+    ) -> Option<Vec<f64>> {
+        self.course(&sizing.values(place, size), drivers)
     }
 
     /// Natural logarithm of the odds of this effect against others with the same course, from what else the columns show.

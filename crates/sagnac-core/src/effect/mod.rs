@@ -9,6 +9,7 @@
 //! | `model` | [`Effect`], what every effect says of itself; [`Model`], the three classes |
 //! | `mean`, `spectral`; `Samples` in `model` | what an effect of each class implements |
 //! | `param`, `domain`, `drivers` | parameters and their values; where an effect shows; the recorded columns |
+//! | `sizing` | what the size of an effect is, and where it is asked for |
 //! | `shared` | physics and searches that several effects use |
 //! | `kinds` | one file an effect, and [`EFFECTS`], the list of them |
 
@@ -23,6 +24,7 @@ mod mean;
 mod model;
 mod param;
 mod shared;
+mod sizing;
 mod spectral;
 
 pub use column::{Column, OtherColumn};
@@ -37,4 +39,5 @@ pub use model::{
 pub use model::{Effect, Family, Later, Model, StatedByCourse, UNKNOWN, plausible, stateable};
 pub use param::{Param, Value, Values, list, number, text};
 pub use shared::low_pass::LowPass;
+pub use sizing::{Sizing, SpectralSizing};
 pub use spectral::{ModeBin, SpectralContext, Spectrum, SpectrumAct};

@@ -1,6 +1,6 @@
 //! Effects that change the spectrum of the noise.
 
-use super::{LowPass, Place, Values};
+use super::{LowPass, Place, SpectralSizing, Values};
 use crate::noise::composite::{Composite, Damped};
 use crate::noise::data::NoiseType;
 use crate::numeric::range::Bounds;
@@ -111,6 +111,12 @@ pub trait Spectrum: Sync {
 
     /// Where it shows, principal place first, at most three.
     fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place>;
+
+    /// How large it is and where that is asked, to tell which size would have been noticed; `None` for one whose size no
+    /// single number tells.
+    fn sizing(&self, _context: &SpectralContext<'_>) -> Option<SpectralSizing> {
+        None
+    }
 
     /// True for one of which a record can hold several, each with parameters of its own.
     fn repeats(&self) -> bool {

@@ -15,6 +15,7 @@ use super::finding::{
 use super::heldout::{Halves, HeldOut};
 use super::improvement;
 use super::named::{Found, Named};
+use super::noticeable::{self, Noticeable};
 use super::options::Options;
 use super::outcome::Outcome;
 use super::problem::Problem;
@@ -91,6 +92,13 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let (findings, rest) = causes(&found.named, gained, problem, after, options);
     let alternatives = alternatives::all(selection, &findings, problem);
     let columns = columns::records(problem, best, &found.named, &recorded.read_from);
+    let Noticeable { sizes, not_computed } = match verdict(&findings) {
+        MismatchVerdict::UnknownMismatch => Noticeable::default(),
+        _ => {
+            let kinds: Vec<&'static str> = found.named.iter().map(|n| n.effect.kind()).collect();
+            noticeable::sizes(problem, selection, &kinds, options)
+        }
+    };
     let added = contribution::correction(best, spectra);
     let stated = found
         .named
@@ -123,6 +131,8 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
         nuisances: nuisances(problem, base, best),
         recording: facts(problem, &recorded, options),
         columns,
+        noticeable: sizes,
+        noticeable_not_computed: not_computed,
         experiments: experiment::deciding(&selection.chosen, best, spectra),
     };
     let drawn = Drawn {

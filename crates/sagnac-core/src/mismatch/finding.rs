@@ -1,5 +1,6 @@
 //! What an explanation says, as `explain.json` has it.
 
+use super::noticeable_record::{NotComputed, NoticeableSize};
 use crate::effect::{Domain, Place};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -38,6 +39,13 @@ pub struct Explanation {
     /// Every column beside time and rate, with its part in what was found.
     #[serde(default)]
     pub columns: Vec<ColumnRecord>,
+    /// For each kind of effect that was not found, the size that would have been noticed with a probability of 95 %, the most
+    /// useful first. Empty where something is left without a name.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub noticeable: Vec<NoticeableSize>,
+    /// Kinds without such a size, and why.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub noticeable_not_computed: Vec<NotComputed>,
     /// Experiments that would decide between equivalents, as keys of words.
     pub experiments: Vec<Experiment>,
 }

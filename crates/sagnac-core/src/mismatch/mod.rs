@@ -14,6 +14,7 @@
 //! | effects on single samples, by their detectors | `flat`, `samples`, `jumps` |
 //! | parameters with intervals, what effects add, what they improve | `estimates`, `contribution`, `heldout`, `improvement` |
 //! | what became of each column | `columns` |
+//! | sizes of effects that would have been noticed | `noticeable_record`, `noticeable` |
 //! | causes, equivalents, the augmented claim, figures | `single_cause`, `unnamed`, `experiment`, `alternatives`, `augmented`, `draw`, `figures`, `assemble` |
 //! | all of it in order | `engine` |
 //! | a claim from a simulated recording, and what that recording shows itself | `identify`, `witness`, `taken` |
@@ -43,6 +44,8 @@ pub mod jumps;
 mod named;
 pub mod noise_fit;
 mod nonlinear_search;
+pub mod noticeable;
+pub mod noticeable_record;
 pub mod options;
 pub mod outcome;
 mod posterior;

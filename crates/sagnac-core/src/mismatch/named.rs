@@ -7,6 +7,9 @@ use super::posterior::Probable;
 use super::select::ENOUGH;
 use crate::effect::{Detection, Effect, Place, Value};
 
+/// Effects that are counted as looked for in single samples.
+pub const FAMILY: f64 = 40.0;
+
 /// An effect that was named, however it was found.
 pub struct Named {
     /// The effect that gives it its name.
@@ -70,7 +73,6 @@ impl Named {
 
 /// Whether a gain is worth its parameters and is no chance. `family` counts the catalogue.
 pub fn worth(gain: f64, parameters: usize, p_value: f64, rows: usize, alpha: f64) -> Option<f64> {
-    const FAMILY: f64 = 40.0;
     let delta_bic = 2.0 * gain - parameters as f64 * (rows as f64).ln();
     (delta_bic >= ENOUGH && FAMILY * p_value < alpha).then_some(delta_bic)
 }

@@ -22,6 +22,11 @@ impl QuantizationGrid {
     /// Least variance of the rounding over that of the noise of a sample from which the grid is more than digits.
     const COARSE: f64 = 0.01;
 
+    /// The finest step that is more than digits beside white noise of some deviation.
+    pub fn finest_arcsec(noise_arcsec: f64) -> f64 {
+        (12.0 * QuantizationGrid::COARSE).sqrt() * noise_arcsec
+    }
+
     /// Log-likelihood of so many values on the grid over values that could be any which the file can write; nothing for a
     /// lattice so fine beside white noise of some deviation that a simulation may leave it out.
     pub fn gain(&self, rows: usize, noise_arcsec: f64) -> f64 {

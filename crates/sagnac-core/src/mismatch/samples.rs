@@ -17,7 +17,7 @@ use crate::effect::{
 use crate::estimate::chi_square_tail;
 
 /// Laws that compete: forms over time, over columns, over the rate.
-const LAWS: f64 = 16.0;
+pub const LAWS: f64 = 16.0;
 /// Fewest samples from which a level is determined.
 const FEWEST: usize = 128;
 

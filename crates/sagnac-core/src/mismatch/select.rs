@@ -230,7 +230,7 @@ fn is_jump(effect: &dyn Effect) -> bool {
 }
 
 /// How many effects were tried, those in single samples among them.
-fn family(first: &[Candidate]) -> f64 {
+pub fn family(first: &[Candidate]) -> f64 {
     first.len().max(1) as f64 + 8.0
 }
 

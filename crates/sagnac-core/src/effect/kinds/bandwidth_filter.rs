@@ -2,7 +2,8 @@
 
 use crate::effect::shared::search::log_grid;
 use crate::effect::{
-    Domain, Family, LowPass, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number,
+    Domain, Family, LowPass, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct,
+    Values, number,
 };
 use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode};
 use crate::noise::data::NoiseType;
@@ -265,6 +266,13 @@ impl Spectrum for BandwidthFilter {
 
     fn low_pass(&self, fitted: &[f64], dt_s: f64) -> Option<LowPass> {
         of_samples(fitted, dt_s)
+    }
+
+    /// Of first order, before the samples are averaged.
+    fn sizing(&self, context: &SpectralContext<'_>) -> Option<SpectralSizing> {
+        let Bounds { high, .. } = self.bounds(context)[0];
+        let places = vec![vec![high, 1.0]];
+        Some(SpectralSizing { parameter: &PARAMS[0], position: 0, falls: true, places })
     }
 
     fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {

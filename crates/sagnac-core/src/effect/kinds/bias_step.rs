@@ -1,10 +1,10 @@
 //! One jump of the bias.
 
 use super::unobserved_driver::UnobservedDriver;
-use crate::effect::shared::step::{instants, step};
+use crate::effect::shared::step::{instants, sizing, step};
 use crate::effect::{
     ClaimedMean, Domain, Drivers, Effect, Family, Later, MeanModel, Param, Place, Regressors, SearchContext,
-    Starts, Values, number,
+    Sizing, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -56,6 +56,10 @@ impl MeanModel for BiasStep {
             ([at], [size]) => vec![*size, drivers.start_s + at],
             _ => vec![f64::NAN; 2],
         }
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        vec![sizing(&PARAMS[0], &PARAMS[1], drivers)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -3,7 +3,8 @@
 use crate::effect::shared::delay::{follow, moves, regressors, shifted};
 use crate::effect::shared::search::best_of;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values,
+    number,
 };
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::range::Bounds;
@@ -78,6 +79,14 @@ impl MeanModel for ClockDrift {
         _drivers: &Drivers,
     ) -> Vec<f64> {
         vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let Bounds { low, high } = self.bounds(drivers)[0];
+        let begin = 0.1 / per_ppm(drivers.samples.max(2) - 1, drivers).max(1e-12);
+        let beside = self.regressors(&[begin], drivers).nuisance.len();
+        let trials = 1e-6 * (high - low) * drivers.samples as f64;
+        vec![Sizing::searched(&PARAMS[0], vec![Values::new()], 1 + beside, trials).from(begin)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

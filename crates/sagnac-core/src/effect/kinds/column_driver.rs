@@ -8,8 +8,8 @@ use crate::effect::shared::response::{
     self, CENTER, COEFFICIENTS_LIST, HALF_RANGE, ResponseLaw, SCALES_LIST, TERMS_LIST,
 };
 use crate::effect::{
-    Column, Domain, Drivers, MeanModel, OtherDriver, Param, Place, Regressors, SearchContext, Starts, Values,
-    text,
+    Column, Domain, Drivers, MeanModel, OtherDriver, Param, Place, Regressors, SearchContext, Sizing, Starts,
+    Value, Values, text,
 };
 use crate::numeric::range::Bounds;
 
@@ -116,6 +116,30 @@ impl MeanModel for ColumnDriver {
         earlier.first() == nonlinear_parameters.first()
     }
 
+    /// Proportional to each column that varies.
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let varying = || drivers.others.iter().filter(|o| varies(Some(&o.smooth)));
+        let trials = response::TERMS as f64 * varying().count() as f64;
+        let of = |other: &OtherDriver| {
+            let place = [(COLUMN.to_owned(), Value::Text(other.column.name().to_owned()))].into();
+            let sizing = Sizing::searched(&PARAMS[0], vec![place], 1, trials);
+            Sizing { column: Some(other.column), ..sizing }
+        };
+        varying().map(of).collect()
+    }
+
+    fn sized_course(
+        &self,
+        _sizing: &Sizing,
+        place: &Values,
+        size: f64,
+        drivers: &Drivers,
+    ) -> Option<Vec<f64>> {
+        let column = Column::of_name(text(place, COLUMN)?);
+        let driver = drivers.others.iter().find(|o| o.column == column)?;
+        Some(driver.smooth.iter().map(|x| size * x).collect())
+    }
+
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let column = Column::of_name(text(values, COLUMN)?);
         let driver = drivers.others.iter().find(|o| o.column == column)?;
@@ -140,7 +164,6 @@ impl MeanModel for ColumnDriver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
 
     #[test]
     fn a_stated_driver_is_found_by_the_name_of_its_column() {

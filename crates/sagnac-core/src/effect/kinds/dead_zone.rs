@@ -2,8 +2,10 @@
 
 use crate::effect::shared::search::{best_of, fast_level, log_grid, peaks};
 
+use crate::effect::sizing::numbers;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values,
+    number,
 };
 use crate::numeric::range::Bounds;
 
@@ -134,6 +136,12 @@ impl MeanModel for DeadZone {
             ([width, _], [share]) => vec![*width, *share, 0.0],
             _ => vec![f64::NAN; 3],
         }
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let Some((low, _, between)) = sizes(drivers) else { return vec![] };
+        let place = numbers([(PARAMS[1].name, 1.0), (PARAMS[2].name, 0.0)]);
+        vec![Sizing::searched(&PARAMS[0], vec![place], 2, (between as f64).clamp(1.0, 64.0)).from(low)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

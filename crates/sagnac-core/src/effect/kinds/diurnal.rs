@@ -2,8 +2,9 @@
 
 use crate::effect::shared::search::{best_of, log_grid};
 use crate::effect::shared::sinusoid::{columns, polar, wave};
+use crate::effect::sizing::numbers;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -52,6 +53,13 @@ impl MeanModel for Diurnal {
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
         vec![amplitude, nonlinear_parameters.first().copied().unwrap_or(f64::NAN), phase]
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let Bounds { low, high } = self.bounds(drivers)[0];
+        let phases = [0.0, 45.0, 90.0, 135.0];
+        let places = phases.map(|phase| numbers([(PARAMS[1].name, DAY_S), (PARAMS[2].name, phase)])).into();
+        vec![Sizing::searched(&PARAMS[0], places, if low == high { 2 } else { 3 }, 1.0)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

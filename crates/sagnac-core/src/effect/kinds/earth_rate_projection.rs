@@ -3,8 +3,10 @@
 use crate::effect::shared::reach::varies;
 use crate::effect::shared::sinusoid::{polar, wave};
 use crate::effect::shared::table_angle::{columns, visited};
+use crate::effect::sizing::numbers;
 use crate::effect::{
-    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Value, Values, number,
+    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Value, Values,
+    number,
 };
 use crate::numeric::range::Bounds;
 
@@ -51,6 +53,11 @@ impl MeanModel for EarthRateProjection {
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
         vec![amplitude, phase]
+    }
+
+    fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
+        let places = [0.0, 45.0, 90.0, 135.0].map(|phase| numbers([(PARAMS[1].name, phase)]));
+        vec![Sizing::searched(&PARAMS[0], places.into(), 2, 1.0)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -2,10 +2,10 @@
 
 use super::earth_rate_projection::EarthRateProjection;
 use crate::effect::shared::search::gain_of;
-use crate::effect::shared::step::{instants, step};
+use crate::effect::shared::step::{instants, sizing, step};
 use crate::effect::{
     ClaimedMean, Domain, Drivers, Earth, Family, Later, MeanModel, Param, Place, Regressors, Resolution,
-    SearchContext, Starts, Values, number,
+    SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 use crate::units::EARTH_RATE_DEG_H;
@@ -137,6 +137,13 @@ impl MeanModel for HeadingChange {
             ([at], [cos, sin]) => vec![f64::NAN, drivers.start_s + at, *cos, *sin],
             _ => vec![f64::NAN; 4],
         }
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        if turning(drivers).is_some() {
+            return vec![];
+        }
+        vec![sizing(&PARAMS[0], &PARAMS[1], drivers)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

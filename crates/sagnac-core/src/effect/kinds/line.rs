@@ -2,11 +2,13 @@
 
 use super::unobserved_driver::UnobservedDriver;
 use crate::effect::shared::periodogram::LineGains;
+use crate::effect::shared::search::log_grid;
 use crate::effect::shared::search::peaks;
 use crate::effect::shared::sinusoid::{averaged, columns, polar, wave};
+use crate::effect::sizing::numbers;
 use crate::effect::{
-    Domain, Drivers, Effect, Family, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts,
-    Values, number,
+    Domain, Drivers, Effect, Family, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing,
+    Starts, Values, number,
 };
 use crate::numeric::cosine::sinusoid_modes;
 use crate::numeric::optimize::parabolic_peak;
@@ -90,6 +92,13 @@ impl MeanModel for Line {
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
         vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN), amplitude, phase]
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let Bounds { low, high } = self.bounds(drivers)[0];
+        let frequencies = log_grid(2.0 * low, 0.95 * high, 12).into_iter();
+        let places = frequencies.map(|f| numbers([(PARAMS[0].name, f)])).collect();
+        vec![Sizing::searched(&PARAMS[1], places, 3, drivers.samples as f64)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -1,8 +1,10 @@
 //! Exponentially correlated noise whose correlation time is many samples.
 
 use crate::effect::shared::markov::{SHORT_SAMPLES, densities, process, starts_between};
+use crate::effect::shared::search::log_grid;
 use crate::effect::{
-    Domain, Family, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Value, Values, number,
+    Domain, Family, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct, Value,
+    Values, number,
 };
 use crate::noise::composite::{Composite, Damped};
 use crate::numeric::range::Bounds;
@@ -77,6 +79,13 @@ impl Spectrum for MarkovLong {
 
     fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
         noise.markov.push(process(fitted));
+    }
+
+    /// Correlation times up to a quarter of the record.
+    fn sizing(&self, context: &SpectralContext<'_>) -> Option<SpectralSizing> {
+        let Bounds { low, high } = self.bounds(context)[0];
+        let places = log_grid(1.5 * low, 0.5 * high, 5).into_iter().map(|time| vec![time, 1.0]).collect();
+        Some(SpectralSizing { parameter: &PARAMS[1], position: 1, falls: false, places })
     }
 
     fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {

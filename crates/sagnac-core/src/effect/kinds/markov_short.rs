@@ -1,8 +1,10 @@
 //! Exponentially correlated noise whose correlation time is a few samples.
 
 use crate::effect::shared::markov::{SHORT_SAMPLES, densities, process, starts_between};
+use crate::effect::shared::search::log_grid;
 use crate::effect::{
-    Domain, Family, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Value, Values, number,
+    Domain, Family, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct, Value,
+    Values, number,
 };
 use crate::noise::composite::{Composite, Damped};
 use crate::numeric::range::Bounds;
@@ -76,6 +78,12 @@ impl Spectrum for MarkovShort {
 
     fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
         noise.markov.push(process(fitted));
+    }
+
+    fn sizing(&self, context: &SpectralContext<'_>) -> Option<SpectralSizing> {
+        let Bounds { low, high } = self.bounds(context)[0];
+        let places = log_grid(2.0 * low, 0.9 * high, 4).into_iter().map(|time| vec![time, 1.0]).collect();
+        Some(SpectralSizing { parameter: &PARAMS[1], position: 1, falls: false, places })
     }
 
     fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {

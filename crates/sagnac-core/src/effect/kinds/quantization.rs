@@ -1,8 +1,8 @@
 //! The output is quantised in angle.
 
 use crate::effect::{
-    Detection, Domain, Family, ModeBin, Param, Place, Reported, Rounding, SpectralContext, Spectrum,
-    SpectrumAct, Value, Values, number,
+    Detection, Domain, Family, ModeBin, Param, Place, Reported, Rounding, SpectralContext, SpectralSizing,
+    Spectrum, SpectrumAct, Value, Values, number,
 };
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
@@ -103,6 +103,11 @@ impl Spectrum for Quantization {
     fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
         let q = fitted.first().copied().unwrap_or(0.0) / 12f64.sqrt();
         noise.terms.q = noise.terms.q.hypot(q);
+    }
+
+    fn sizing(&self, _context: &SpectralContext<'_>) -> Option<SpectralSizing> {
+        let places = vec![vec![1.0]];
+        Some(SpectralSizing { parameter: &PARAMS[0], position: 0, falls: false, places })
     }
 
     fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {

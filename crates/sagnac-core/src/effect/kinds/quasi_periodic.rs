@@ -1,10 +1,10 @@
 //! A narrow-band disturbance of finite coherence.
 
 use super::unobserved_driver::UnobservedDriver;
-use crate::effect::shared::search::peaks;
+use crate::effect::shared::search::{log_grid, peaks};
 use crate::effect::{
-    Domain, Effect, Family, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Value, Values,
-    number,
+    Domain, Effect, Family, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct,
+    Value, Values, number,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
 use crate::numeric::range::Bounds;
@@ -166,6 +166,16 @@ impl Spectrum for QuasiPeriodic {
 
     fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
         noise.quasi_periodic.push(process(fitted));
+    }
+
+    /// Coherent over three and thirty periods, within a third of the record.
+    fn sizing(&self, context: &SpectralContext<'_>) -> Option<SpectralSizing> {
+        let bounds = self.bounds(context);
+        let longest = bounds[2].high / 6.0;
+        let at = |f: f64| [3.0, 30.0].map(|periods: f64| vec![f, 1.0, (periods / f).min(longest)]);
+        let frequencies = log_grid(3.0 * bounds[0].low, 0.8 * bounds[0].high, 4).into_iter();
+        let places = frequencies.flat_map(at).filter(|place| self.plausible(place)).collect();
+        Some(SpectralSizing { parameter: &PARAMS[1], position: 1, falls: false, places })
     }
 
     fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {

@@ -1,6 +1,8 @@
 //! A linear drift.
 
-use crate::effect::{Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number};
+use crate::effect::{
+    Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
+};
 use crate::numeric::range::Bounds;
 
 pub struct RateRamp;
@@ -37,6 +39,10 @@ impl MeanModel for RateRamp {
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         vec![coefficients.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
+        vec![Sizing::linear(&PARAMS[0])]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -1,9 +1,10 @@
 //! A scale factor that follows a recorded column other than temperature.
 
 use crate::effect::shared::reach::{large_rates, reach, varies};
+use crate::effect::sizing::numbers;
 use crate::effect::{
-    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
-    number, text,
+    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts,
+    Value, Values, number, text,
 };
 use crate::numeric::range::Bounds;
 
@@ -89,6 +90,19 @@ impl MeanModel for SfDriver {
     fn texts(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<(&'static str, String)> {
         let column = meant(nonlinear_parameters, drivers);
         column.map(|c| (COLUMN, c.name().to_owned())).into_iter().collect()
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let candidates = columns(drivers);
+        let trials = candidates.len() as f64;
+        let of = |column: &Column| {
+            let reference = mean(drivers.column(*column)?);
+            let texts = [(COLUMN.to_owned(), Value::Text(column.name().to_owned()))];
+            let place = texts.into_iter().chain(numbers([(PARAMS[1].name, reference)])).collect();
+            let sizing = Sizing::searched(&PARAMS[0], vec![place], 1, trials);
+            Some(Sizing { column: Some(*column), ..sizing })
+        };
+        candidates.iter().filter_map(of).collect()
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -2,7 +2,7 @@
 
 use crate::effect::shared::reach::varies;
 use crate::effect::{
-    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -56,6 +56,10 @@ impl MeanModel for SfNonlinearity {
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
         vec![coefficients.first().copied().unwrap_or(f64::NAN), largest(drivers)]
+    }
+
+    fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
+        vec![Sizing::linear(&PARAMS[0])]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

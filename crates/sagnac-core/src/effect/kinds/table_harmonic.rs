@@ -4,8 +4,9 @@ use crate::effect::shared::reach::varies;
 use crate::effect::shared::search::best_of;
 use crate::effect::shared::sinusoid::{polar, wave};
 use crate::effect::shared::table_angle::{columns, visited};
+use crate::effect::sizing::numbers;
 use crate::effect::{
-    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -48,6 +49,13 @@ impl MeanModel for TableHarmonic {
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
         vec![nonlinear_parameters.first().map_or(f64::NAN, |k| k.round()), amplitude, phase]
+    }
+
+    fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
+        let of = |order: u8| {
+            [0.0, 90.0].map(|phase| numbers([(PARAMS[0].name, f64::from(order)), (PARAMS[2].name, phase)]))
+        };
+        vec![Sizing::searched(&PARAMS[1], (1..=8).flat_map(of).collect(), 2, 8.0)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -3,8 +3,9 @@
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::search::{best_of, log_grid};
 use crate::effect::shared::thermal::smooth;
+use crate::effect::sizing::numbers;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::range::{Bounds, ends};
 
@@ -72,6 +73,12 @@ impl MeanModel for TempHysteresis {
             ([play, first], [width]) => vec![width.abs(), *play, *first, width.signum()],
             _ => vec![f64::NAN; 4],
         }
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let Bounds { low, high } = self.bounds(drivers)[0];
+        let places = log_grid(2.0 * low, high, 5).into_iter().map(|play| numbers([(PARAMS[1].name, play)]));
+        vec![Sizing::searched(&PARAMS[0], places.collect(), 3, (high / low).ln())]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

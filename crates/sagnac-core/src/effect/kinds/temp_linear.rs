@@ -2,7 +2,7 @@
 
 use crate::effect::{
     Column, Domain, Drivers, Effect, MeanModel, Model, Nuisance, Param, Place, Regressors, SearchContext,
-    Starts, Values, number,
+    Sizing, Starts, Values, number,
 };
 use crate::numeric::range::{Bounds, ends};
 
@@ -66,6 +66,10 @@ impl MeanModel for TempLinear {
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
         vec![coefficients.first().map_or(f64::NAN, |c| c + claimed(drivers))]
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        vec![Sizing::linear(&PARAMS[0]).claimed(claimed(drivers))]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -3,7 +3,7 @@
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::thermal::rate;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -36,6 +36,10 @@ impl MeanModel for TempRate {
 
     fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         vec![coefficients.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
+        vec![Sizing::linear(&PARAMS[0])]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

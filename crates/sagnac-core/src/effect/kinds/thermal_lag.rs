@@ -5,7 +5,7 @@ use crate::effect::shared::reach::varies;
 use crate::effect::shared::search::{best_of, log_grid};
 use crate::effect::shared::thermal::{delayed, smooth};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -66,6 +66,12 @@ impl MeanModel for ThermalLag {
         _drivers: &Drivers,
     ) -> Vec<f64> {
         vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let Bounds { low, high } = self.bounds(drivers)[0];
+        let sizing = Sizing::searched(&PARAMS[0], vec![Values::new()], 2, (high / low).ln());
+        vec![sizing.from((low * high).sqrt())]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -3,7 +3,8 @@
 use crate::effect::shared::delay::{follow, moves, regressors, shifted};
 use crate::effect::shared::search::{best_of, peaks};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values,
+    number,
 };
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::range::Bounds;
@@ -130,6 +131,13 @@ impl MeanModel for TimeOffset {
         _drivers: &Drivers,
     ) -> Vec<f64> {
         vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
+    }
+
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let Bounds { high, .. } = self.bounds(drivers)[0];
+        let (dt, places) = (drivers.dt_s, vec![Values::new()]);
+        let beside = self.regressors(&[dt], drivers).nuisance.len();
+        vec![Sizing::searched(&PARAMS[0], places, 1 + beside, 2.0 * high / dt).from(0.1 * dt)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -1,9 +1,10 @@
 //! A smooth contribution that follows a quantity which was not recorded.
 
 use crate::effect::shared::markov::starts_between;
+use crate::effect::shared::search::log_grid;
 use crate::effect::{
-    Domain, Drivers, Knot, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, StatedByCourse,
-    Value, Values, list,
+    Domain, Drivers, Knot, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct,
+    StatedByCourse, Value, Values, list,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
 use crate::numeric::range::Bounds;
@@ -135,6 +136,14 @@ impl Spectrum for UnobservedDriver {
 
     /// Its course is simulated from knots: see `Effect::stated_course`.
     fn compose(&self, _fitted: &[f64], _dt_s: f64, _noise: &mut Composite) {}
+
+    /// Times from a fiftieth of the record to its length.
+    fn sizing(&self, context: &SpectralContext<'_>) -> Option<SpectralSizing> {
+        let Bounds { low, high } = self.bounds(context)[1];
+        let times = log_grid((0.01 * high).max(low), 0.5 * high, 5).into_iter();
+        let places = times.map(|time| vec![1.0, time]).collect();
+        Some(SpectralSizing { parameter: &PARAMS[0], position: 0, falls: false, places })
+    }
 
     /// Times count from the first sample.
     fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {

@@ -3,8 +3,9 @@
 use crate::effect::shared::decay::decay;
 use crate::effect::shared::reach::beginning_s;
 use crate::effect::shared::search::{best_of, log_grid};
+use crate::effect::sizing::numbers;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -48,6 +49,14 @@ impl MeanModel for WarmupExponential {
             ([time], [amplitude]) => vec![*amplitude, *time],
             _ => vec![f64::NAN; 2],
         }
+    }
+
+    /// Time constants from a hundredth of the record to its length.
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let Bounds { low, high } = self.bounds(drivers)[0];
+        let times = log_grid((0.01 * high).max(low), high, 7).into_iter();
+        let places = times.map(|time| numbers([(PARAMS[1].name, time)])).collect();
+        vec![Sizing::searched(&PARAMS[0], places, 2, (high / low).ln())]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

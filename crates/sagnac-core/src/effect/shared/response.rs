@@ -19,7 +19,7 @@ const DELAYS_S: [f64; 8] = [60.0, 150.0, 375.0, 940.0, 2350.0, 5900.0, 14_700.0,
 /// Widths of the play, in halves of the column's range.
 const PLAYS: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
 /// Terms in all.
-const TERMS: usize = ORDERS + 1 + DELAYS_S.len() + PLAYS.len();
+pub(in crate::effect) const TERMS: usize = ORDERS + 1 + DELAYS_S.len() + PLAYS.len();
 /// Terms that a response has at most.
 const MAX_TERMS: usize = 6;
 /// Gain of log-likelihood that each term must bring: half the logarithm of some sixty modes that tell of a slow course, and

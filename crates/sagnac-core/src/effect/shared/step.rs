@@ -1,6 +1,7 @@
 //! A level that changes once: its column, and a search for the instant.
 
-use crate::effect::{Drivers, SearchContext, Starts};
+use crate::effect::sizing::numbers;
+use crate::effect::{Drivers, Param, SearchContext, Sizing, Starts};
 
 /// A step at `at_s` seconds after the first sample, the sample that it falls into averaged.
 pub(in crate::effect) fn step(drivers: &Drivers, at_s: f64) -> Vec<f64> {
@@ -42,8 +43,19 @@ pub(in crate::effect) fn instants(drivers: &Drivers, context: &SearchContext<'_>
         points.push(vec![(best as f64 - 0.5) * drivers.dt_s]);
         gains[best.saturating_sub(apart)..(best + apart).min(n)].fill(0.0);
     }
-    // Instants closer than the time in which the noise lets a step be placed are one; in white noise each counts.
-    Starts { points, trials: (n as f64).powf(0.75) }
+    Starts { points, trials: trials(n) }
+}
+
+/// Instants closer than the time in which the noise lets a step be placed are one; in white noise each counts.
+fn trials(samples: usize) -> f64 {
+    (samples as f64).powf(0.75)
+}
+
+/// Sizes of a step at instants from a twentieth of the record to as much before its end.
+pub(in crate::effect) fn sizing(size: &'static Param, instant: &Param, drivers: &Drivers) -> Sizing {
+    let at = |share: f64| numbers([(instant.name, drivers.start_s + share * drivers.length_s())]);
+    let places = [0.05, 0.1, 0.25, 0.5, 0.75, 0.9, 0.95].map(at);
+    Sizing::searched(size, places.into(), 2, trials(drivers.samples))
 }
 
 #[cfg(test)]

@@ -64,6 +64,13 @@ impl Form {
     }
 }
 
+/// Parameters of one change, and the independent instants that are looked at in so many samples.
+pub(super) fn single_change(samples: usize) -> (usize, f64) {
+    let size = samples.div_ceil(GROUPS).max(FEWEST);
+    let (_, parameters, trials) = Form::Step(0).counts(samples.div_ceil(size));
+    (parameters, trials)
+}
+
 /// The best form over time, if any gains.
 pub(super) fn over_time(residual: &FlatResidual<'_>, samples: &[usize]) -> Option<LevelLaw> {
     let (n, drivers) = (residual.flat.len(), residual.drivers);

@@ -51,6 +51,10 @@ impl LevelDetector for NoiseVarianceTime {
         forms::over_time(residual, samples).into_iter().collect()
     }
 
+    fn single_change(&self, samples: usize) -> Option<(usize, f64)> {
+        Some(forms::single_change(samples))
+    }
+
     fn stated(&self, level: &Level, _drivers: &Drivers) -> Values {
         let knots = match &level.law {
             Law::Time(knots) => knots.as_slice(),

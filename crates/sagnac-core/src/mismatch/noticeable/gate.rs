@@ -1,0 +1,113 @@
+//! The gate that an effect must pass to be found, and how far beyond it an effect must be to pass it nearly always.
+//!
+//! Twice the gain of log-likelihood of an effect that is there follows a noncentral χ² law. Its noncentrality is twice the
+//! gain that is expected of the effect itself.
+
+use crate::estimate::chi_square_tail;
+use crate::mismatch::select::ENOUGH;
+use crate::numeric::optimize::bisect;
+
+/// Probability with which an effect is to be noticed.
+const NOTICED: f64 = 0.95;
+/// Standard deviations below which a normal number stays with that probability.
+pub(super) const ONE_SIDED_95: f64 = 1.644_854;
+
+/// What an effect must pass.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Gate {
+    /// Rows of the recording.
+    pub rows: usize,
+    /// Effects that are looked for.
+    pub family: f64,
+    /// Probability at which a correct claim is called a mismatch.
+    pub alpha: f64,
+}
+
+impl Gate {
+    /// Least value of twice the gain with which an effect of so many parameters, looked for at so many independent
+    /// positions, is found.
+    pub fn threshold(&self, parameters: usize, trials: f64) -> f64 {
+        self.threshold_of(parameters, parameters, trials)
+    }
+
+    /// The same for an effect of which only so many coefficients gain by chance.
+    pub fn threshold_of(&self, parameters: usize, free: usize, trials: f64) -> f64 {
+        let worth = parameters as f64 * (self.rows.max(2) as f64).ln() + ENOUGH;
+        let chance = self.alpha / (self.family.max(1.0) * trials.max(1.0));
+        let free = free.max(1) as f64;
+        // A quantile so far out is found on the tail itself.
+        let far = bisect(0.0, 2000.0, 60, |x| chi_square_tail(x, free) > chance);
+        worth.max(far.middle())
+    }
+
+    /// What a root of twice the gain of some spread must be above the gate to pass it nearly always.
+    pub fn margin(&self, spread: f64) -> f64 {
+        ONE_SIDED_95 * spread
+    }
+
+    /// Twice the expected gain with which such an effect is found in 95 of 100 records. `spread` is the standard deviation
+    /// of the root of twice the gain: 1, and less where the claim's own uncertainty weighs against the effect.
+    pub fn needed(&self, parameters: usize, trials: f64, spread: f64) -> f64 {
+        let threshold = self.threshold(parameters, trials);
+        if parameters <= 1 {
+            return (threshold.sqrt() + self.margin(spread)).powi(2);
+        }
+        noncentrality(threshold, parameters)
+    }
+}
+
+/// Noncentrality at which χ² exceeds a threshold with a probability of 95 %.
+fn noncentrality(threshold: f64, dof: usize) -> f64 {
+    let high = (threshold.sqrt() + 2.0 * ONE_SIDED_95).powi(2);
+    bisect(0.0, high, 50, |noncentral| exceeds(threshold, dof, noncentral) < NOTICED).middle()
+}
+
+/// Probability that noncentral χ² exceeds a value: a Poisson mixture of central ones.
+fn exceeds(value: f64, dof: usize, noncentral: f64) -> f64 {
+    let half = 0.5 * noncentral;
+    let spread = 10.0 * half.sqrt() + 10.0;
+    let (first, last) = ((half - spread).max(0.0) as u64, (half + spread) as u64);
+    let ln_weight =
+        |j: u64| -half + j as f64 * half.max(1e-300).ln() - statrs::function::gamma::ln_gamma(j as f64 + 1.0);
+    (first..=last).map(|j| ln_weight(j).exp() * chi_square_tail(value, dof as f64 + 2.0 * j as f64)).sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const GATE: Gate = Gate { rows: 10_000, family: 40.0, alpha: 0.01 };
+
+    #[test]
+    fn the_gate_is_that_of_the_rows_or_that_of_chance() {
+        // ln 10 000 + 6 = 15.21; χ²₁ beyond 13.41 has a probability of 0.01/40.
+        assert!((GATE.threshold(1, 1.0) - 15.210_340).abs() < 1e-5);
+        // Looked for at 10 000 positions: probability 2.5e-8 of χ²₂ is −2 ln 2.5e-8 = 35.01, more than 2·9.21 + 6.
+        assert!((GATE.threshold(2, 1e4) - 35.008_86).abs() < 1e-3, "{}", GATE.threshold(2, 1e4));
+    }
+
+    #[test]
+    fn an_effect_beyond_the_gate_passes_it_in_95_of_100() {
+        // One degree of freedom in closed form: |x + √λ| > √T.
+        let needed = GATE.needed(1, 1.0, 1.0);
+        assert!((needed.sqrt() - 15.210_340f64.sqrt() - 1.644_854).abs() < 1e-6);
+        assert!((exceeds(15.210_340, 1, needed) - 0.95).abs() < 1e-6);
+        assert!(GATE.needed(1, 1.0, 0.2) < needed);
+        // Two degrees: Marcum's Q₁(√λ, √T) = 0.95 by its integral over a circle about the effect.
+        let needed = GATE.needed(2, 1.0, 1.0);
+        let threshold = GATE.threshold(2, 1.0).sqrt();
+        let steps = 400;
+        let mut inside = 0.0;
+        for i in 0..steps {
+            for j in 0..steps {
+                let at = |k: i32| -8.0 + 16.0 * (f64::from(k) + 0.5) / f64::from(steps);
+                let (x, y) = (at(i), at(j));
+                if (x + needed.sqrt()).hypot(y) < threshold {
+                    inside += (-0.5 * (x * x + y * y)).exp();
+                }
+            }
+        }
+        let inside = inside * (16.0 / f64::from(steps)).powi(2) / (2.0 * std::f64::consts::PI);
+        assert!((inside - 0.05).abs() < 1e-3, "{inside}");
+    }
+}
