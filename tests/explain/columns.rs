@@ -64,7 +64,8 @@ fn a_law_of_two_columns_is_unknown_with_its_formula_and_the_loop_closes() {
     assert!(formula.starts_with("0.0029") || formula.starts_with("0.0030"), "{formula}");
     assert!(formula.contains("d(pressure_hPa)/dt") && formula.contains("(temp_degC − "), "{formula}");
     let report = std::fs::read_to_string(dir.path().join("e/report.md")).unwrap();
-    assert!(report.contains(formula), "{report}");
+    // In Markdown an underscore is escaped.
+    assert!(report.replace('\\', "").contains(formula), "{report}");
 }
 
 #[test]
@@ -73,7 +74,7 @@ fn a_disturbance_that_a_recorded_ramp_folds_is_one_comb_with_its_column() {
     // The period of 40 s wanders by a tenth.
     let turns = |t: f64| t / 40.0 + 3.0 * (t / 900.0).sin();
     let columns = |t: f64| [turns(t).rem_euclid(1.0) * 32_767.0, 21.0 + (t / 800.0).sin()];
-    let course = |t: f64| 1.5 * (-turns(t).rem_euclid(1.0) / 0.15).exp();
+    let course = |t: f64| 1.5 * (3.0 * ((TAU * turns(t)).cos() - 1.0)).exp();
     let all = explained(dir.path(), ["ramp_counts", "temp_degC"], columns, course);
     let first = &all["effects"][0];
     assert_eq!(
@@ -92,7 +93,7 @@ fn an_oscillation_that_comes_and_goes_is_unknown_with_its_shape() {
     let mut text = String::from("time_s,rate_deg_h\n");
     for i in 0..16_000usize {
         let t = i as f64;
-        let packet = if t % 1600.0 < 160.0 { 0.45 * (TAU * 0.11 * t).sin() } else { 0.0 };
+        let packet = if t % 1600.0 < 160.0 { 1.2 * (TAU * 0.11 * t).sin() } else { 0.0 };
         let rate = 5.0 + 60.0 * N * white(17, i as u64) + packet;
         let _ = writeln!(text, "{t},{rate:.6}");
     }
