@@ -3,7 +3,7 @@
 use super::exit;
 use crate::output::Listed;
 use crate::record::explanation::Explanation;
-use crate::record::{LotRecord, RunRecord};
+use crate::record::{DataSheet, LotRecord, RunRecord};
 use clap::{Args, ValueEnum};
 
 #[derive(Debug, Args)]
@@ -30,6 +30,8 @@ pub enum SchemaKind {
     Explain,
     /// index.json of a lot
     Lot,
+    /// datasheet.json
+    Datasheet,
 }
 
 pub fn main(args: &SchemaArgs) -> Result<u8, String> {
@@ -40,6 +42,9 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Layout => crate::config::procedure::schema::layout(),
         SchemaKind::Model => crate::config::procedure::schema::model(),
         SchemaKind::Lot => serde_json::to_value(schemars::schema_for!(Listed<LotRecord>)).unwrap_or_default(),
+        SchemaKind::Datasheet => {
+            serde_json::to_value(schemars::schema_for!(Listed<DataSheet>)).unwrap_or_default()
+        }
         SchemaKind::Explain => {
             serde_json::to_value(schemars::schema_for!(Listed<Explanation>)).unwrap_or_default()
         }

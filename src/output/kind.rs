@@ -11,11 +11,14 @@ pub enum Kind {
     Explanation,
     /// A lot: an index, and a result folder for each unit.
     Lot,
+    /// The data sheet of a lot.
+    DataSheet,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 4] = [Kind::Result, Kind::Comparison, Kind::Explanation, Kind::Lot];
+    pub const ALL: [Kind; 5] =
+        [Kind::Result, Kind::Comparison, Kind::Explanation, Kind::Lot, Kind::DataSheet];
 
     /// The JSON file that a folder of this kind holds, and by which it is known.
     pub fn record_file(self) -> &'static str {
@@ -24,6 +27,7 @@ impl Kind {
             Kind::Comparison => "comparison.json",
             Kind::Explanation => "explain.json",
             Kind::Lot => "index.json",
+            Kind::DataSheet => "datasheet.json",
         }
     }
 
@@ -33,6 +37,7 @@ impl Kind {
             Kind::Result | Kind::Explanation => "report",
             Kind::Comparison => "comparison",
             Kind::Lot => "index",
+            Kind::DataSheet => "datasheet",
         }
     }
 
@@ -43,6 +48,7 @@ impl Kind {
             Kind::Comparison => "{\"format\":\"comparison/",
             Kind::Explanation => "{\"format\":\"explain/",
             Kind::Lot => "{\"format\":\"lot/",
+            Kind::DataSheet => "{\"format\":\"datasheet/",
         }
     }
 
@@ -58,6 +64,7 @@ impl Kind {
             Kind::Comparison => name == "comparison.csv",
             Kind::Explanation => matches!(name, "correction.csv" | "augmented.toml"),
             Kind::Lot => name == "index.csv",
+            Kind::DataSheet => name == "limits.toml",
         }
     }
 
@@ -68,6 +75,7 @@ impl Kind {
             Kind::Comparison => matches!(name, "comparison.html" | "comparison.md"),
             Kind::Explanation => matches!(name, "report.html" | "report.md"),
             Kind::Lot => matches!(name, "index.html" | "index.md" | "junit.xml"),
+            Kind::DataSheet => matches!(name, "datasheet.html" | "datasheet.md"),
         };
         page || name == "figures" || name == self.record_file() || self.is_table(name)
     }

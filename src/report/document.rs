@@ -1,6 +1,7 @@
 //! What is exported: a result, an explanation or a comparison, with its figures and tables, in one language.
 
 use super::compare::CompareView;
+use super::datasheet::SheetView;
 use super::explain::{ExplainFile, ExplainView};
 use super::lot::LotView;
 use super::render::{run_context, view_context};
@@ -12,7 +13,7 @@ use crate::acceptance::phases::figures as phase_figures;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::output::Kind;
-use crate::record::{LotRecord, RunRecord};
+use crate::record::{DataSheet, LotRecord, RunRecord};
 use minijinja::value::Value;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -38,6 +39,7 @@ enum Record<'a> {
     Explanation(&'a ExplainFile),
     Comparison(&'a Comparison),
     Lot(&'a LotRecord),
+    DataSheet(&'a DataSheet),
 }
 
 impl<'a> Document<'a> {
@@ -119,6 +121,23 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// The document of a data sheet.
+    pub fn of_datasheet(
+        sheet: &'a DataSheet,
+        figures: &'a [Figure],
+        tables: &'a [(String, String)],
+        lang: Lang,
+    ) -> Document<'a> {
+        Document {
+            lang,
+            context: view_context(&SheetView::new(sheet, figures, lang), lang),
+            template: "datasheet",
+            figures: figures.into(),
+            tables,
+            record: Record::DataSheet(sheet),
+        }
+    }
+
     /// The lot that the document is of.
     pub fn lot(&self) -> Option<&'a LotRecord> {
         match self.record {
@@ -134,6 +153,7 @@ impl<'a> Document<'a> {
             Record::Explanation(_) => Kind::Explanation,
             Record::Comparison(_) => Kind::Comparison,
             Record::Lot(_) => Kind::Lot,
+            Record::DataSheet(_) => Kind::DataSheet,
         }
     }
 
@@ -176,6 +196,9 @@ impl Results {
                 Document::of_comparison(comparison, figures, tables, lang)
             }
             Results::Lot(lot, tables) => Document::of_lot(lot, tables, lang),
+            Results::DataSheet(sheet, figures, tables) => {
+                Document::of_datasheet(sheet, figures, tables, lang)
+            }
         }
     }
 

@@ -5,14 +5,17 @@ use super::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
 use super::lot;
 use crate::acceptance::Outcome;
 use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, csv, figures};
+use crate::acceptance::datasheet;
 use crate::config::model;
 use crate::figure::Figure;
-use crate::i18n::Note;
+use crate::i18n::{Lang, Localize, Note};
 use crate::mismatch;
 use crate::output::Kind;
 use crate::record::explanation::Explanation;
 use crate::record::read::{self, ReadError};
-use crate::record::{FigureRecord, LOT_FORMAT, LotRecord, RESULT_FORMAT, RunRecord};
+use crate::record::{
+    DATASHEET_FORMAT, DataSheet, FigureRecord, LOT_FORMAT, LotRecord, RESULT_FORMAT, RunRecord,
+};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -82,6 +85,8 @@ pub enum Results {
     Comparison(Box<Comparison>, Vec<Figure>, Vec<(String, String)>),
     /// Of a lot: the record and tables. The results of its units stand in folders of their own.
     Lot(Box<LotRecord>, Vec<(String, String)>),
+    /// Of a data sheet: the record, figures and tables.
+    DataSheet(Box<DataSheet>, Vec<Figure>, Vec<(String, String)>),
 }
 
 impl Results {
@@ -98,6 +103,14 @@ impl Results {
         Results::Lot(Box::new(record), vec![("index.csv".into(), rows)])
     }
 
+    /// The results of a data sheet. The head of its limits file is in one language, as files of limits are.
+    pub fn of_datasheet(record: DataSheet) -> Results {
+        let head = Note::new("datasheet.limits_head").with("n", record.units).say(Lang::En);
+        let limits = datasheet::limits::limits_file(&record, &head);
+        let figures = datasheet::figures::all(&record);
+        Results::DataSheet(Box::new(record), figures, vec![("limits.toml".into(), limits)])
+    }
+
     /// What the folder of the results holds.
     pub fn kind(&self) -> Kind {
         match self {
@@ -105,6 +118,7 @@ impl Results {
             Results::Explanation(_) => Kind::Explanation,
             Results::Comparison(..) => Kind::Comparison,
             Results::Lot(..) => Kind::Lot,
+            Results::DataSheet(..) => Kind::DataSheet,
         }
     }
 
@@ -117,6 +131,7 @@ impl Results {
             }
             Results::Comparison(..) => None,
             Results::Lot(lot, _) => Some(&lot.procedure.id),
+            Results::DataSheet(sheet, ..) => sheet.model.as_deref(),
         }
     }
 }
@@ -141,7 +156,7 @@ struct Listing {
 }
 
 impl StoredResults {
-    /// Reads a `result.json`, `explain.json`, `comparison.json` or `index.json`, or the folder of one, with what stands beside it.
+    /// Reads a `result.json`, `explain.json`, `comparison.json`, `index.json` or `datasheet.json`, or the folder of one, with what stands beside it.
     ///
     /// # Errors
     /// A note that names the file and what is wrong with it.
@@ -159,6 +174,9 @@ impl StoredResults {
                 Results::of_comparison(read::of_format(&bytes, COMPARISON_FORMAT).map_err(wrong)?)
             }
             Some("lot") => Results::of_lot(read::of_format::<LotRecord>(&bytes, LOT_FORMAT).map_err(wrong)?),
+            Some("datasheet") => {
+                Results::of_datasheet(read::of_format(&bytes, DATASHEET_FORMAT).map_err(wrong)?)
+            }
             _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),
         };
         Ok(StoredResults { results, inputs: listing.inputs, missing: from.missing })

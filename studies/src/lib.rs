@@ -15,6 +15,7 @@ pub mod identification;
 pub mod index;
 pub mod influence;
 pub mod laboratory;
+pub mod lot_bounds;
 pub mod noise_source;
 pub mod pages;
 pub mod rate_table;
@@ -62,4 +63,5 @@ pub static STUDIES: &[&Study] = &[
     &explain::studies::CLOSED_LOOP,
     &explain::studies::OTHERS,
     &laboratory::study::STUDY,
+    &lot_bounds::STUDY,
 ];

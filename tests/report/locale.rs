@@ -59,6 +59,7 @@ const LISTED: &[(&str, &[&str])] = &[
             "input.simulation",
             "input.unit",
             "input.options",
+            "input.results",
         ],
     ),
     ("serial_from", &["manifest", "recording", "pattern", "file_name"]),
@@ -90,6 +91,9 @@ const OPEN: &[&str] = &[
     "stated",
     "goodness.view",
     "compare.column",
+    "datasheet.column",
+    "datasheet.condition",
+    "datasheet.method",
 ];
 
 /// A table that the tests of the command line hold against the command itself.

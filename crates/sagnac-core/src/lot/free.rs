@@ -5,8 +5,12 @@ use crate::estimate::normal_quantile;
 use crate::numeric::optimize::bisect;
 use statrs::function::beta::beta_reg;
 
-/// Points of the quadrature over the ratio of two order statistics.
-const POINTS: u32 = 400;
+/// Points of the quadrature over the ratio of two order statistics, and halvings of the search for a factor.
+const FINE: (u32, usize) = (400, 60);
+/// The same where factors are only compared.
+const COARSE: (u32, usize) = (60, 20);
+/// Ranks that are compared.
+const RANKS: usize = 12;
 
 /// The example of STAT-17 in CMH-17: 18 strengths.
 #[cfg(test)]
@@ -53,6 +57,10 @@ pub fn hanson_koopmans_upper(ascending: &[f64], promise: Promise) -> Option<f64>
 /// The factor of the bound of Hanson and Koopmans from the largest of `n` values and the one at `rank` below it, which is 1 for
 /// the largest. `None` for a rank that does not stand below the largest.
 pub fn hanson_koopmans_factor(n: usize, rank: usize, promise: Promise) -> Option<f64> {
+    factor(n, rank, promise, FINE)
+}
+
+fn factor(n: usize, rank: usize, promise: Promise, (points, halvings): (u32, usize)) -> Option<f64> {
     if rank < 2 || rank > n || units_for_largest(promise).is_none() {
         return None;
     }
@@ -61,8 +69,8 @@ pub fn hanson_koopmans_factor(n: usize, rank: usize, promise: Promise) -> Option
     let j = rank as f64;
     let share = 1.0 - promise.proportion;
     let confidence = |factor: f64| {
-        let total: f64 = (0..POINTS)
-            .map(|i| (f64::from(i) + 0.5) / f64::from(POINTS))
+        let total: f64 = (0..points)
+            .map(|i| (f64::from(i) + 0.5) / f64::from(points))
             .map(|v| {
                 // Points are drawn to both ends, where the integrand is steep.
                 let (at, weight) = (v * v * (3.0 - 2.0 * v), 6.0 * v * (1.0 - v));
@@ -71,14 +79,14 @@ pub fn hanson_koopmans_factor(n: usize, rank: usize, promise: Promise) -> Option
                 weight * beta_reg(j, (n + 1 - rank) as f64, most)
             })
             .sum();
-        total / f64::from(POINTS)
+        total / f64::from(points)
     };
     let below = |factor: f64| confidence(factor) < promise.confidence;
     let mut high = 2.0;
     while below(high) && high < 1e6 {
         high *= 2.0;
     }
-    Some(if below(1.0) { bisect(1.0, high, 60, below).middle() } else { 1.0 })
+    Some(if below(1.0) { bisect(1.0, high, halvings, below).middle() } else { 1.0 })
 }
 
 /// The rank whose bound comes closest to the quantile of a normal population.
@@ -86,11 +94,12 @@ fn best_rank(n: usize, promise: Promise) -> Option<usize> {
     let quantile = normal_quantile(promise.proportion);
     let score = |from_top: f64| normal_quantile((n as f64 + 1.0 - from_top - 0.375) / (n as f64 + 0.25));
     let miss = |rank: usize| {
-        let factor = hanson_koopmans_factor(n, rank, promise)?;
+        let factor = factor(n, rank, promise, COARSE)?;
         let low = score(rank as f64);
         Some((low + factor * (score(1.0) - low) - quantile).abs())
     };
     (2..=n)
+        .step_by((n / RANKS).max(1))
         .filter_map(|rank| miss(rank).map(|miss| (rank, miss)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(rank, _)| rank)

@@ -1,7 +1,7 @@
 //! The population that the units of a lot come from: its median, its spreads, and bounds that hold for a proportion of it.
 //!
 //! y = μ + lot + unit + error, the error of known deviation for each unit; a unit that is only bounded enters by the probability
-//! of a bound as low as its own. The distribution of μ and the variances given the values has a prior that gives the exact
+//! of a reading below its bound. The distribution of μ and the variances given the values has a prior that gives the exact
 //! tolerance factors and Student's intervals where errors are nothing (`restricted`). A bound is the quantile of the distribution of
 //! μ + z·σ.
 
@@ -42,12 +42,10 @@ pub enum Reading {
         /// Standard uncertainty.
         standard: f64,
     },
-    /// An upper confidence bound.
+    /// A reading that is only known to lie below a bound.
     AtMost {
         /// Bound.
         bound: f64,
-        /// Confidence in it.
-        coverage: f64,
         /// Standard uncertainty that a value of this unit would have.
         standard: f64,
     },
@@ -281,8 +279,7 @@ impl Unit {
     fn place(&self) -> f64 {
         match self.reading {
             Reading::Value { value, .. } => value,
-            // A bound of this coverage is this low with probability 1 − coverage where the true value is at the bound.
-            Reading::AtMost { bound, coverage, standard } => bound - normal_quantile(coverage) * standard,
+            Reading::AtMost { bound, .. } => bound,
         }
     }
 }

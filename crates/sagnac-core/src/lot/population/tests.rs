@@ -67,7 +67,7 @@ fn few_lots_have_the_bound_of_the_analysis_of_variance() {
         .collect();
     let found = Population::of(&all).unwrap();
     let distance = found.bound(Of::True, Side::Upper, PROMISE).unwrap().value - found.typical(0.95).value;
-    assert!((distance / by_variance - 1.0).abs() < 0.06, "{distance} is not {by_variance}");
+    assert!((distance / by_variance - 1.0).abs() < 0.1, "{distance} is not {by_variance}");
     assert!((1.5..3.0).contains(&found.between_lots().unwrap()), "{:?}", found.between_lots());
     // Of four lots the spread between them is not stated.
     let four: Vec<Unit> = all.into_iter().filter(|u| u.lot < 4).collect();
@@ -81,7 +81,7 @@ fn bounded_values_enter_as_the_likelihood_has_it() {
     let limit = low.iter().copied().fold(f64::NEG_INFINITY, f64::max) + 0.01;
     let reading = |v: f64, known: bool| match known {
         true => Reading::Value { value: v, standard: 1e-4 },
-        false => Reading::AtMost { bound: limit, coverage: 0.5, standard: 1e-4 },
+        false => Reading::AtMost { bound: limit, standard: 1e-4 },
     };
     let all: Vec<Unit> = high
         .iter()
