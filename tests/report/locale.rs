@@ -107,6 +107,9 @@ const NO_KEYS: &[&str] = &[
     "explain.test",
     "explain.view",
     "note.withheld",
+    "datasheet.column",
+    "datasheet.condition",
+    "datasheet.method",
     "unit.rec",
 ];
 
