@@ -63,8 +63,8 @@ pub use library::{Error, Explanation, Model, Noise, Procedure, Rate, Recording, 
 pub use record::UnitUnderTest;
 pub use report::export;
 pub use sagnac_core::{
-    claim, effect, estimate, figure, influence, measurand, mismatch, numeric, plan, rate_table, schedule,
-    temperature, units,
+    claim, effect, estimate, figure, influence, lot, measurand, mismatch, numeric, plan, rate_table,
+    schedule, temperature, units,
 };
 
 /// Noise of a gyro at rest: [`identify`](fn@identify) for samples in memory, and the methods that it is made of.

@@ -14,6 +14,7 @@ pub mod analysis;
 mod build_record;
 pub mod compare;
 pub mod condition;
+pub mod datasheet;
 pub mod explained;
 pub mod figures;
 pub mod inspect;

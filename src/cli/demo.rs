@@ -39,6 +39,7 @@ pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
         each: EachArgs::default(),
         limits: Some("sample-unit".into()),
         serial: Some("SN-0001".to_owned()),
+        lot: None,
         operator: None,
         station: None,
         out: Some(report),

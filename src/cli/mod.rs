@@ -4,6 +4,7 @@ mod analyze;
 mod check;
 mod columns;
 mod compare;
+mod datasheet;
 mod demo;
 mod each;
 mod effects;
@@ -90,6 +91,10 @@ enum Verb {
         sagnac compare --published"
     )]
     Compare(compare::CompareArgs),
+    /// Write the data sheet of a lot from the results of its units, with limits that it can keep
+    #[command(after_help = "Examples:\n  sagnac datasheet reports/*/result.json --out sheet\n  \
+        sagnac datasheet 'samples/lot/*/result.json' --proportion 0.99 --out sheet")]
+    Datasheet(datasheet::DatasheetArgs),
     /// Simulate a recording from a model: noise, mean, effects and columns, reproducible to the bit
     #[command(
         after_help = "Examples:\n  sagnac simulate samples/model-static.toml --out static.csv --duration 10h --seed 7\n  \
@@ -167,6 +172,7 @@ pub fn main() -> ExitCode {
         Verb::Analyze(args) => analyze::main(&args, lang),
         Verb::Report(args) => report::main(&args, lang),
         Verb::Compare(args) => compare::main(&args, lang),
+        Verb::Datasheet(args) => datasheet::main(&args, lang),
         Verb::Simulate(args) => simulate::main(&args, lang),
         Verb::Effects(args) => effects::main(&args, lang),
         Verb::Explain(args) => explain::main(&args, lang),

@@ -130,7 +130,7 @@ impl<'a> PhasedTest<'a> {
             family: self.phased.family.clone(),
             part: self.phased.part.clone(),
             revision: self.phased.part_revision.clone(),
-            lot: None,
+            lot: self.args.lot.clone(),
         }
     }
 

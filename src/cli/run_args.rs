@@ -23,6 +23,9 @@ pub struct RunArgs {
     /// Serial number of the unit under test
     #[arg(long, value_name = "SN", conflicts_with = "each")]
     pub serial: Option<String>,
+    /// Lot or batch of the unit, for data sheets
+    #[arg(long, value_name = "LOT")]
+    pub lot: Option<String>,
     /// Name of the operator
     #[arg(long, value_name = "NAME")]
     pub operator: Option<String>,

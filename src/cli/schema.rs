@@ -4,7 +4,7 @@ use super::exit;
 use crate::output::Listed;
 use crate::plan::Plan;
 use crate::record::explanation::Explanation;
-use crate::record::{LotRecord, RunRecord};
+use crate::record::{DataSheet, LotRecord, RunRecord};
 use clap::{Args, ValueEnum};
 
 #[derive(Debug, Args)]
@@ -37,6 +37,8 @@ pub enum SchemaKind {
     Schedule,
     /// alternatives.toml: what would explain a recording as well
     Alternatives,
+    /// datasheet.json
+    Datasheet,
 }
 
 pub fn main(args: &SchemaArgs) -> Result<u8, String> {
@@ -50,6 +52,9 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Alternatives => crate::config::procedure::schema::alternatives(),
         SchemaKind::Plan => serde_json::to_value(schemars::schema_for!(Listed<Plan>)).unwrap_or_default(),
         SchemaKind::Lot => serde_json::to_value(schemars::schema_for!(Listed<LotRecord>)).unwrap_or_default(),
+        SchemaKind::Datasheet => {
+            serde_json::to_value(schemars::schema_for!(Listed<DataSheet>)).unwrap_or_default()
+        }
         SchemaKind::Explain => {
             serde_json::to_value(schemars::schema_for!(Listed<Explanation>)).unwrap_or_default()
         }

@@ -114,7 +114,7 @@ impl<'a> SingleTest<'a> {
                 family: procedure.unit_under_test.family.clone().or(family),
                 part: procedure.unit_under_test.part.clone(),
                 revision: procedure.unit_under_test.revision.clone(),
-                lot: None,
+                lot: self.args.lot.clone(),
             },
             serial_of_recording: serial.of_recording,
             operator: self.args.operator.clone(),

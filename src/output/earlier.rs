@@ -40,6 +40,7 @@ impl Earlier {
             return in_the_way(match kind {
                 Kind::Result => "output_error.why.foreign".into(),
                 Kind::Lot => "output_error.why.foreign_lot".into(),
+                Kind::DataSheet => "output_error.why.foreign_datasheet".into(),
                 Kind::Comparison => "compare.more.foreign_folder".into(),
                 Kind::Explanation => "explain.error.foreign_folder".into(),
                 Kind::Plan => "plan.error.foreign_folder".into(),
@@ -90,6 +91,7 @@ impl Earlier {
                 let units = self.record.get("units").and_then(Value::as_array).map_or(0, Vec::len);
                 note("output_error.what.lot").with("n", units)
             }
+            Kind::DataSheet => note("output_error.what.datasheet"),
             Kind::Explanation => {
                 note("output_error.what.explanation").with("verdict", text("/verdict").unwrap_or_default())
             }

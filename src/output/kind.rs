@@ -13,11 +13,14 @@ pub enum Kind {
     Lot,
     /// The plan of the next test.
     Plan,
+    /// The data sheet of a lot.
+    DataSheet,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 5] = [Kind::Result, Kind::Comparison, Kind::Explanation, Kind::Lot, Kind::Plan];
+    pub const ALL: [Kind; 6] =
+        [Kind::Result, Kind::Comparison, Kind::Explanation, Kind::Lot, Kind::Plan, Kind::DataSheet];
 
     /// The JSON file that a folder of this kind holds, and by which it is known.
     pub fn record_file(self) -> &'static str {
@@ -27,6 +30,7 @@ impl Kind {
             Kind::Explanation => "explain.json",
             Kind::Lot => "index.json",
             Kind::Plan => "plan.json",
+            Kind::DataSheet => "datasheet.json",
         }
     }
 
@@ -36,6 +40,7 @@ impl Kind {
             Kind::Result | Kind::Explanation | Kind::Plan => "report",
             Kind::Comparison => "comparison",
             Kind::Lot => "index",
+            Kind::DataSheet => "datasheet",
         }
     }
 
@@ -47,6 +52,7 @@ impl Kind {
             Kind::Explanation => "{\"format\":\"explain/",
             Kind::Lot => "{\"format\":\"lot/",
             Kind::Plan => "{\"format\":\"plan/",
+            Kind::DataSheet => "{\"format\":\"datasheet/",
         }
     }
 
@@ -65,6 +71,7 @@ impl Kind {
             }
             Kind::Lot => name == "index.csv",
             Kind::Plan => name == "schedule.toml",
+            Kind::DataSheet => name == "limits.toml",
         }
     }
 
@@ -75,6 +82,7 @@ impl Kind {
             Kind::Comparison => matches!(name, "comparison.html" | "comparison.md"),
             Kind::Explanation | Kind::Plan => matches!(name, "report.html" | "report.md"),
             Kind::Lot => matches!(name, "index.html" | "index.md" | "junit.xml"),
+            Kind::DataSheet => matches!(name, "datasheet.html" | "datasheet.md"),
         };
         page || name == "figures" || name == self.record_file() || self.is_table(name)
     }

@@ -7,6 +7,7 @@
 mod check;
 mod comparison;
 mod context;
+mod datasheet;
 mod deviation;
 mod evidence;
 mod explained;
@@ -28,6 +29,12 @@ pub use comparison::{
     OctavesRecord, ParameterRecord, ShareRecord, WindowRecord,
 };
 pub use context::{ClauseRecord, ExclusionRecord, InstrumentRecord, OptionRecord, WaiverRecord};
+pub use datasheet::{
+    DATASHEET_FORMAT, DataSheet, InputLimit, InputMeasurand, InputUnit, SheetBound, SheetCondition,
+    SheetCurve, SheetInput, SheetLargest, SheetLimit, SheetOf, SheetPair, SheetPoint, SheetProcedure,
+    SheetQuantity, SheetResult, SheetScale, SheetShare, SheetSide, SheetSpread, SheetTypical, SheetUnitCurve,
+    SheetValue,
+};
 pub use deviation::DeviationRecord;
 pub use evidence::Evidence;
 pub use explained::ExplainedRecord;

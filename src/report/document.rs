@@ -1,6 +1,7 @@
 //! What is exported: a result, an explanation or a comparison, with its figures and tables, in one language.
 
 use super::compare::CompareView;
+use super::datasheet::SheetView;
 use super::explain::{ExplainFile, ExplainView};
 use super::lot::LotView;
 use super::plan::{PlanFile, PlanView};
@@ -13,7 +14,7 @@ use crate::acceptance::phases::figures as phase_figures;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::output::Kind;
-use crate::record::{LotRecord, RunRecord};
+use crate::record::{DataSheet, LotRecord, RunRecord};
 use minijinja::value::Value;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -40,6 +41,7 @@ enum Record<'a> {
     Comparison(&'a Comparison),
     Lot(&'a LotRecord),
     Plan(&'a PlanFile),
+    DataSheet(&'a DataSheet),
 }
 
 impl<'a> Document<'a> {
@@ -133,6 +135,23 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// The document of a data sheet.
+    pub fn of_datasheet(
+        sheet: &'a DataSheet,
+        figures: &'a [Figure],
+        tables: &'a [(String, String)],
+        lang: Lang,
+    ) -> Document<'a> {
+        Document {
+            lang,
+            context: view_context(&SheetView::new(sheet, figures, lang), lang),
+            template: "datasheet",
+            figures: figures.into(),
+            tables,
+            record: Record::DataSheet(sheet),
+        }
+    }
+
     /// The lot that the document is of.
     pub fn lot(&self) -> Option<&'a LotRecord> {
         match self.record {
@@ -149,6 +168,7 @@ impl<'a> Document<'a> {
             Record::Comparison(_) => Kind::Comparison,
             Record::Lot(_) => Kind::Lot,
             Record::Plan(_) => Kind::Plan,
+            Record::DataSheet(_) => Kind::DataSheet,
         }
     }
 
@@ -192,6 +212,9 @@ impl Results {
             }
             Results::Lot(lot, tables) => Document::of_lot(lot, tables, lang),
             Results::Plan(file, tables) => Document::of_plan(file, tables, lang),
+            Results::DataSheet(sheet, figures, tables) => {
+                Document::of_datasheet(sheet, figures, tables, lang)
+            }
         }
     }
 

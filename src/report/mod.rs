@@ -4,6 +4,7 @@
 //! templates, [`svg`] draws the figures. Nothing is measured or decided here, and no recording is needed.
 
 pub mod compare;
+pub mod datasheet;
 mod document;
 pub mod explain;
 pub mod export;

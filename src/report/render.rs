@@ -38,6 +38,8 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("compare.md", include_str!("../../templates/compare.md")),
     ("lot.html", include_str!("../../templates/lot.html")),
     ("lot.md", include_str!("../../templates/lot.md")),
+    ("datasheet.html", include_str!("../../templates/datasheet.html")),
+    ("datasheet.md", include_str!("../../templates/datasheet.md")),
     ("explain.html", include_str!("../../templates/explain.html")),
     ("explain.md", include_str!("../../templates/explain.md")),
     ("plan.html", include_str!("../../templates/plan.html")),

@@ -6,15 +6,18 @@ use super::lot;
 use super::plan::PlanFile;
 use crate::acceptance::Outcome;
 use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, csv, figures};
+use crate::acceptance::datasheet;
 use crate::config::{alternatives, model, schedule};
 use crate::figure::Figure;
-use crate::i18n::Note;
+use crate::i18n::{Lang, Localize, Note};
 use crate::mismatch;
 use crate::output::Kind;
 use crate::plan::record::PLAN_FORMAT;
 use crate::record::explanation::Explanation;
 use crate::record::read::{self, ReadError};
-use crate::record::{FigureRecord, LOT_FORMAT, LotRecord, RESULT_FORMAT, RunRecord};
+use crate::record::{
+    DATASHEET_FORMAT, DataSheet, FigureRecord, LOT_FORMAT, LotRecord, RESULT_FORMAT, RunRecord,
+};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -94,6 +97,8 @@ pub enum Results {
     Lot(Box<LotRecord>, Vec<(String, String)>),
     /// Of a plan: the record and its schedule.
     Plan(Box<PlanFile>, Vec<(String, String)>),
+    /// Of a data sheet: the record, figures and tables.
+    DataSheet(Box<DataSheet>, Vec<Figure>, Vec<(String, String)>),
 }
 
 impl Results {
@@ -117,6 +122,14 @@ impl Results {
         Results::Plan(Box::new(file), schedule.into_iter().collect())
     }
 
+    /// The results of a data sheet. The head of its limits file is in one language, as files of limits are.
+    pub fn of_datasheet(record: DataSheet) -> Results {
+        let head = Note::new("datasheet.limits_head").with("n", record.units).say(Lang::En);
+        let limits = datasheet::limits::limits_file(&record, &head);
+        let figures = datasheet::figures::all(&record);
+        Results::DataSheet(Box::new(record), figures, vec![("limits.toml".into(), limits)])
+    }
+
     /// What the folder of the results holds.
     pub fn kind(&self) -> Kind {
         match self {
@@ -125,6 +138,7 @@ impl Results {
             Results::Comparison(..) => Kind::Comparison,
             Results::Lot(..) => Kind::Lot,
             Results::Plan(..) => Kind::Plan,
+            Results::DataSheet(..) => Kind::DataSheet,
         }
     }
 
@@ -138,6 +152,7 @@ impl Results {
             Results::Comparison(..) => None,
             Results::Lot(lot, _) => Some(&lot.procedure.id),
             Results::Plan(file, _) => Some(file.plan.case.as_str()).filter(|c| !c.is_empty()),
+            Results::DataSheet(sheet, ..) => sheet.model.as_deref(),
         }
     }
 }
@@ -162,8 +177,8 @@ struct Listing {
 }
 
 impl StoredResults {
-    /// Reads a `result.json`, `explain.json`, `comparison.json`, `index.json` or `plan.json`, or the folder of one, with what
-    /// stands beside it.
+    /// Reads a `result.json`, `explain.json`, `comparison.json`, `index.json`, `plan.json` or `datasheet.json`, or the folder of
+    /// one, with what stands beside it.
     ///
     /// # Errors
     /// A note that names the file and what is wrong with it.
@@ -184,6 +199,9 @@ impl StoredResults {
                 Results::of_plan(read::of_format::<PlanFile>(&bytes, PLAN_FORMAT).map_err(wrong)?)
             }
             Some("lot") => Results::of_lot(read::of_format::<LotRecord>(&bytes, LOT_FORMAT).map_err(wrong)?),
+            Some("datasheet") => {
+                Results::of_datasheet(read::of_format(&bytes, DATASHEET_FORMAT).map_err(wrong)?)
+            }
             _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),
         };
         Ok(StoredResults { results, inputs: listing.inputs, missing: from.missing })

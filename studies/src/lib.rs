@@ -15,6 +15,7 @@ pub mod identification;
 pub mod index;
 pub mod influence;
 pub mod laboratory;
+pub mod lot_bounds;
 pub mod noise_source;
 pub mod noticeable;
 pub mod pages;
@@ -66,4 +67,5 @@ pub static STUDIES: &[&Study] = &[
     &laboratory::study::STUDY,
     &planned::STUDY,
     &noticeable::STUDY,
+    &lot_bounds::STUDY,
 ];

@@ -47,7 +47,7 @@ fn pages(all: &Explanation, lang: Lang) -> [String; 2] {
 
 #[test]
 fn every_kind_is_said_with_its_parameters() {
-    assert_eq!(fixture::KINDS.len(), 41, "the kinds of the contract but `unknown`");
+    assert_eq!(fixture::KINDS.len(), 42, "the kinds of the contract but `unknown`");
     for lang in Lang::ALL {
         for (kind, parameters) in fixture::KINDS {
             let all = fixture::explained(vec![fixture::of_kind(kind)]);

@@ -190,6 +190,9 @@ const LATIN: &[&str] = &[
     "join",
     "local",
     "lot",
+    "datasheet",
+    "sheet",
+    "proportion",
     "man",
     "mine",
     "share",
@@ -203,6 +206,9 @@ const LATIN: &[&str] = &[
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "explain.noticeable.at",
+    "explain.noticeable.beyond",
+    "explain.noticeable.parameter",
     "figure_influence.axis_name",
     "figure_positions.name",
     "figure_polar.angle",

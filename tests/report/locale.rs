@@ -60,6 +60,7 @@ const LISTED: &[(&str, &[&str])] = &[
             "input.simulation",
             "input.unit",
             "input.options",
+            "input.results",
         ],
     ),
     ("serial_from", &["manifest", "recording", "pattern", "file_name"]),
@@ -87,10 +88,15 @@ const OPEN: &[&str] = &[
     "option_value",
     "explain.columns",
     "explain.law",
+    "explain.noticeable",
+    "explain.shape",
     "explain.test",
     "stated",
     "goodness.view",
     "compare.column",
+    "datasheet.column",
+    "datasheet.condition",
+    "datasheet.method",
 ];
 
 /// A table that the tests of the command line hold against the command itself.
@@ -101,9 +107,14 @@ const NO_KEYS: &[&str] = &[
     "measurand.options",
     "explain.columns",
     "explain.law",
+    "explain.noticeable",
+    "explain.shape",
     "explain.test",
     "explain.view",
     "note.withheld",
+    "datasheet.column",
+    "datasheet.condition",
+    "datasheet.method",
     "unit.rec",
 ];
 

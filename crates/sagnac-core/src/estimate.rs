@@ -15,6 +15,7 @@ mod distribution;
 mod tail;
 
 pub use decision::{Judgement, Limit, Rule, Verdict, judge};
+pub(crate) use distribution::student_quantile;
 pub use distribution::{chi_square_quantile, normal_probability, normal_quantile};
 pub use tail::{
     chi_square_tail, chi_square_two_sided, ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided,

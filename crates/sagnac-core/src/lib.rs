@@ -10,6 +10,7 @@
 //! | | N, B, K, R, Q and other terms with intervals | [`noise::digest::RateAccumulator`], then [`noise::spectral_record::SpectralRecord`] |
 //! | an evidence by frequency | the same | [`noise::identification::identify`] |
 //! | a noise model | a record that has it | [`noise::simulate::Simulator`] |
+//! | values of the units of a lot | their median, spread and tolerance bounds | [`lot::population::Population`] |
 //! | an estimate and a limit | a verdict with its risk | [`estimate::judge`] |
 //! | a claim and a recording | why they differ | [`mismatch`] |
 //!
@@ -21,6 +22,7 @@
 //! | [`numeric`], [`units`] | numerical methods; units and their conversion |
 //! | [`estimate`] | an estimate with its confidence distribution, limits, decision rules, verdicts |
 //! | [`figure`] | plots as data |
+//! | [`lot`] | the population that the units of a lot come from |
 //! | [`recording`] | channels, their roles and units, and the blocks of samples that they deliver |
 //! | [`noise`] | a gyro at rest: Allan family, spectra, identification of noise terms, their simulation |
 //! | [`rate_table`], [`temperature`], [`influence`] | tests on a rate table, over temperature, under an influence |
@@ -39,6 +41,7 @@ pub mod estimate;
 pub mod figure;
 pub mod influence;
 pub mod local_text;
+pub mod lot;
 pub mod measurand;
 pub mod message;
 pub mod mismatch;

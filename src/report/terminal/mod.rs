@@ -2,6 +2,7 @@
 //!
 //! Texts from files are made visible before they are styled, so that only this module writes control sequences.
 
+mod datasheet;
 mod explanation;
 mod lot;
 mod plan;
@@ -10,6 +11,7 @@ mod screen;
 mod table;
 mod wrap;
 
+pub use datasheet::datasheet;
 pub use explanation::explanation;
 pub use lot::{lot, lot_unit};
 pub use plan::plan;

@@ -1,0 +1,99 @@
+//! Figures of a data sheet, as data.
+
+use crate::figure::{Axis, Figure, Layer, Panel, Scale, Style};
+use crate::i18n::Note;
+use crate::record::{DataSheet, SheetCurve, SheetOf, SheetQuantity, SheetScale};
+
+/// Every figure: σ(τ) of each channel, then the units of each quantity that has bounds.
+pub fn all(sheet: &DataSheet) -> Vec<Figure> {
+    let several =
+        sheet.quantities.iter().any(|q| Some(&q.channel) != sheet.quantities.first().map(|f| &f.channel));
+    let curves = sheet.curves.iter().map(|c| sigma_tau(c, several));
+    let drawn = sheet.quantities.iter().enumerate().filter(|(_, q)| !q.bounds.is_empty());
+    curves.chain(drawn.map(|(i, q)| units(q, i))).collect()
+}
+
+/// Id of the figure of a quantity.
+pub fn figure_id(place: usize) -> String {
+    format!("units_{}", place + 1)
+}
+
+fn axis(label: &'static str, unit: &str, scale: Scale) -> Axis {
+    Axis { label: label.into(), unit: unit.to_owned(), scale, range: None }
+}
+
+fn sigma_tau(curve: &SheetCurve, several: bool) -> Figure {
+    let mut layers = vec![];
+    let band = curve.points.iter().map(|p| (p.tau_s, p.low, p.high)).collect();
+    layers.push(Layer::Band { points: band, style: Style::Data, legend: "datasheet.legend.band".into() });
+    // One line for all units: a point that is no number breaks it.
+    let mut hairs: Vec<(f64, f64)> = vec![];
+    for unit in &curve.units {
+        hairs.extend(unit.points.iter().map(|[tau, deviation]| (*tau, *deviation)));
+        hairs.push((f64::NAN, f64::NAN));
+    }
+    layers.push(Layer::Line { points: hairs, style: Style::Muted, legend: "datasheet.legend.unit".into() });
+    let median = curve.points.iter().map(|p| (p.tau_s, p.median)).collect();
+    layers.push(Layer::Line { points: median, style: Style::Data, legend: "datasheet.legend.median".into() });
+    Figure {
+        id: format!("sigma_tau_{}", curve.channel),
+        title: "datasheet.figure.sigma_tau".into(),
+        channel: if several { curve.channel.clone() } else { String::new() },
+        panels: vec![Panel {
+            x: axis("axis.averaging_time", "s", Scale::Log),
+            y: axis("axis.allan_deviation", "deg/h", Scale::Log),
+            layers,
+        }],
+        remarks: vec![Note::new("datasheet.figure.sigma_tau_remark").with("n", curve.units.len())],
+    }
+}
+
+/// Every unit with its interval, the smallest first, with limit and bounds.
+fn units(q: &SheetQuantity, place: usize) -> Figure {
+    let mut order: Vec<_> = q.values.iter().collect();
+    let at = |v: &crate::record::SheetValue| v.value.or(v.upper_limit.map(|u| u.value)).unwrap_or(f64::NAN);
+    order.sort_by(|a, b| at(a).total_cmp(&at(b)));
+    let positive = |v: f64| q.scale == SheetScale::Linear || v > 0.0;
+    let (mut bars, mut values, mut bounded) = (vec![], vec![], vec![]);
+    for (i, v) in order.iter().enumerate() {
+        let x = (i + 1) as f64;
+        match (v.value, v.interval) {
+            (Some(value), interval) => {
+                values.push((x, value));
+                if let Some(interval) = interval {
+                    let low = if positive(interval.low) { interval.low } else { value };
+                    bars.extend([(x, low), (x, interval.high), (f64::NAN, f64::NAN)]);
+                }
+            }
+            (None, _) => bounded.push((x, at(v))),
+        }
+    }
+    let mut layers = vec![
+        Layer::Line { points: bars, style: Style::Muted, legend: "datasheet.legend.interval".into() },
+        Layer::Points { points: values, style: Style::Data, legend: "datasheet.legend.value".into() },
+    ];
+    if !bounded.is_empty() {
+        let legend = "datasheet.legend.bounded".into();
+        layers.push(Layer::Points { points: bounded, style: Style::SecondData, legend });
+    }
+    for b in q.bounds.iter().filter(|b| b.of == SheetOf::True) {
+        let legend = "datasheet.legend.bound".into();
+        layers.push(Layer::Horizontal { at: b.value, style: Style::Reference, legend });
+    }
+    let limits = q.limit.iter().flat_map(|l| [l.min, l.max]).flatten().filter(|l| positive(*l));
+    for at in limits {
+        layers.push(Layer::Horizontal { at, style: Style::Limit, legend: "datasheet.legend.limit".into() });
+    }
+    let scale = if q.scale == SheetScale::Log { Scale::Log } else { Scale::Linear };
+    Figure {
+        id: figure_id(place),
+        title: "datasheet.figure.units".into(),
+        channel: String::new(),
+        panels: vec![Panel {
+            x: axis("datasheet.axis.unit", "", Scale::Linear),
+            y: axis("datasheet.axis.value", &q.unit, scale),
+            layers,
+        }],
+        remarks: vec![],
+    }
+}

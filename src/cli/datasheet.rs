@@ -1,0 +1,108 @@
+//! `sagnac datasheet`: what the results of some units promise of the population that they come from.
+
+use super::finish::write;
+use super::inputs::Inputs;
+use super::options::OutputArgs;
+use super::place::OutputPlace;
+use super::printer::Printer;
+use super::{exit, place};
+use crate::acceptance::datasheet::{Refusal, TestedUnit, datasheet, select};
+use crate::i18n::{Lang, Note};
+use crate::ingest::each_of;
+use crate::lot::tolerance::Promise;
+use crate::output::Kind;
+use crate::record::{RESULT_FORMAT, SheetInput, read};
+use crate::report::datasheet::SheetView;
+use crate::report::export::EXPORTERS;
+use crate::report::{Results, terminal};
+use chrono::{SecondsFormat, Utc};
+use clap::Args;
+use sha2::{Digest, Sha256};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub struct DatasheetArgs {
+    /// Results of the units: result.json files, their folders, or quoted patterns of them
+    #[arg(required = true)]
+    results: Vec<PathBuf>,
+    /// Proportion of all units that a bound holds for
+    #[arg(long, value_name = "SHARE", default_value_t = 0.95)]
+    proportion: f64,
+    /// Confidence in a bound
+    #[arg(long, value_name = "PROBABILITY", default_value_t = 0.95)]
+    confidence: f64,
+    /// Output folder [default: named after the model and UTC time]
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
+    #[command(flatten)]
+    output: OutputArgs,
+}
+
+pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
+    let say = |note: Note| place::error(&note, lang);
+    let promise = Promise { proportion: args.proportion, confidence: args.confidence };
+    for (option, given) in [("--proportion", args.proportion), ("--confidence", args.confidence)] {
+        // Beyond this neither the sample nor the arithmetic tells anything.
+        if !(0.5..=0.9999).contains(&given) {
+            return Err(say(Note::new("datasheet.refused.probability")
+                .with("option", option)
+                .with("given", given.to_string())));
+        }
+    }
+    let renderer = args.output.renderer(lang)?;
+    let printer = Printer::new(&args.output, lang);
+    let now = Utc::now();
+    let mut files = vec![];
+    for named in &args.results {
+        match each_of(named) {
+            Ok(found) => files.extend(found.into_iter().map(|p| result_file(&p))),
+            Err(e) => return Err(crate::ingest::RecordingError::from(e).say(lang)),
+        }
+    }
+    let mut broken: Vec<Note> = vec![];
+    let mut read_units = vec![];
+    for file in &files {
+        match tested(file) {
+            Ok(unit) => read_units.push(unit),
+            Err(note) => {
+                place::eprint_diagnostic(&place::warning(&note, lang));
+                broken.push(note);
+            }
+        }
+    }
+    let mut selected = select(read_units).map_err(|refusal| match refusal {
+        Refusal::None => say("datasheet.refused.none".into()),
+        Refusal::Mixed(note) => say(note),
+    })?;
+    selected.notes.extend(broken);
+    let sheet = datasheet(selected, promise, now.to_rfc3339_opts(SecondsFormat::Secs, true));
+    let out = OutputPlace::new(args.out.as_deref(), "datasheet", sheet.model.as_deref(), now);
+    let folder = Inputs::new(args.output.force)
+        .files("results", &files)
+        .options(&(args.proportion, args.confidence))
+        .beside(args.output.templates.as_deref())
+        .begin(&out, Kind::DataSheet, lang)?;
+    let view = SheetView::new(&sheet, &[], lang);
+    let results = Results::of_datasheet(sheet);
+    let place = write(&results, folder, EXPORTERS, &renderer, lang)?;
+    printer.outcome(&place, Kind::DataSheet, |t| terminal::datasheet(&view, lang, t))?;
+    Ok(exit::PASS)
+}
+
+/// The result that a path stands for.
+fn result_file(path: &Path) -> PathBuf {
+    if path.is_dir() { path.join(Kind::Result.record_file()) } else { path.to_owned() }
+}
+
+/// The unit of a result.
+fn tested(file: &Path) -> Result<TestedUnit, Note> {
+    let bytes = read::bytes(file).map_err(|e| e.note(file))?;
+    let input: SheetInput = read::of_format(&bytes, RESULT_FORMAT).map_err(|e| e.note(file))?;
+    let path = file.display().to_string();
+    let serial = input.unit_under_test.serial.as_deref().map(str::trim).unwrap_or_default().to_owned();
+    if serial.is_empty() {
+        return Err(Note::new("datasheet.refused.no_serial").with("path", path));
+    }
+    let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+    Ok(TestedUnit { serial, path, sha256, input })
+}

@@ -1,0 +1,382 @@
+//! The data sheet of a lot, as `datasheet.json` holds it; and what it needs of a result, by whatever program it was written.
+
+use super::{DeviationRecord, Message, Program};
+use crate::estimate::{Interval, UpperLimit, Verdict};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Version of the format of a data sheet.
+pub const DATASHEET_FORMAT: &str = "datasheet/1";
+
+/// A whole data sheet.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct DataSheet {
+    /// Always `datasheet/1`.
+    pub format: String,
+    /// The program that wrote this.
+    pub program: Program,
+    /// When, RFC 3339, UTC.
+    pub made_at: String,
+    /// Model of the units; absent where no result names one.
+    pub model: Option<String>,
+    /// The procedure that every unit was tested by.
+    pub procedure: SheetProcedure,
+    /// Units that count.
+    pub units: usize,
+    /// Lots that they are of; units without a lot are of one.
+    pub lots: usize,
+    /// What must be known of the sheet as a whole.
+    pub notes: Vec<Message>,
+    /// Under which conditions the values were measured, as far as the results tell.
+    pub conditions: Vec<SheetCondition>,
+    /// The quantities, in the order of the first result.
+    pub quantities: Vec<SheetQuantity>,
+    /// Russian beside Allan values.
+    pub pairs: Vec<SheetPair>,
+    /// σ(τ) of the lot, by channel.
+    pub curves: Vec<SheetCurve>,
+    /// The results that count, each with its hash.
+    pub results: Vec<SheetResult>,
+}
+
+/// Identity of a procedure.
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+pub struct SheetProcedure {
+    /// Id.
+    #[serde(default)]
+    pub id: String,
+    /// Revision; several are joined by commas.
+    #[serde(default)]
+    pub revision: String,
+}
+
+/// A condition with what the results tell of it.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetCondition {
+    /// Id: `duration_s`, `warm_up_s`.
+    pub id: String,
+    /// Smallest of all units.
+    pub from: f64,
+    /// Largest.
+    pub to: f64,
+    /// How many units tell it.
+    pub units: usize,
+}
+
+/// A scale on which units scatter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SheetScale {
+    /// The natural logarithm.
+    Log,
+    /// The value itself.
+    Linear,
+}
+
+/// One quantity.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetQuantity {
+    /// Measurand.
+    pub id: String,
+    /// Channel.
+    pub channel: String,
+    /// Phase that it is of, in a test of several.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase: Option<String>,
+    /// Unit.
+    pub unit: String,
+    /// Units that count, bounded ones among them.
+    pub units: usize,
+    /// Lots that they are of.
+    pub lots: usize,
+    /// Units of which the quantity is only bounded.
+    pub bounded: usize,
+    /// Scale of the spread.
+    pub scale: SheetScale,
+    /// Median of the true values; absent where it cannot be told.
+    pub typical: Option<SheetTypical>,
+    /// Spreads; absent with the median.
+    pub spread: Option<SheetSpread>,
+    /// Bounds for a proportion of the population.
+    pub bounds: Vec<SheetBound>,
+    /// The largest value measured (of signed quantities the furthest from zero).
+    pub largest: Option<SheetLargest>,
+    /// The limit of the results, where they have the same.
+    pub limit: Option<SheetLimit>,
+    /// The probability that a normal sample fits worse on this scale; absent where it was not judged.
+    pub normality: Option<f64>,
+    /// What was measured of each unit.
+    pub values: Vec<SheetValue>,
+    /// What must be known with the quantity.
+    pub notes: Vec<Message>,
+}
+
+/// The median of the true values of the population.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetTypical {
+    /// Estimate.
+    pub value: f64,
+    /// Interval.
+    pub interval: Interval,
+}
+
+/// Standard deviations on the scale of the quantity.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetSpread {
+    /// Of true values of units of one lot.
+    pub between_units: f64,
+    /// Of the means of lots; `null` where there are too few.
+    pub between_lots: Option<f64>,
+    /// Of the measurement: root mean square of the standard uncertainties.
+    pub measurement: f64,
+}
+
+/// What a bound is for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SheetOf {
+    /// True values.
+    True,
+    /// Values as a test will give them.
+    Measured,
+}
+
+/// Where a bound lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum SheetSide {
+    /// Values lie at or below it.
+    Upper,
+    /// Values lie at or above it.
+    Lower,
+}
+
+/// A bound for a proportion of the population.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetBound {
+    /// True or measured values.
+    pub of: SheetOf,
+    /// Upper or lower.
+    pub side: SheetSide,
+    /// The bound.
+    pub value: f64,
+    /// Proportion of the population.
+    pub proportion: f64,
+    /// Confidence.
+    pub confidence: f64,
+    /// `exact_normal`, `normal_with_errors`, `order_statistic`, `hanson_koopmans`.
+    pub method: String,
+}
+
+/// The largest value.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetLargest {
+    /// Value.
+    pub value: f64,
+    /// Serial number of its unit.
+    pub serial: String,
+}
+
+/// A limit that the units were judged by.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetLimit {
+    /// Lower limit.
+    #[serde(default)]
+    pub min: Option<f64>,
+    /// Upper limit.
+    #[serde(default)]
+    pub max: Option<f64>,
+    /// Percentage of units whose true value lies above the upper limit; absent without one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub share_above: Option<SheetShare>,
+}
+
+/// A share of the population.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetShare {
+    /// Estimate, between 0 and 1.
+    pub value: f64,
+    /// Interval.
+    pub interval: Interval,
+}
+
+/// What was measured of one unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetValue {
+    /// Serial number.
+    pub serial: String,
+    /// Lot.
+    pub lot: Option<String>,
+    /// Value; absent where the quantity is only bounded.
+    pub value: Option<f64>,
+    /// Its interval.
+    pub interval: Option<Interval>,
+    /// Bound where there is no value.
+    pub upper_limit: Option<UpperLimit>,
+}
+
+/// A Russian value beside an Allan one.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetPair {
+    /// Channel.
+    pub channel: String,
+    /// Measurand of the Russian value.
+    pub russian: String,
+    /// Its median.
+    pub russian_value: f64,
+    /// Measurand of the Allan value.
+    pub allan: String,
+    /// Its median.
+    pub allan_value: f64,
+    /// Unit of both.
+    pub unit: String,
+    /// Median of the ratios of single units.
+    pub ratio: f64,
+    /// Smallest and largest of these ratios.
+    pub range: [f64; 2],
+    /// Units that have both.
+    pub units: usize,
+}
+
+/// The overlapping Allan deviation of the lot, deg/h.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetCurve {
+    /// Channel.
+    pub channel: String,
+    /// Points of the lot, by averaging time.
+    pub points: Vec<SheetPoint>,
+    /// The curves of the units.
+    pub units: Vec<SheetUnitCurve>,
+}
+
+/// One averaging time.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetPoint {
+    /// Averaging time, s.
+    pub tau_s: f64,
+    /// Units that have it.
+    pub units: usize,
+    /// Median, deg/h.
+    pub median: f64,
+    /// 16 % of the units lie below, deg/h.
+    pub low: f64,
+    /// 84 % lie below, deg/h.
+    pub high: f64,
+}
+
+/// The curve of one unit.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetUnitCurve {
+    /// Serial number.
+    pub serial: String,
+    /// Averaging times in s and deviations in deg/h.
+    pub points: Vec<[f64; 2]>,
+}
+
+/// A result that counts.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetResult {
+    /// Serial number of the unit.
+    pub serial: String,
+    /// Lot.
+    pub lot: Option<String>,
+    /// Verdict of the unit.
+    pub verdict: Verdict,
+    /// The file as named.
+    pub path: String,
+    /// SHA-256 of the file.
+    pub sha256: String,
+}
+
+/// What a data sheet reads of a `result/1`. Programs other than this one write no more than the first four fields.
+#[derive(Debug, Clone, Deserialize)]
+pub struct SheetInput {
+    /// The procedure.
+    #[serde(default)]
+    pub procedure: Option<SheetProcedure>,
+    /// The unit.
+    pub unit_under_test: InputUnit,
+    /// Its verdict.
+    pub verdict: Verdict,
+    /// What was measured.
+    pub measurands: Vec<InputMeasurand>,
+    /// When it was evaluated.
+    #[serde(default)]
+    pub session: Option<InputSession>,
+    /// What was evaluated.
+    #[serde(default)]
+    pub window: Option<crate::recording::window::Window>,
+    /// Points of the Allan family.
+    #[serde(default)]
+    pub deviations: Vec<DeviationRecord>,
+}
+
+/// The unit of a result.
+#[derive(Debug, Clone, Default, Deserialize)]
+pub struct InputUnit {
+    /// Serial number.
+    #[serde(default)]
+    pub serial: Option<String>,
+    /// Family.
+    #[serde(default)]
+    pub family: Option<String>,
+    /// Model.
+    #[serde(default)]
+    pub model: Option<String>,
+    /// Lot.
+    #[serde(default)]
+    pub lot: Option<String>,
+}
+
+/// When a result was made.
+#[derive(Debug, Clone, Default, Deserialize)]
+pub struct InputSession {
+    /// RFC 3339.
+    #[serde(default)]
+    pub evaluated_at: Option<String>,
+}
+
+/// A measurand of a result.
+#[derive(Debug, Clone, Deserialize)]
+pub struct InputMeasurand {
+    /// Id.
+    pub id: String,
+    /// Channel.
+    #[serde(default)]
+    pub channel: String,
+    /// Phase.
+    #[serde(default)]
+    pub phase: Option<String>,
+    /// Unit.
+    #[serde(default)]
+    pub unit: String,
+    /// Value.
+    #[serde(default)]
+    pub value: Option<f64>,
+    /// Its interval.
+    #[serde(default)]
+    pub interval: Option<Interval>,
+    /// False where the quantity is only bounded.
+    #[serde(default)]
+    pub identifiable: Option<bool>,
+    /// The bound.
+    #[serde(default)]
+    pub upper_limit: Option<UpperLimit>,
+    /// Where the likelihood is largest where it is only bounded.
+    #[serde(default)]
+    pub most_likely: Option<f64>,
+    /// The limit that it was judged by.
+    #[serde(default)]
+    pub limit: Option<InputLimit>,
+}
+
+/// A limit of a result.
+#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+pub struct InputLimit {
+    /// Lower limit.
+    #[serde(default)]
+    pub min: Option<f64>,
+    /// Upper limit.
+    #[serde(default)]
+    pub max: Option<f64>,
+}

@@ -1,0 +1,188 @@
+//! A quantity of a data sheet, printed.
+
+use crate::i18n::Localize;
+use crate::record::{SheetBound, SheetOf, SheetQuantity, SheetScale, SheetSide};
+use crate::report::number::{Rounding, bound, count, limit_digits};
+use crate::report::translator::Translator;
+use crate::report::view::FigureView;
+use serde::Serialize;
+
+/// A quantity over the lot.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct QuantityView {
+    /// Name, with its phase and channel where there are several.
+    pub name: String,
+    /// Units that count, and how many are only bounded, in words.
+    pub units: String,
+    /// Median with its unit; empty where it cannot be told.
+    pub typical: String,
+    /// Its interval.
+    pub interval: String,
+    /// Spread between units.
+    pub between_units: String,
+    /// Spread between lots.
+    pub between_lots: String,
+    /// Spread of the measurement.
+    pub measurement: String,
+    /// Bounds for true values, with their unit.
+    pub bound_true: String,
+    /// Bounds for measured values.
+    pub bound_measured: String,
+    /// Each bound with what it means.
+    pub bounds: Vec<BoundView>,
+    /// Largest value with the serial number of its unit.
+    pub largest: String,
+    /// Limit of the results; empty where there is none.
+    pub limit: String,
+    /// What the number of the quantity means, in sentences.
+    pub meaning: Vec<String>,
+    /// What must be known with it.
+    pub notes: Vec<String>,
+    /// The units with their intervals.
+    pub figure: Option<FigureView>,
+}
+
+/// A bound, printed.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct BoundView {
+    /// The bound with its unit.
+    pub value: String,
+    /// How it was obtained, in words.
+    pub method: String,
+    /// What it promises, in a sentence.
+    pub meaning: String,
+}
+
+impl QuantityView {
+    /// Builds the view; `several` where the channel must be named.
+    pub(super) fn new(
+        q: &SheetQuantity,
+        several: bool,
+        figure: Option<FigureView>,
+        words: Translator,
+    ) -> QuantityView {
+        let name = [Some(words.name("measurand", &q.id)), q.phase.clone()];
+        let name = name.into_iter().flatten().chain(several.then(|| q.channel.clone()));
+        let rounding =
+            q.typical.as_ref().map(|t| Rounding::of(t.value, Some((t.interval.low, t.interval.high))));
+        let show =
+            |v: f64| rounding.map_or_else(|| limit_digits(v, 4, words.lang), |r| r.show(v, words.lang));
+        let spread = |v: f64| spread_text(q, v, words);
+        let units = count(q.units as u64, words.lang);
+        QuantityView {
+            name: name.collect::<Vec<_>>().join(" · "),
+            units: match q.bounded {
+                0 => units,
+                n => words.with("datasheet.units_bounded", &[("n", &units), ("bounded", &n.to_string())]),
+            },
+            typical: q.typical.as_ref().map_or_else(String::new, |t| words.quantity(&show(t.value), &q.unit)),
+            interval: q.typical.as_ref().map_or_else(String::new, |t| {
+                let (low, high) = (show(t.interval.low), show(t.interval.high));
+                words.with("datasheet.span", &[("from", &low), ("to", &high)])
+            }),
+            between_units: q.spread.as_ref().map_or_else(String::new, |s| spread(s.between_units)),
+            between_lots: q.spread.as_ref().and_then(|s| s.between_lots).map_or_else(String::new, spread),
+            measurement: q.spread.as_ref().map_or_else(String::new, |s| spread(s.measurement)),
+            bound_true: bound_text(q, SheetOf::True, words),
+            bound_measured: bound_text(q, SheetOf::Measured, words),
+            bounds: q.bounds.iter().map(|b| bound_view(q, b, words)).collect(),
+            largest: q.largest.as_ref().map_or_else(String::new, |l| {
+                let value = words.quantity(&show(l.value), &q.unit);
+                words.with("datasheet.of_unit", &[("value", &value), ("serial", &l.serial)])
+            }),
+            limit: limit_text(q, words),
+            meaning: meaning(q, words),
+            notes: q.notes.iter().map(|n| n.say(words.lang)).collect(),
+            figure: figure.map(|f| FigureView { title: words.name("measurand", &q.id), ..f }),
+        }
+    }
+}
+
+/// A spread: of logarithms as a factor in percent, else with the unit.
+fn spread_text(q: &SheetQuantity, value: f64, words: Translator) -> String {
+    match q.scale {
+        SheetScale::Log => format!("{}\u{202f}%", limit_digits(100.0 * value.exp_m1(), 2, words.lang)),
+        SheetScale::Linear => words.quantity(&limit_digits(value, 2, words.lang), &q.unit),
+    }
+}
+
+fn one(q: &SheetQuantity, b: &SheetBound, words: Translator) -> String {
+    let upper = b.side == SheetSide::Upper;
+    let sign = if upper { '≤' } else { '≥' };
+    format!("{sign}\u{202f}{}", words.quantity(&bound(b.value, upper, words.lang), &q.unit))
+}
+
+/// The bounds of a kind, lower before upper.
+fn bound_text(q: &SheetQuantity, of: SheetOf, words: Translator) -> String {
+    let on = |side: SheetSide| q.bounds.iter().find(|b| b.of == of && b.side == side);
+    let both = [on(SheetSide::Lower), on(SheetSide::Upper)];
+    both.into_iter().flatten().map(|b| one(q, b, words)).collect::<Vec<_>>().join("; ")
+}
+
+fn bound_view(q: &SheetQuantity, b: &SheetBound, words: Translator) -> BoundView {
+    let key = match (b.of, b.side) {
+        (SheetOf::True, SheetSide::Upper) => "datasheet.meaning.true_upper",
+        (SheetOf::True, SheetSide::Lower) => "datasheet.meaning.true_lower",
+        (SheetOf::Measured, SheetSide::Upper) => "datasheet.meaning.measured_upper",
+        (SheetOf::Measured, SheetSide::Lower) => "datasheet.meaning.measured_lower",
+    };
+    let percent = |p: f64| limit_digits(100.0 * p, 4, words.lang);
+    let value = words.quantity(&bound(b.value, b.side == SheetSide::Upper, words.lang), &q.unit);
+    BoundView {
+        value: one(q, b, words),
+        method: words.name("datasheet.method", &b.method),
+        meaning: words.with(
+            key,
+            &[
+                ("value", &value),
+                ("proportion", &percent(b.proportion)),
+                ("confidence", &percent(b.confidence)),
+            ],
+        ),
+    }
+}
+
+fn limit_text(q: &SheetQuantity, words: Translator) -> String {
+    let Some(limit) = q.limit else { return String::new() };
+    let side = |v: f64, sign: char| {
+        format!("{sign}\u{202f}{}", words.quantity(&crate::report::number::limit(v, words.lang), &q.unit))
+    };
+    let both = [limit.min.map(|v| side(v, '≥')), limit.max.map(|v| side(v, '≤'))];
+    both.into_iter().flatten().collect::<Vec<_>>().join("; ")
+}
+
+/// What the numbers of the quantity mean.
+fn meaning(q: &SheetQuantity, words: Translator) -> Vec<String> {
+    let (Some(typical), Some(spread)) = (&q.typical, &q.spread) else { return vec![] };
+    let digits = |v: f64| limit_digits(v, 3, words.lang);
+    let unit = |v: f64| words.quantity(&digits(v), &q.unit);
+    let mut out = vec![words.with(
+        "datasheet.meaning.typical",
+        &[
+            ("value", &unit(typical.value)),
+            ("low", &digits(typical.interval.low)),
+            ("high", &unit(typical.interval.high)),
+            ("coverage", &digits(100.0 * typical.interval.coverage)),
+        ],
+    )];
+    out.push(words.with(
+        "datasheet.meaning.spread",
+        &[
+            ("units", &spread_text(q, spread.between_units, words)),
+            ("measurement", &spread_text(q, spread.measurement, words)),
+        ],
+    ));
+    if let Some((max, share)) = q.limit.and_then(|l| Some((l.max?, l.share_above?))) {
+        let percent = |p: f64| crate::report::number::percent(p, words.lang);
+        out.push(words.with(
+            "datasheet.meaning.limit",
+            &[
+                ("limit", &words.quantity(&crate::report::number::limit(max, words.lang), &q.unit)),
+                ("share", &percent(share.value)),
+                ("low", &percent(share.interval.low)),
+                ("high", &percent(share.interval.high)),
+            ],
+        ));
+    }
+    out
+}
