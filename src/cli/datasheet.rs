@@ -23,7 +23,7 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub struct DatasheetArgs {
     /// Results of the units: result.json files, their folders, or quoted patterns of them
-    #[arg(required = true)]
+    #[arg(required = true, value_name = "RESULT")]
     results: Vec<PathBuf>,
     /// Proportion of all units that a bound holds for
     #[arg(long, value_name = "SHARE", default_value_t = 0.95)]

@@ -93,7 +93,7 @@ enum Verb {
     Compare(compare::CompareArgs),
     /// Write the data sheet of a lot from the results of its units, with limits that it can keep
     #[command(after_help = "Examples:\n  sagnac datasheet reports/*/result.json --out sheet\n  \
-        sagnac datasheet 'samples/lot/*/result.json' --proportion 0.99 --out sheet")]
+        sagnac datasheet 'samples/lot/*/result.json' --lang ru --out sheet")]
     Datasheet(datasheet::DatasheetArgs),
     /// Simulate a recording from a model: noise, mean, effects and columns, reproducible to the bit
     #[command(

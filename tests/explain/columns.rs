@@ -1,5 +1,5 @@
-//! What several recorded columns do together, what a recorded ramp folds, and what recurs without a name: named, stated and consistent
-//! with what was stated.
+//! What several recorded columns do together, and what a recorded ramp folds: named, stated and consistent with what was
+//! stated.
 
 use super::{N, json};
 use crate::support::sagnac;
@@ -85,26 +85,4 @@ fn a_disturbance_that_a_recorded_ramp_folds_is_one_comb_with_its_column() {
     let fundamental = first["parameters"]["fundamental_hz"]["value"].as_f64().unwrap();
     assert!((fundamental - 1.0 / 40.0).abs() < 0.001, "{first}");
     assert!(first["probabilities"]["comb"].as_f64().unwrap() > 0.9, "{first}");
-}
-
-#[test]
-fn an_oscillation_that_comes_and_goes_is_unknown_with_its_shape() {
-    let dir = tempdir().unwrap();
-    let mut text = String::from("time_s,rate_deg_h\n");
-    for i in 0..16_000usize {
-        let t = i as f64;
-        let packet = if t % 1600.0 < 160.0 { 1.2 * (TAU * 0.11 * t).sin() } else { 0.0 };
-        let rate = 5.0 + 60.0 * N * white(17, i as u64) + packet;
-        let _ = writeln!(text, "{t},{rate:.6}");
-    }
-    std::fs::write(dir.path().join("r.csv"), text).unwrap();
-    std::fs::write(dir.path().join("model.toml"), super::MODEL).unwrap();
-    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
-    assert_eq!(said.code, 3, "{said:?}");
-    let all = json(&dir.path().join("e/explain.json"));
-    let [only] = all["effects"].as_array().unwrap().as_slice() else { panic!("{all}") };
-    assert_eq!((only["kind"].as_str(), only["shape"]["form"].as_str()), (Some("unknown"), Some("episodes")));
-    let band = only["where"].as_array().unwrap().iter().find(|p| p["domain"] == "frequency").unwrap();
-    assert!(band["from"].as_f64().unwrap() < 0.11 && band["to"].as_f64().unwrap() > 0.11, "{band}");
-    assert!(said.out.contains("comes and goes"), "{}", said.out);
 }

@@ -14,12 +14,15 @@ const LISTED: &[(&str, &[&str])] = &[
     (
         "terminal_column",
         &[
+            "effect",
             "interval",
             "limit",
             "margin",
             "met",
+            "noticed_from",
             "parameter",
             "phase",
+            "place",
             "quantity",
             "read",
             "recording",
