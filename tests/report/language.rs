@@ -192,7 +192,6 @@ const LATIN: &[&str] = &[
     "lot",
     "datasheet",
     "sheet",
-    "proportion",
     "man",
     "mine",
     "share",
@@ -206,6 +205,8 @@ const LATIN: &[&str] = &[
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "datasheet.of_unit",
+    "help.schema.value.kind.datasheet",
     "explain.noticeable.at",
     "explain.noticeable.beyond",
     "explain.noticeable.parameter",
