@@ -162,5 +162,5 @@ fn explained(series: Series, claim: &Claim) -> Option<Explanation> {
 
 fn loaded(place: Place) -> Claim {
     let read = sagnac::config::model::parse("model.toml", claim(place).as_bytes());
-    read.map(|m| m.claim).ok().expect("a claim that can be read")
+    read.map(|m| m.claim).unwrap_or_else(|_| panic!("the claim cannot be read"))
 }
