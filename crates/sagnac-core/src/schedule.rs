@@ -68,11 +68,11 @@ pub enum Step {
         /// Times.
         count: u32,
     },
-    /// The table stands at each of some angles in turn.
+    /// The table dwells at each of several angles in turn.
     Headings {
         /// Angles, deg.
         angles_deg: Vec<f64>,
-        /// How long it stands at each, s.
+        /// Dwell time at each, s.
         dwell_s: f64,
         /// Times.
         count: u32,

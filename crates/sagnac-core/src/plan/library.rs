@@ -13,7 +13,7 @@ const SPANS: [f64; 3] = [1.0, 0.5, 0.25];
 const SOAKS_H: [f64; 2] = [0.5, 1.5];
 /// Times that a table holds a rate, s.
 const DWELLS_S: [f64; 3] = [120.0, 300.0, 900.0];
-/// Times that a table stands at an angle, s.
+/// Dwell times of the table at an angle, s.
 const HEADING_DWELLS_S: [f64; 3] = [300.0, 900.0, 1800.0];
 /// Lengths of a rest, h.
 const RESTS_H: [f64; 2] = [0.25, 1.0];

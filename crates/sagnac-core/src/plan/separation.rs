@@ -201,8 +201,8 @@ impl Decision {
     }
 }
 
-/// Whether a truth is found at all: its gain over the claim passes the gates of an explanation. A truth that shows nothing
-/// is told by what is not found.
+/// Whether a truth is found at all: its gain over the claim passes the gates of an explanation. A truth without an
+/// effect is found if nothing is named.
 pub(super) fn found(truth: &Shown, claim: &Claim, trial: &Trial, asked: f64) -> Decision {
     if truth.effect.is_none() {
         return Decision::certain(1.0 - ALPHA);
