@@ -13,7 +13,7 @@ pub struct Probable {
 }
 
 /// Physics differs from the formulas that are fitted, by more where it is better seen: log-likelihoods that differ by less than this
-/// share of the gain do not tell names apart. From the reliability of names on the development half of the laboratory.
+/// share of the gain do not tell names apart. Chosen, not fitted: reliability has not been measured yet.
 const MODEL_ERROR: f64 = 0.04;
 /// What names share at least, nats.
 const LEAST: f64 = 1.0;
