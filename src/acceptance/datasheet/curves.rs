@@ -1,6 +1,7 @@
 //! σ(τ) of the units of a lot.
 
 use super::units::TestedUnit;
+use crate::numeric::order::quantile;
 use crate::record::{SheetCurve, SheetPoint, SheetUnitCurve};
 
 /// The estimator whose curves are taken.
@@ -56,26 +57,4 @@ fn point(tau_s: f64, curves: &[SheetUnitCurve]) -> Option<SheetPoint> {
     let median = quantile(&all, 0.5)?;
     let (low, high) = (quantile(&all, 0.16)?, quantile(&all, 0.84)?);
     (all.len() > 1).then_some(SheetPoint { tau_s, units: all.len(), median, low, high })
-}
-
-/// A quantile of ascending values, between two neighbours in proportion (type 7 of Hyndman and Fan 1996).
-fn quantile(ascending: &[f64], share: f64) -> Option<f64> {
-    let place = share * (ascending.len().checked_sub(1)? as f64);
-    let (below, above) = (place.floor(), place.ceil());
-    let (low, high) = (*ascending.get(below as usize)?, *ascending.get(above as usize)?);
-    Some(low + (place - below) * (high - low))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn quantiles_lie_between_neighbours() {
-        let values = [1.0, 2.0, 3.0, 5.0];
-        assert_eq!(quantile(&values, 0.5), Some(2.5));
-        assert_eq!(quantile(&values, 0.0), Some(1.0));
-        assert_eq!(quantile(&values, 1.0), Some(5.0));
-        assert_eq!(quantile(&[], 0.5), None);
-    }
 }

@@ -4,6 +4,7 @@ use crate::measurand::{
     ANGLE_RANDOM_WALK, BIAS_INSTABILITY, BIAS_INSTABILITY_MINIMUM, Measurand, RUSSIAN_ARW_10S,
     RUSSIAN_DRIFT_100S, RUSSIAN_DRIFT_100S_3SIGMA,
 };
+use crate::numeric::order::quantile;
 use crate::record::{SheetPair, SheetQuantity};
 
 /// What is set side by side.
@@ -43,7 +44,7 @@ fn pair(russian: &SheetQuantity, allan: &SheetQuantity) -> Option<SheetPair> {
         })
         .collect();
     ratios.sort_by(f64::total_cmp);
-    let ratio = median(&ratios)?;
+    let ratio = quantile(&ratios, 0.5)?;
     Some(SheetPair {
         channel: russian.channel.clone(),
         russian: russian.id.clone(),
@@ -55,11 +56,4 @@ fn pair(russian: &SheetQuantity, allan: &SheetQuantity) -> Option<SheetPair> {
         range: [*ratios.first()?, *ratios.last()?],
         units: ratios.len(),
     })
-}
-
-/// The median of ascending values.
-fn median(ascending: &[f64]) -> Option<f64> {
-    let n = ascending.len();
-    let (low, high) = (ascending.get(n.checked_sub(1)? / 2)?, ascending.get(n / 2)?);
-    Some(0.5 * (low + high))
 }

@@ -1,4 +1,5 @@
-//! Special functions that the closed forms of noise need: Hurwitz zeta at 3, cosine integral.
+//! Special functions: Hurwitz zeta at 3 and cosine integral for the closed forms of noise, normal numbers of χ² and F, Legendre
+//! polynomials.
 
 /// Euler's constant γ.
 pub const EULER_GAMMA: f64 = 0.577_215_664_901_532_9;
@@ -85,6 +86,16 @@ pub fn f_normal(ratio: f64, dof: f64, others: f64) -> f64 {
     ((1.0 - b) * root - (1.0 - a)) / (b * root * root + a).sqrt()
 }
 
+/// Legendre polynomial of an order from 1 on, for |x| ≤ 1, by the recurrence of three terms.
+pub fn legendre(order: usize, x: f64) -> f64 {
+    let (mut last, mut here) = (1.0, x);
+    for k in 1..order {
+        let k = k as f64;
+        (last, here) = (here, ((2.0 * k + 1.0) * x * here - k * last) / (k + 1.0));
+    }
+    here
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -121,5 +132,14 @@ mod tests {
             assert!((cosine_integral(x) - expected).abs() < 1e-10, "Ci({x}) = {}", cosine_integral(x));
         }
         assert!((cosine_integral(4.0) - cosine_integral(4.0 + 1e-12)).abs() < 1e-11);
+    }
+
+    #[test]
+    fn legendre_polynomials_are_those_of_the_tables() {
+        // P₄(½) = −0.2890625, P₅(½) = 0.08984375 (Abramowitz and Stegun, table 8.1).
+        assert!(
+            (legendre(4, 0.5) + 0.289_062_5).abs() < 1e-12 && (legendre(5, 0.5) - 0.089_843_75).abs() < 1e-12
+        );
+        assert!((1..=6).all(|k| (legendre(k, 1.0) - 1.0).abs() < 1e-12));
     }
 }

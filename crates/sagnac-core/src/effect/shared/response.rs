@@ -11,6 +11,7 @@ use super::pursuit::{choices, pursue, remove, unit};
 use super::thermal::delayed;
 use crate::effect::{Drivers, Regressors, SearchContext, Values, list, number};
 use crate::numeric::cosine::dct2;
+use crate::numeric::special;
 
 /// Highest order of the curve.
 const ORDERS: usize = 6;
@@ -265,6 +266,9 @@ fn leading_law(dictionary: &Dictionary) -> ResponseLaw {
     best.0
 }
 
+/// The response of one term, the curve of first order.
+pub(in crate::effect) const FIRST_ORDER: u32 = 1;
+
 /// The columns of a response.
 pub(in crate::effect) fn regressors(mask: u32, values: &[f64], drivers: &Drivers) -> Regressors {
     let scaled = scaled(values, Scale::of(values));
@@ -348,15 +352,10 @@ fn play(scaled: &[f64], width: f64) -> Vec<f64> {
 /// Legendre polynomial; beyond the range, where it would grow without bound, the line through its end.
 fn legendre(order: usize, x: f64) -> f64 {
     let inside = x.clamp(-1.0, 1.0);
-    let (mut last, mut here) = (1.0, inside);
-    for k in 1..order {
-        let k = k as f64;
-        (last, here) = (here, ((2.0 * k + 1.0) * inside * here - k * last) / (k + 1.0));
-    }
     // The slope at the ends is ± order (order + 1) / 2.
     let slope = 0.5 * (order * (order + 1)) as f64;
     let sign = if inside < 0.0 && order.is_multiple_of(2) { -1.0 } else { 1.0 };
-    here + sign * slope * (x - inside)
+    special::legendre(order, inside) + sign * slope * (x - inside)
 }
 
 #[cfg(test)]

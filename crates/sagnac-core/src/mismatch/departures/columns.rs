@@ -7,7 +7,7 @@ use crate::estimate::{ln_chi_square_tail, ln_normal_two_sided};
 use crate::mismatch::spectral_data::{SpectralData, smoothed};
 use crate::numeric::cosine::dct2;
 use crate::numeric::range::{Bounds, ends};
-use crate::numeric::special::f_normal;
+use crate::numeric::special::{f_normal, legendre};
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
@@ -146,15 +146,6 @@ fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]
     Some(Departure { test, place: Place { domain, from, to }, beside: None, ln_p, shape: None })
 }
 
-fn legendre(order: usize, x: f64) -> f64 {
-    let (mut last, mut here) = (1.0, x);
-    for k in 1..order {
-        let k = k as f64;
-        (last, here) = (here, ((2.0 * k + 1.0) * x * here - k * last) / (k + 1.0));
-    }
-    here
-}
-
 /// The tenth of the range of a column in which the weighted residual is farthest from zero.
 fn extreme(white: &White, values: &[f64], low: f64, high: f64) -> Bounds {
     const PARTS: usize = 10;
@@ -207,15 +198,6 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn legendre_polynomials_are_those_of_the_tables() {
-        // P₄(½) = −0.2890625, P₅(½) = 0.08984375 (Abramowitz and Stegun, table 8.1).
-        assert!(
-            (legendre(4, 0.5) + 0.289_062_5).abs() < 1e-12 && (legendre(5, 0.5) - 0.089_843_75).abs() < 1e-12
-        );
-        assert!((1..=6).all(|k| (legendre(k, 1.0) - 1.0).abs() < 1e-12));
-    }
 
     #[test]
     fn the_part_of_a_column_where_the_residual_is_largest_is_found() {
