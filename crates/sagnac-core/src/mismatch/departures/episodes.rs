@@ -8,6 +8,7 @@
 use super::departure::{Departure, Shape, White, ln_at_least, windows};
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_tail, normal_two_sided};
+use crate::mismatch::regular::fast_length;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::special::chi_square_normal;
@@ -46,7 +47,8 @@ struct Best {
 
 const NOTHING: Best = Best { ln_p: 0.0, band: (0, 1), window: 1, part: (0, 1), trials: 0.0 };
 
-/// Bands from the highest mode down, overlapping by half, as first mode and number of modes.
+/// Bands from the highest mode down, overlapping by half, as first mode and number of modes. The numbers are those that are fast
+/// to transform.
 fn bands(modes: usize) -> Vec<(usize, usize)> {
     let mut out = vec![];
     for width in WIDTHS {
@@ -57,7 +59,8 @@ fn bands(modes: usize) -> Vec<(usize, usize)> {
             if end - first < FEWEST || first == 0 {
                 break;
             }
-            out.push((first, end - first));
+            let modes = fast_length(end - first);
+            out.push((end - modes, modes));
             high *= (-0.5 * width).exp2();
         }
     }
