@@ -195,6 +195,16 @@ pub trait MeanModel: Sync {
         self.course(&sizing.values(place, size), drivers)
     }
 
+    /// What a claim states of a size at a place.
+    fn stated_size(&self, sizing: &Sizing, place: &Values, size: f64, _drivers: &Drivers) -> Values {
+        sizing.values(place, size)
+    }
+
+    /// Name of the list of coefficients that the course is proportional to, where a claim states one.
+    fn linear_list(&self) -> Option<&'static str> {
+        None
+    }
+
     /// Natural logarithm of the odds of this effect against others with the same course, from what else the columns show.
     fn odds(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> f64 {
         0.0

@@ -17,6 +17,7 @@
 //! | sizes of effects that would have been noticed | `noticeable_record`, `noticeable` |
 //! | causes, equivalents, the augmented claim, figures | `single_cause`, `unnamed`, `experiment`, `alternatives`, `augmented`, `draw`, `figures`, `assemble` |
 //! | all of it in order | `engine` |
+//! | several recordings of one unit, with what they share | `joint` |
 //! | a claim from a simulated recording, and what that recording shows itself | `identify`, `witness`, `taken` |
 
 mod alternatives;
@@ -40,6 +41,7 @@ pub mod hypothesis;
 mod identify;
 mod improvement;
 pub mod impute;
+pub mod joint;
 pub mod jumps;
 mod named;
 pub mod noise_fit;

@@ -112,6 +112,10 @@ impl MeanModel for ColumnCurve {
         vec![(COEFFICIENTS, coefficients.to_vec())]
     }
 
+    fn linear_list(&self) -> Option<&'static str> {
+        Some(COEFFICIENTS)
+    }
+
     fn course(&self, given: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let of = |i: usize| number(given, PARAMS[i].name);
         let coefficients = list(given, COEFFICIENTS);

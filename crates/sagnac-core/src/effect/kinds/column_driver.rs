@@ -140,6 +140,23 @@ impl MeanModel for ColumnDriver {
         Some(driver.smooth.iter().map(|x| size * x).collect())
     }
 
+    /// The curve of first order in the units of the column.
+    fn stated_size(&self, _sizing: &Sizing, place: &Values, size: f64, drivers: &Drivers) -> Values {
+        let column = text(place, COLUMN).map(Column::of_name);
+        let driver = drivers.others.iter().find(|o| Some(o.column) == column);
+        let [center, half] = driver.map_or([0.0, 1.0], |d| response::stated_range(&d.smooth));
+        let lists = response::stated_lists(response::FIRST_ORDER, &[size * half]).into_iter();
+        let lists = lists.map(|(name, list)| (name.to_owned(), Value::List(list)));
+        let numbers = [(PARAMS[0].name, size), (CENTER, center), (HALF_RANGE, half)];
+        let numbers = numbers.map(|(name, value)| (name.to_owned(), Value::Number(value)));
+        let law = (LAW.to_owned(), Value::Text(ResponseLaw::Linear.id().to_owned()));
+        place.clone().into_iter().chain(lists).chain(numbers).chain([law]).collect()
+    }
+
+    fn linear_list(&self) -> Option<&'static str> {
+        Some(COEFFICIENTS_LIST)
+    }
+
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let column = Column::of_name(text(values, COLUMN)?);
         let driver = drivers.others.iter().find(|o| o.column == column)?;

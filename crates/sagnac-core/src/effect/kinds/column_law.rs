@@ -203,6 +203,10 @@ impl MeanModel for ColumnLaw {
         -crate::effect::shared::pursuit::choices(all, chosen).max(1.0).ln()
     }
 
+    fn linear_list(&self) -> Option<&'static str> {
+        Some(COEFFICIENTS)
+    }
+
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let terms = law::of_stated(text(values, TERMS)?)?;
         let coefficients = list(values, COEFFICIENTS);

@@ -155,6 +155,10 @@ impl MeanModel for ColumnProduct {
         vec![(COEFFICIENTS, coefficients.to_vec())]
     }
 
+    fn linear_list(&self) -> Option<&'static str> {
+        Some(COEFFICIENTS)
+    }
+
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let of = |i: usize| number(values, PARAMS[i].name);
         let scales = [Scale { center: of(1)?, half: of(2)? }, Scale { center: of(3)?, half: of(4)? }];

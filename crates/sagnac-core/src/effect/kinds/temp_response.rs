@@ -71,6 +71,10 @@ impl MeanModel for TempResponse {
         true
     }
 
+    fn linear_list(&self) -> Option<&'static str> {
+        Some(COEFFICIENTS_LIST)
+    }
+
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         response::course(values, smooth(drivers)?, drivers)
     }
