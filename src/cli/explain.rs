@@ -8,11 +8,11 @@ use super::place::{self, OutputPlace};
 use super::printer::Printer;
 use super::progress::Progress;
 use super::read::ReadArgs;
-use super::{exit, next_step};
+use super::{exit, explain_jointly, next_step};
 use crate::config::model;
 use crate::effect::{Column, EFFECTS, find};
 use crate::i18n::{Arg, EffectText, Lang, Note, effect_key};
-use crate::ingest::{ReadOptions, files_read};
+use crate::ingest::{ReadOptions, are_several, files_read};
 use crate::mismatch::finding::MismatchVerdict;
 use crate::mismatch::{self, Options};
 use crate::output::Kind;
@@ -27,50 +27,53 @@ use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct ExplainArgs {
-    /// Recording: a file of any supported format, or a manifest; several files or a quoted pattern with --join
+    /// Recording: a file of any supported format, or a manifest; several files or a quoted pattern are recordings of one unit
+    /// that are explained together, or one recording with --join
     #[arg(required = true)]
-    recording: Vec<PathBuf>,
+    pub(super) recording: Vec<PathBuf>,
     #[command(flatten)]
     join: JoinArgs,
     /// The claimed simulation (TOML)
     #[arg(long, value_name = "FILE", required_unless_present = "simulation", conflicts_with = "simulation")]
-    model: Option<PathBuf>,
+    pub(super) model: Option<PathBuf>,
     /// Simulated recording from which the claim is identified, instead of a model
     #[arg(long, value_name = "FILE")]
     simulation: Option<PathBuf>,
     /// Probability of calling a correct claim a mismatch [default: 0.01]
     #[arg(long, value_name = "PROBABILITY")]
-    alpha: Option<f64>,
+    pub(super) alpha: Option<f64>,
     /// Column to treat as not recorded, by its standard name (temp_degC) or, if it has none, its own; may be repeated
     #[arg(long, value_name = "COLUMN")]
-    hide: Vec<String>,
+    pub(super) hide: Vec<String>,
     /// Maximum number of effects to add to the claim [default: 3]
     #[arg(long, value_name = "COUNT")]
-    max_effects: Option<usize>,
+    pub(super) max_effects: Option<usize>,
     /// Effect to exclude from the search, by id (`sagnac effects`); may be repeated
     #[arg(long, value_name = "EFFECT")]
-    without: Vec<String>,
+    pub(super) without: Vec<String>,
     /// Rate column by name or position [default: the only column that looks like a gyro output]
     #[arg(long, value_name = "COLUMN")]
-    rate: Option<String>,
+    pub(super) rate: Option<String>,
     /// Unit of the rate column [default: from its name]
     #[arg(long, value_name = "UNIT")]
-    unit: Option<String>,
+    pub(super) unit: Option<String>,
     /// Sample rate, required without a time column
     #[arg(long, value_name = "HZ")]
-    sample_rate: Option<f64>,
+    pub(super) sample_rate: Option<f64>,
     /// Output folder [default: named after the recording and UTC time]
     #[arg(long, value_name = "DIR")]
-    out: Option<PathBuf>,
+    pub(super) out: Option<PathBuf>,
     #[command(flatten)]
-    output: OutputArgs,
+    pub(super) output: OutputArgs,
     #[command(flatten)]
-    read: ReadArgs,
+    pub(super) read: ReadArgs,
 }
 
 pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
+    if !args.join.join && are_several(&args.recording) {
+        return explain_jointly::main(args, lang);
+    }
     let say = |note: Note| place::error(&note, lang);
-    args.join.check(&args.recording, "join.help.other", lang)?;
     let simulation: Vec<PathBuf> = args.simulation.clone().into_iter().collect();
     args.join.check(&simulation, "join.help.other", lang)?;
     let options = options(args).map_err(say)?;
@@ -150,7 +153,7 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     })
 }
 
-fn shown(path: &Path) -> String {
+pub(super) fn shown(path: &Path) -> String {
     path.display().to_string()
 }
 
@@ -161,7 +164,7 @@ fn stem(path: &Path) -> String {
 }
 
 /// The decisions of the user.
-fn options(args: &ExplainArgs) -> Result<Options, Note> {
+pub(super) fn options(args: &ExplainArgs) -> Result<Options, Note> {
     let default = Options::default();
     let alpha = args.alpha.unwrap_or(default.alpha);
     if !(alpha > 0.0 && alpha < 1.0) {
@@ -191,7 +194,8 @@ fn options(args: &ExplainArgs) -> Result<Options, Note> {
     Ok(Options { alpha, hide, max_effects, without })
 }
 
-fn read(
+/// Reads a recording.
+pub(super) fn read(
     args: &ExplainArgs,
     paths: &[PathBuf],
     progress: &mut Progress,

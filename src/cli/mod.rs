@@ -10,6 +10,7 @@ mod each;
 mod effects;
 pub mod exit;
 mod explain;
+mod explain_jointly;
 mod finish;
 mod help;
 mod init;

@@ -1,6 +1,7 @@
 //! `sagnac schema`: JSON Schema of the formats.
 
 use super::exit;
+use crate::mismatch::joint::record::JointExplanation;
 use crate::output::Listed;
 use crate::plan::Plan;
 use crate::record::explanation::Explanation;
@@ -29,6 +30,8 @@ pub enum SchemaKind {
     Model,
     /// explain.json
     Explain,
+    /// joint.json: several recordings explained together
+    Joint,
     /// index.json of a lot
     Lot,
     /// plan.json
@@ -51,6 +54,9 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Schedule => crate::config::procedure::schema::schedule(),
         SchemaKind::Alternatives => crate::config::procedure::schema::alternatives(),
         SchemaKind::Plan => serde_json::to_value(schemars::schema_for!(Listed<Plan>)).unwrap_or_default(),
+        SchemaKind::Joint => {
+            serde_json::to_value(schemars::schema_for!(Listed<JointExplanation>)).unwrap_or_default()
+        }
         SchemaKind::Lot => serde_json::to_value(schemars::schema_for!(Listed<LotRecord>)).unwrap_or_default(),
         SchemaKind::Datasheet => {
             serde_json::to_value(schemars::schema_for!(Listed<DataSheet>)).unwrap_or_default()

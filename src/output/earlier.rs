@@ -43,6 +43,7 @@ impl Earlier {
                 Kind::DataSheet => "output_error.why.foreign_datasheet".into(),
                 Kind::Comparison => "compare.more.foreign_folder".into(),
                 Kind::Explanation => "explain.error.foreign_folder".into(),
+                Kind::Joint => "joint.error.foreign_folder".into(),
                 Kind::Plan => "plan.error.foreign_folder".into(),
             });
         }
@@ -86,6 +87,9 @@ impl Earlier {
                     .with("serial", serial)
             }
             Kind::Comparison => note("output_error.what.comparison"),
+            Kind::Joint => {
+                note("output_error.what.joint").with("verdict", text("/verdict").unwrap_or_default())
+            }
             Kind::Plan => note("output_error.what.plan"),
             Kind::Lot => {
                 let units = self.record.get("units").and_then(Value::as_array).map_or(0, Vec::len);

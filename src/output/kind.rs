@@ -11,6 +11,8 @@ pub enum Kind {
     Explanation,
     /// A lot: an index, and a result folder for each unit.
     Lot,
+    /// Several recordings that are explained together: a record, and an explanation of each.
+    Joint,
     /// The plan of the next test.
     Plan,
     /// The data sheet of a lot.
@@ -19,8 +21,15 @@ pub enum Kind {
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 6] =
-        [Kind::Result, Kind::Comparison, Kind::Explanation, Kind::Lot, Kind::Plan, Kind::DataSheet];
+    pub const ALL: [Kind; 7] = [
+        Kind::Result,
+        Kind::Comparison,
+        Kind::Explanation,
+        Kind::Joint,
+        Kind::Lot,
+        Kind::Plan,
+        Kind::DataSheet,
+    ];
 
     /// The JSON file that a folder of this kind holds, and by which it is known.
     pub fn record_file(self) -> &'static str {
@@ -29,6 +38,7 @@ impl Kind {
             Kind::Comparison => "comparison.json",
             Kind::Explanation => "explain.json",
             Kind::Lot => "index.json",
+            Kind::Joint => "joint.json",
             Kind::Plan => "plan.json",
             Kind::DataSheet => "datasheet.json",
         }
@@ -37,7 +47,7 @@ impl Kind {
     /// Name of its pages without the ending, such as `report` for `report.html`.
     pub fn page_stem(self) -> &'static str {
         match self {
-            Kind::Result | Kind::Explanation | Kind::Plan => "report",
+            Kind::Result | Kind::Explanation | Kind::Joint | Kind::Plan => "report",
             Kind::Comparison => "comparison",
             Kind::Lot => "index",
             Kind::DataSheet => "datasheet",
@@ -51,6 +61,7 @@ impl Kind {
             Kind::Comparison => "{\"format\":\"comparison/",
             Kind::Explanation => "{\"format\":\"explain/",
             Kind::Lot => "{\"format\":\"lot/",
+            Kind::Joint => "{\"format\":\"explain-joint/",
             Kind::Plan => "{\"format\":\"plan/",
             Kind::DataSheet => "{\"format\":\"datasheet/",
         }
@@ -70,6 +81,7 @@ impl Kind {
                 matches!(name, "correction.csv" | "augmented.toml" | "alternatives.toml")
             }
             Kind::Lot => name == "index.csv",
+            Kind::Joint => name == "augmented.toml",
             Kind::Plan => name == "schedule.toml",
             Kind::DataSheet => name == "limits.toml",
         }
@@ -81,6 +93,7 @@ impl Kind {
             Kind::Result => matches!(name, "report.html" | "report.md" | "explain" | "phases"),
             Kind::Comparison => matches!(name, "comparison.html" | "comparison.md"),
             Kind::Explanation | Kind::Plan => matches!(name, "report.html" | "report.md"),
+            Kind::Joint => matches!(name, "report.html" | "report.md" | "recordings"),
             Kind::Lot => matches!(name, "index.html" | "index.md" | "junit.xml"),
             Kind::DataSheet => matches!(name, "datasheet.html" | "datasheet.md"),
         };

@@ -3,6 +3,7 @@
 use super::compare::CompareView;
 use super::datasheet::SheetView;
 use super::explain::{ExplainFile, ExplainView};
+use super::joint::{JointFile, JointView};
 use super::lot::LotView;
 use super::plan::{PlanFile, PlanView};
 use super::render::{run_context, view_context};
@@ -40,6 +41,7 @@ enum Record<'a> {
     Explanation(&'a ExplainFile),
     Comparison(&'a Comparison),
     Lot(&'a LotRecord),
+    Joint(&'a JointFile),
     Plan(&'a PlanFile),
     DataSheet(&'a DataSheet),
 }
@@ -123,6 +125,18 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// The document of several recordings that are explained together.
+    pub fn of_joint(file: &'a JointFile, tables: &'a [(String, String)], lang: Lang) -> Document<'a> {
+        Document {
+            lang,
+            context: view_context(&JointView::new(file, lang), lang),
+            template: "joint",
+            figures: Cow::Borrowed(&[]),
+            tables,
+            record: Record::Joint(file),
+        }
+    }
+
     /// The document of a plan.
     pub fn of_plan(file: &'a PlanFile, tables: &'a [(String, String)], lang: Lang) -> Document<'a> {
         Document {
@@ -167,6 +181,7 @@ impl<'a> Document<'a> {
             Record::Explanation(_) => Kind::Explanation,
             Record::Comparison(_) => Kind::Comparison,
             Record::Lot(_) => Kind::Lot,
+            Record::Joint(_) => Kind::Joint,
             Record::Plan(_) => Kind::Plan,
             Record::DataSheet(_) => Kind::DataSheet,
         }
@@ -211,6 +226,7 @@ impl Results {
                 Document::of_comparison(comparison, figures, tables, lang)
             }
             Results::Lot(lot, tables) => Document::of_lot(lot, tables, lang),
+            Results::Joint(results) => Document::of_joint(&results.file, &results.tables, lang),
             Results::Plan(file, tables) => Document::of_plan(file, tables, lang),
             Results::DataSheet(sheet, figures, tables) => {
                 Document::of_datasheet(sheet, figures, tables, lang)
@@ -220,6 +236,12 @@ impl Results {
 
     /// The documents that stand in folders below that of the whole, each with its folder, such as `phases/static`.
     pub fn parts(&self, lang: Lang) -> Vec<(String, Document<'_>)> {
+        if let Results::Joint(results) = self {
+            let folders = results.file.explanation.recordings.iter().map(|r| r.folder.clone());
+            let parts =
+                folders.zip(&results.recordings).filter_map(|(folder, e)| Some((folder, e.as_ref()?)));
+            return parts.map(|(folder, e)| (folder, Document::of_explanation(e, lang))).collect();
+        }
         let Results::Run(results) = self else { return vec![] };
         let phases = results.outcome.record.phases.iter().zip(&results.phases);
         let phases = phases.filter_map(|(phase, o)| phase.folder.clone().zip(o.as_ref()));

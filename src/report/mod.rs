@@ -9,6 +9,7 @@ mod document;
 pub mod explain;
 pub mod export;
 mod figure_file;
+pub mod joint;
 pub mod lot;
 pub mod methods;
 pub mod number;
@@ -24,7 +25,7 @@ pub mod view;
 
 pub use document::Document;
 pub use render::{Renderer, ReportError, render_html, render_markdown};
-pub use results::{ALTERNATIVES_FILE, ExplanationResults, Results, RunResults, StoredResults};
+pub use results::{ALTERNATIVES_FILE, ExplanationResults, JointResults, Results, RunResults, StoredResults};
 
 use crate::figure::Figure;
 use crate::i18n::Lang;

@@ -42,6 +42,8 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("datasheet.md", include_str!("../../templates/datasheet.md")),
     ("explain.html", include_str!("../../templates/explain.html")),
     ("explain.md", include_str!("../../templates/explain.md")),
+    ("joint.html", include_str!("../../templates/joint.html")),
+    ("joint.md", include_str!("../../templates/joint.md")),
     ("plan.html", include_str!("../../templates/plan.html")),
     ("plan.md", include_str!("../../templates/plan.md")),
 ];

@@ -2,6 +2,7 @@
 
 use super::explain::{Context, ExplainFile};
 use super::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
+use super::joint::JointFile;
 use super::lot;
 use super::plan::PlanFile;
 use crate::acceptance::Outcome;
@@ -11,6 +12,7 @@ use crate::config::{alternatives, model, schedule};
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::mismatch;
+use crate::mismatch::joint::record::JOINT_FORMAT;
 use crate::output::Kind;
 use crate::plan::record::PLAN_FORMAT;
 use crate::record::explanation::Explanation;
@@ -85,6 +87,16 @@ fn correction_csv(correction: &[(f64, f64)]) -> String {
     out
 }
 
+/// What several recordings give that are explained together.
+pub struct JointResults {
+    /// What `joint.json` holds.
+    pub file: JointFile,
+    /// The explanation of each recording, in the order of the record; `None` for one that is missing.
+    pub recordings: Vec<Option<ExplanationResults>>,
+    /// `augmented.toml`.
+    pub tables: Vec<(String, String)>,
+}
+
 /// Results of any kind.
 pub enum Results {
     /// Of a run or an analysis.
@@ -95,6 +107,8 @@ pub enum Results {
     Comparison(Box<Comparison>, Vec<Figure>, Vec<(String, String)>),
     /// Of a lot: the record and tables. The results of its units stand in folders of their own.
     Lot(Box<LotRecord>, Vec<(String, String)>),
+    /// Of several recordings that are explained together.
+    Joint(Box<JointResults>),
     /// Of a plan: the record and its schedule.
     Plan(Box<PlanFile>, Vec<(String, String)>),
     /// Of a data sheet: the record, figures and tables.
@@ -137,6 +151,7 @@ impl Results {
             Results::Explanation(_) => Kind::Explanation,
             Results::Comparison(..) => Kind::Comparison,
             Results::Lot(..) => Kind::Lot,
+            Results::Joint(_) => Kind::Joint,
             Results::Plan(..) => Kind::Plan,
             Results::DataSheet(..) => Kind::DataSheet,
         }
@@ -151,6 +166,7 @@ impl Results {
             }
             Results::Comparison(..) => None,
             Results::Lot(lot, _) => Some(&lot.procedure.id),
+            Results::Joint(results) => Some(results.file.explanation.case.as_str()).filter(|c| !c.is_empty()),
             Results::Plan(file, _) => Some(file.plan.case.as_str()).filter(|c| !c.is_empty()),
             Results::DataSheet(sheet, ..) => sheet.model.as_deref(),
         }
@@ -177,8 +193,8 @@ struct Listing {
 }
 
 impl StoredResults {
-    /// Reads a `result.json`, `explain.json`, `comparison.json`, `index.json`, `plan.json` or `datasheet.json`, or the folder of
-    /// one, with what stands beside it.
+    /// Reads a `result.json`, `explain.json`, `joint.json`, `comparison.json`, `index.json`, `plan.json` or `datasheet.json`, or
+    /// the folder of one, with what stands beside it.
     ///
     /// # Errors
     /// A note that names the file and what is wrong with it.
@@ -195,6 +211,7 @@ impl StoredResults {
             Some("comparison") => {
                 Results::of_comparison(read::of_format(&bytes, COMPARISON_FORMAT).map_err(wrong)?)
             }
+            Some("explain-joint") => Results::Joint(Box::new(from.joint(&bytes).map_err(wrong)?)),
             Some("plan") => {
                 Results::of_plan(read::of_format::<PlanFile>(&bytes, PLAN_FORMAT).map_err(wrong)?)
             }
@@ -266,6 +283,28 @@ impl Folder {
         let explanation: Explanation = read::of_format(bytes, EXPLAIN_FORMAT)?;
         let file: ContextOf = read::of_format(bytes, EXPLAIN_FORMAT)?;
         Ok(self.with_context(explanation, file.context, before))
+    }
+
+    fn joint(&mut self, bytes: &[u8]) -> Result<JointResults, ReadError> {
+        let file: JointFile = read::of_format(bytes, JOINT_FORMAT)?;
+        let folders: Vec<String> = file.explanation.recordings.iter().map(|r| r.folder.clone()).collect();
+        let recordings = folders.iter().map(|folder| self.part(folder)).collect();
+        Ok(JointResults { recordings, tables: self.tables("", Kind::Joint), file })
+    }
+
+    /// The explanation of one of several recordings; `None` where it is missing.
+    fn part(&mut self, folder: &str) -> Option<ExplanationResults> {
+        // A record leads to no place outside its folder.
+        let inside = Path::new(folder).components().all(|c| matches!(c, Component::Normal(_)));
+        let path = self.path.join(folder).join(Kind::Explanation.record_file());
+        let read = if inside { read::bytes(&path) } else { return None };
+        match read.and_then(|bytes| self.explanation(&format!("{folder}/"), &bytes)) {
+            Ok(explanation) => Some(explanation),
+            Err(e) => {
+                self.missing.push(e.note(&path));
+                None
+            }
+        }
     }
 
     /// The explanation that the record of a run holds, with what stands in its folder.

@@ -3,6 +3,7 @@
 mod columns;
 mod in_run;
 mod on_table;
+mod several;
 mod simulation;
 #[path = "../support/mod.rs"]
 mod support;

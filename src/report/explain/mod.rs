@@ -3,7 +3,7 @@
 mod effect;
 mod method;
 mod noticeable;
-mod print;
+pub(in crate::report) mod print;
 mod sentence;
 mod tables;
 

@@ -4,6 +4,7 @@
 
 mod datasheet;
 mod explanation;
+mod joint;
 mod lot;
 mod plan;
 mod run;
@@ -13,6 +14,7 @@ mod wrap;
 
 pub use datasheet::datasheet;
 pub use explanation::explanation;
+pub use joint::joint;
 pub use lot::{lot, lot_unit};
 pub use plan::plan;
 pub use run::run;
