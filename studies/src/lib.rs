@@ -14,6 +14,7 @@ pub mod goodness_of_fit;
 pub mod identification;
 pub mod index;
 pub mod influence;
+pub mod joint;
 pub mod laboratory;
 pub mod lot_bounds;
 pub mod noise_source;
@@ -67,5 +68,6 @@ pub static STUDIES: &[&Study] = &[
     &laboratory::study::STUDY,
     &planned::STUDY,
     &noticeable::STUDY,
+    &joint::STUDY,
     &lot_bounds::STUDY,
 ];
