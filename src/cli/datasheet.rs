@@ -6,7 +6,8 @@ use super::options::OutputArgs;
 use super::place::OutputPlace;
 use super::printer::Printer;
 use super::{exit, place};
-use crate::acceptance::datasheet::{Refusal, TestedUnit, datasheet, select};
+use crate::acceptance::datasheet::{Refusal, TestedUnit, apply, datasheet, select};
+use crate::config::sheet;
 use crate::i18n::{Lang, Note};
 use crate::ingest::each_of;
 use crate::lot::tolerance::Promise;
@@ -31,6 +32,9 @@ pub struct DatasheetArgs {
     /// Confidence in a bound
     #[arg(long, value_name = "PROBABILITY", default_value_t = 0.95)]
     confidence: f64,
+    /// Rows, names, units and footnotes of the sheet (TOML) [default: every quantity]
+    #[arg(long, value_name = "FILE")]
+    sheet: Option<PathBuf>,
     /// Output folder [default: named after the model and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -49,6 +53,7 @@ pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
                 .with("given", given.to_string())));
         }
     }
+    let rows = args.sheet.as_deref().map(sheet::load).transpose().map_err(|p| p.say(lang))?;
     let renderer = args.output.renderer(lang)?;
     let printer = Printer::new(&args.output, lang);
     let now = Utc::now();
@@ -75,10 +80,14 @@ pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
         Refusal::Mixed(note) => say(note),
     })?;
     selected.notes.extend(broken);
-    let sheet = datasheet(selected, promise, now.to_rfc3339_opts(SecondsFormat::Secs, true));
+    let mut sheet = datasheet(selected, promise, now.to_rfc3339_opts(SecondsFormat::Secs, true));
+    if let Some(rows) = &rows {
+        apply(&mut sheet, rows);
+    }
     let out = OutputPlace::new(args.out.as_deref(), "datasheet", sheet.model.as_deref(), now);
     let folder = Inputs::new(args.output.force)
         .files("results", &files)
+        .file("sheet", args.sheet.as_deref())
         .options(&(args.proportion, args.confidence))
         .beside(args.output.templates.as_deref())
         .begin(&out, Kind::DataSheet, lang)?;

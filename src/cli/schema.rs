@@ -40,6 +40,8 @@ pub enum SchemaKind {
     Schedule,
     /// alternatives.toml: what would explain a recording as well
     Alternatives,
+    /// A sheet file: rows, names and units of a data sheet
+    Sheet,
     /// datasheet.json
     Datasheet,
 }
@@ -51,6 +53,7 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Manifest => crate::config::procedure::schema::manifest(),
         SchemaKind::Layout => crate::config::procedure::schema::layout(),
         SchemaKind::Model => crate::config::procedure::schema::model(),
+        SchemaKind::Sheet => crate::config::procedure::schema::sheet(),
         SchemaKind::Schedule => crate::config::procedure::schema::schedule(),
         SchemaKind::Alternatives => crate::config::procedure::schema::alternatives(),
         SchemaKind::Plan => serde_json::to_value(schemars::schema_for!(Listed<Plan>)).unwrap_or_default(),

@@ -1,7 +1,7 @@
 //! TOML files whose keys are described once, as data: reading with every problem placed, and the parts of schema and
 //! guide that follow from the description.
 //!
-//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`manifest`] and [`layout`] are the files; the other modules
+//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`manifest`] and [`layout`] are the files; the other modules
 //! know none of them.
 
 pub mod alternatives;
@@ -20,6 +20,7 @@ pub(crate) mod recording_options;
 pub(crate) mod role_words;
 pub mod schedule;
 pub(crate) mod section;
+pub mod sheet;
 pub mod shipped;
 pub mod spec;
 mod syntax;

@@ -2,6 +2,7 @@
 
 use super::{DeviationRecord, Message, Program};
 use crate::estimate::{Interval, UpperLimit, Verdict};
+use crate::i18n::LocalText;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -17,6 +18,10 @@ pub struct DataSheet {
     pub program: Program,
     /// When, RFC 3339, UTC.
     pub made_at: String,
+    /// Title that a sheet file gives.
+    #[serde(flatten, with = "super::local::title")]
+    #[schemars(with = "super::local::title::Members<Option<String>>")]
+    pub title: Option<LocalText>,
     /// Model of the units; absent where no result names one.
     pub model: Option<String>,
     /// The procedure that every unit was tested by.
@@ -83,6 +88,14 @@ pub struct SheetQuantity {
     /// Phase that it is of, in a test of several.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase: Option<String>,
+    /// Name that a sheet file gives it.
+    #[serde(flatten, with = "super::local::name")]
+    #[schemars(with = "super::local::name::Members<Option<String>>")]
+    pub name: Option<LocalText>,
+    /// Footnote that a sheet file gives it.
+    #[serde(flatten, with = "super::local::footnote")]
+    #[schemars(with = "super::local::footnote::Members<Option<String>>")]
+    pub footnote: Option<LocalText>,
     /// Unit.
     pub unit: String,
     /// Units that count, bounded ones among them.
@@ -101,8 +114,17 @@ pub struct SheetQuantity {
     pub bounds: Vec<SheetBound>,
     /// The largest value measured (of signed quantities the furthest from zero).
     pub largest: Option<SheetLargest>,
+    /// Bounds for measured values that more units would promise, if median and spread stayed as they are.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outlook: Vec<SheetOutlook>,
+    /// Share of units whose true value lies above the upper bound for measured values, the limit that is proposed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub share_above_bound: Option<SheetShare>,
     /// The limit of the results, where they have the same.
     pub limit: Option<SheetLimit>,
+    /// Risks of its upper limit, for tests of some lengths.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub risks: Vec<SheetRisk>,
     /// The probability that a normal sample fits worse on this scale; absent where it was not judged.
     pub normality: Option<f64>,
     /// What was measured of each unit.
@@ -191,6 +213,28 @@ pub struct SheetLimit {
     pub share_above: Option<SheetShare>,
 }
 
+/// The bound that more units would promise.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetOutlook {
+    /// Number of units.
+    pub units: usize,
+    /// Upper or lower.
+    pub side: SheetSide,
+    /// The bound for measured values.
+    pub value: f64,
+}
+
+/// The risks of an upper limit over the units of the population, a value at or below it being accepted.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetRisk {
+    /// Length of the test over that of the tests of the lot.
+    pub length: f64,
+    /// Probability of accepting a unit whose true value lies above the limit.
+    pub consumer: f64,
+    /// Probability of rejecting a unit whose true value lies at or below it.
+    pub producer: f64,
+}
+
 /// A share of the population.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SheetShare {
@@ -262,6 +306,9 @@ pub struct SheetPoint {
     pub low: f64,
     /// 84 % lie below, deg/h.
     pub high: f64,
+    /// Bound for measured values at this averaging time, with the proportion and confidence of the sheet; deg/h.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bound: Option<f64>,
 }
 
 /// The curve of one unit.

@@ -128,6 +128,12 @@ field!(
     "note_by_language"
 );
 field!(
+    /// Footnote.
+    footnote,
+    "footnote",
+    "footnote_by_language"
+);
+field!(
     /// Free text.
     description,
     "description",

@@ -31,9 +31,9 @@ pub use comparison::{
 pub use context::{ClauseRecord, ExclusionRecord, InstrumentRecord, OptionRecord, WaiverRecord};
 pub use datasheet::{
     DATASHEET_FORMAT, DataSheet, InputLimit, InputMeasurand, InputUnit, SheetBound, SheetCondition,
-    SheetCurve, SheetInput, SheetLargest, SheetLimit, SheetOf, SheetPair, SheetPoint, SheetProcedure,
-    SheetQuantity, SheetResult, SheetScale, SheetShare, SheetSide, SheetSpread, SheetTypical, SheetUnitCurve,
-    SheetValue,
+    SheetCurve, SheetInput, SheetLargest, SheetLimit, SheetOf, SheetOutlook, SheetPair, SheetPoint,
+    SheetProcedure, SheetQuantity, SheetResult, SheetRisk, SheetScale, SheetShare, SheetSide, SheetSpread,
+    SheetTypical, SheetUnitCurve, SheetValue,
 };
 pub use deviation::DeviationRecord;
 pub use evidence::Evidence;

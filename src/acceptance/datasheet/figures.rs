@@ -35,6 +35,11 @@ fn sigma_tau(curve: &SheetCurve, several: bool) -> Figure {
     layers.push(Layer::Line { points: hairs, style: Style::Muted, legend: "datasheet.legend.unit".into() });
     let median = curve.points.iter().map(|p| (p.tau_s, p.median)).collect();
     layers.push(Layer::Line { points: median, style: Style::Data, legend: "datasheet.legend.median".into() });
+    let bound: Vec<(f64, f64)> = curve.points.iter().filter_map(|p| Some((p.tau_s, p.bound?))).collect();
+    if !bound.is_empty() {
+        let legend = "datasheet.legend.bound_measured".into();
+        layers.push(Layer::Line { points: bound, style: Style::Reference, legend });
+    }
     Figure {
         id: format!("sigma_tau_{}", curve.channel),
         title: "datasheet.figure.sigma_tau".into(),

@@ -3,10 +3,13 @@
 mod curves;
 pub mod figures;
 pub mod limits;
+mod outlook;
 mod pairs;
 mod quantity;
+mod rows;
 mod units;
 
+pub use rows::apply;
 pub use units::{Refusal, TestedUnit, select};
 
 use crate::i18n::Note;
@@ -34,6 +37,7 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
         format: DATASHEET_FORMAT.to_owned(),
         program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
         made_at,
+        title: None,
         model,
         procedure,
         units: units.len(),
@@ -41,7 +45,7 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
         notes: notes.into_iter().map(Message::from).collect(),
         conditions: conditions(&units),
         pairs: pairs::pairs(&quantities),
-        curves: curves::curves(&units),
+        curves: curves::curves(&units, promise),
         quantities,
         results: units
             .iter()

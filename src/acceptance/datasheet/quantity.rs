@@ -1,5 +1,6 @@
 //! One quantity over the units of a lot.
 
+use super::outlook::{outlook, risks};
 use super::units::TestedUnit;
 use crate::estimate::{Interval, UpperLimit, normal_quantile};
 use crate::i18n::Note;
@@ -9,8 +10,8 @@ use crate::lot::population::{
 use crate::lot::tolerance::Promise;
 use crate::measurand;
 use crate::record::{
-    InputMeasurand, Message, SheetBound, SheetLargest, SheetLimit, SheetOf, SheetQuantity, SheetScale,
-    SheetShare, SheetSide, SheetSpread, SheetTypical, SheetValue,
+    InputMeasurand, Message, SheetBound, SheetLargest, SheetLimit, SheetOf, SheetOutlook, SheetQuantity,
+    SheetScale, SheetShare, SheetSide, SheetSpread, SheetTypical, SheetValue,
 };
 
 /// Coverage of the intervals of medians and shares.
@@ -111,11 +112,29 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
         None => notes.push(Note::new("datasheet.note.too_few").with("n", valued).with("needed", needed)),
     }
     let back = |v: f64| if scale == SheetScale::Log { v.exp() } else { v };
+    let to = |v: f64| if scale == SheetScale::Log { v.ln() } else { v };
     let limit = limit(&rows, population.as_ref(), scale);
+    let bounds = population.as_ref().map(|p| bounds(p, sides, promise, &back)).unwrap_or_default();
+    let measured = |side: SheetSide| bounds.iter().find(|b| b.of == SheetOf::Measured && b.side == side);
+    let upper = measured(SheetSide::Upper).map(|b| b.value);
+    let outlook = sides.iter().filter_map(|side| {
+        let told = if *side == Side::Upper { SheetSide::Upper } else { SheetSide::Lower };
+        let bound = measured(told)?.value;
+        let more = outlook(population.as_ref()?, rows.len(), to(bound), *side, promise)?;
+        Some(SheetOutlook { value: back(more.value), ..more })
+    });
+    let outlook = outlook.collect();
+    let share = |p: &Population, at: f64| {
+        let Central { value, low, high } = p.share_above(at, COVERAGE);
+        SheetShare { value, interval: Interval { low, high, coverage: COVERAGE } }
+    };
+    let risks = population.as_ref().zip(limit.and_then(|l| l.max)).map(|(p, max)| risks(p, to(max)));
     Some(SheetQuantity {
         id: of.2.to_owned(),
         channel: of.1.to_owned(),
         phase: of.0.map(str::to_owned),
+        name: None,
+        footnote: None,
         unit,
         units: rows.len(),
         lots: count,
@@ -131,9 +150,12 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
             between_lots: p.between_lots(),
             measurement: p.measurement(),
         }),
-        bounds: population.as_ref().map(|p| bounds(p, sides, promise, &back)).unwrap_or_default(),
+        share_above_bound: population.as_ref().zip(upper).map(|(p, u)| share(p, to(u))),
+        bounds,
+        outlook,
         largest: largest(&rows),
         limit,
+        risks: risks.unwrap_or_default(),
         normality: population.as_ref().and_then(Population::normality),
         values: rows.iter().map(value).collect(),
         notes: notes.into_iter().map(Message::from).collect(),

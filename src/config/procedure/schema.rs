@@ -11,6 +11,7 @@ use crate::config::layout::tables::LAYOUT_FILE;
 use crate::config::manifest::tables::MANIFEST_FILE;
 use crate::config::model::tables::MODEL_FILE;
 use crate::config::schedule::tables::SCHEDULE_FILE;
+use crate::config::sheet::tables::SHEET_FILE;
 use crate::effect::EFFECTS;
 use crate::i18n::{EffectText, Lang, effect_text};
 use crate::measurand::MEASURANDS;
@@ -44,6 +45,11 @@ pub fn manifest() -> Value {
 /// The schema of a claim.
 pub fn model() -> Value {
     with_kinds(document(&MODEL_FILE, "Sagnac model"), "/properties/effect/items/properties/kind")
+}
+
+/// The schema of a sheet file.
+pub fn sheet() -> Value {
+    document(&SHEET_FILE, "Sagnac sheet")
 }
 
 /// The schema of a schedule.

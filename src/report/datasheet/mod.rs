@@ -93,7 +93,11 @@ impl SheetView {
         let generator = format!("{} {}", sheet.program.name, sheet.program.version);
         let quantities = sheet.quantities.iter().enumerate();
         SheetView {
-            title: sheet.model.clone().unwrap_or_else(|| sheet.procedure.id.clone()),
+            title: match (&sheet.title, &sheet.model) {
+                (Some(title), _) => words.local(title),
+                (None, Some(model)) => model.clone(),
+                (None, None) => sheet.procedure.id.clone(),
+            },
             size: words.with(
                 "datasheet.size",
                 &[("units", &count(sheet.units as u64, lang)), ("lots", &count(sheet.lots as u64, lang))],

@@ -1,7 +1,7 @@
 //! A quantity of a data sheet, printed.
 
 use crate::i18n::Localize;
-use crate::record::{SheetBound, SheetOf, SheetQuantity, SheetScale, SheetSide};
+use crate::record::{SheetBound, SheetOf, SheetQuantity, SheetRisk, SheetScale, SheetShare, SheetSide};
 use crate::report::number::{Rounding, bound, count, limit_digits};
 use crate::report::translator::Translator;
 use crate::report::view::FigureView;
@@ -61,7 +61,8 @@ impl QuantityView {
         figure: Option<FigureView>,
         words: Translator,
     ) -> QuantityView {
-        let name = [Some(words.name("measurand", &q.id)), q.phase.clone()];
+        let title = title(q, words);
+        let name = [Some(title.clone()), q.phase.clone()];
         let name = name.into_iter().flatten().chain(several.then(|| q.channel.clone()));
         let rounding =
             q.typical.as_ref().map(|t| Rounding::of(t.value, Some((t.interval.low, t.interval.high))));
@@ -69,6 +70,7 @@ impl QuantityView {
             |v: f64| rounding.map_or_else(|| limit_digits(v, 4, words.lang), |r| r.show(v, words.lang));
         let spread = |v: f64| spread_text(q, v, words);
         let units = count(q.units as u64, words.lang);
+        let footnote = q.footnote.as_ref().map(|f| words.local(f));
         QuantityView {
             name: name.collect::<Vec<_>>().join(" · "),
             units: match q.bounded {
@@ -92,10 +94,15 @@ impl QuantityView {
             }),
             limit: limit_text(q, words),
             meaning: meaning(q, words),
-            notes: q.notes.iter().map(|n| n.say(words.lang)).collect(),
-            figure: figure.map(|f| FigureView { title: words.name("measurand", &q.id), ..f }),
+            notes: footnote.into_iter().chain(q.notes.iter().map(|n| n.say(words.lang))).collect(),
+            figure: figure.map(|f| FigureView { title, ..f }),
         }
     }
+}
+
+/// The name of a quantity: that of the sheet file, or its own.
+fn title(q: &SheetQuantity, words: Translator) -> String {
+    q.name.as_ref().map_or_else(|| words.name("measurand", &q.id), |name| words.local(name))
 }
 
 /// A spread: of logarithms as a factor in percent, else with the unit.
@@ -173,16 +180,51 @@ fn meaning(q: &SheetQuantity, words: Translator) -> Vec<String> {
         ],
     ));
     if let Some((max, share)) = q.limit.and_then(|l| Some((l.max?, l.share_above?))) {
-        let percent = |p: f64| crate::report::number::percent(p, words.lang);
-        out.push(words.with(
-            "datasheet.meaning.limit",
-            &[
-                ("limit", &words.quantity(&crate::report::number::limit(max, words.lang), &q.unit)),
-                ("share", &percent(share.value)),
-                ("low", &percent(share.interval.low)),
-                ("high", &percent(share.interval.high)),
-            ],
-        ));
+        let limit = words.quantity(&crate::report::number::limit(max, words.lang), &q.unit);
+        out.push(share_of("datasheet.meaning.limit", &limit, share, words));
     }
+    let upper = q.bounds.iter().find(|b| b.of == SheetOf::Measured && b.side == SheetSide::Upper);
+    if let Some(b) = upper {
+        if let Some(max) = q.limit.and_then(|l| l.max).filter(|m| *m > 0.0 && b.value > 0.0) {
+            out.push(words.with("datasheet.meaning.limit_ratio", &[("times", &digits(max / b.value))]));
+        }
+        if let Some(share) = q.share_above_bound {
+            let limit = words.quantity(&bound(b.value, true, words.lang), &q.unit);
+            out.push(share_of("datasheet.meaning.proposal", &limit, share, words));
+        }
+    }
+    for more in &q.outlook {
+        let value = bound(more.value, more.side == SheetSide::Upper, words.lang);
+        let value = words.quantity(&value, &q.unit);
+        let n = count(more.units as u64, words.lang);
+        out.push(words.with("datasheet.meaning.outlook", &[("n", &n), ("value", &value)]));
+    }
+    out.extend(q.risks.iter().map(|r| risk(r, words)));
     out
+}
+
+fn share_of(key: &str, limit: &str, share: SheetShare, words: Translator) -> String {
+    let percent = |p: f64| crate::report::number::percent(p, words.lang);
+    words.with(
+        key,
+        &[
+            ("limit", limit),
+            ("share", &percent(share.value)),
+            ("low", &percent(share.interval.low)),
+            ("high", &percent(share.interval.high)),
+        ],
+    )
+}
+
+/// The risks of the present limit, for the present test or a shorter one.
+fn risk(risk: &SheetRisk, words: Translator) -> String {
+    let percent = |p: f64| crate::report::number::percent(p, words.lang);
+    let both = [("consumer", percent(risk.consumer)), ("producer", percent(risk.producer))];
+    let [consumer, producer] = &both;
+    let both = [(consumer.0, consumer.1.as_str()), (producer.0, producer.1.as_str())];
+    if risk.length >= 1.0 {
+        return words.with("datasheet.meaning.risk", &both);
+    }
+    let length = percent(risk.length);
+    words.with("datasheet.meaning.risk_shorter", &[both[0], both[1], ("length", &length)])
 }

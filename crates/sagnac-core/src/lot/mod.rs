@@ -17,5 +17,6 @@ pub mod free;
 pub mod normality;
 pub mod population;
 mod restricted;
+pub mod risk;
 mod sampler;
 pub mod tolerance;
