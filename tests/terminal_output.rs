@@ -166,9 +166,14 @@ fn what_init_writes_is_accepted_as_it_is() {
     );
     assert_ne!(odd, text);
     std::fs::write(at.join("odd name.csv"), odd).unwrap();
-    for (recording, out) in
-        [("odd name.csv".to_owned(), "odd"), (sample("pass"), "plain"), (sample("faults"), "faults")]
-    {
+    let russian = "\"Время, с\",\"Выход ВОГ, град/ч\",\"Темп. корпуса, °C\"";
+    std::fs::write(at.join("стенд.csv"), text.replacen("time_s,rate_deg_h,temp_degC", russian, 1)).unwrap();
+    for (recording, out) in [
+        ("odd name.csv".to_owned(), "odd"),
+        ("стенд.csv".to_owned(), "russian"),
+        (sample("pass"), "plain"),
+        (sample("faults"), "faults"),
+    ] {
         let done = printed(at, "80", &[], &["init", &recording, "--out", out]);
         assert_eq!(done.status.code(), Some(0), "{}", String::from_utf8_lossy(&done.stderr));
         let (procedure, limits) = (format!("{out}/procedure.toml"), format!("{out}/limits.toml"));

@@ -260,7 +260,7 @@ fn toml_text(text: &str) -> String {
 fn ids_of(channels: &[Channel]) -> Vec<String> {
     let mut ids: Vec<String> = vec![];
     for channel in channels {
-        let id = id_of(&channel.id);
+        let id = id_of_column(&channel.id, channel.role);
         let numbered = (2..).map(|n| format!("{}_{n}", id.chars().take(60).collect::<String>()));
         let free = std::iter::once(id.clone()).chain(numbered).find(|id| !ids.contains(id));
         ids.push(free.unwrap_or(id));
@@ -268,12 +268,19 @@ fn ids_of(channels: &[Channel]) -> Vec<String> {
     ids
 }
 
+/// The id of a channel: its name as an id, or its role where the name is of another alphabet and little of it would remain.
+fn id_of_column(name: &str, role: Role) -> String {
+    let letters = || name.chars().filter(|c| c.is_alphabetic());
+    let kept = letters().filter(char::is_ascii).count();
+    if 2 * kept < letters().count() { role.id().to_owned() } else { id_of(name) }
+}
+
 /// A text as an id: letters a to z, digits, `_`, `-` and `.`, 64 at most, the first a letter or digit.
 fn id_of(text: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || "_-.".contains(c) { c } else { '_' };
     let id: String = text.chars().map(safe).collect();
     let parts: Vec<&str> = id.split('_').filter(|part| !part.is_empty()).collect();
-    let id: String = parts.join("_").trim_start_matches(['-', '.']).chars().take(64).collect();
+    let id: String = parts.join("_").trim_start_matches(['-', '.', '_']).chars().take(64).collect();
     if id.is_empty() { "unit".to_owned() } else { id }
 }
 
@@ -293,7 +300,16 @@ mod tests {
         assert_eq!(id_of("odd name"), "odd_name");
         assert_eq!(id_of("_Ωz [deg/h]"), "z_deg_h");
         assert_eq!(id_of("Ω"), "unit");
+        assert_eq!(id_of("Темп. корпуса, °C"), "C");
+        assert_eq!(id_of("-_.x"), "x");
         assert_eq!(id_of(&"a".repeat(100)).len(), 64);
+    }
+
+    #[test]
+    fn a_column_of_another_alphabet_is_named_by_its_role() {
+        assert_eq!(id_of_column("Темп. корпуса, °C", Role::Temperature), "temperature");
+        assert_eq!(id_of_column("Выход ВОГ, град/ч", Role::Rate), "rate");
+        assert_eq!(id_of_column("Ω_z [deg/h]", Role::Rate), "z_deg_h");
     }
 
     #[test]

@@ -8,7 +8,7 @@ use minijinja::{AutoEscape, State};
 /// A sentence, escaped for the file. Backticks that do not pair, and pairs with nothing between them, stay as they are.
 pub fn prose(state: &State, sentence: &str) -> Value {
     match state.auto_escape() {
-        AutoEscape::Html => Value::from_safe_string(parted(sentence, svg::escape, |name| {
+        AutoEscape::Html => Value::from_safe_string(parted(sentence, whole_quantities, |name| {
             format!("<code>{}</code>", svg::escape(name))
         })),
         AutoEscape::Custom(kind) if kind == "md" => {
@@ -33,6 +33,66 @@ fn parted(sentence: &str, escape: impl Fn(&str) -> String, code: impl Fn(&str) -
         _ => escape(part),
     })
     .collect()
+}
+
+/// Units that are a word of their own after a number. Those with a sign or a slash are told by it.
+const UNIT_WORDS: &[&str] = &[
+    "s",
+    "ms",
+    "min",
+    "h",
+    "Hz",
+    "ppm",
+    "mrad",
+    "arcsec",
+    "deg",
+    "V",
+    "g",
+    "mT",
+    "с",
+    "мс",
+    "мин",
+    "ч",
+    "Гц",
+    "млн⁻¹",
+    "мрад",
+    "град",
+    "угл.",
+    "В",
+    "мТл",
+];
+
+fn is_unit(word: &str) -> bool {
+    let word = word.trim_end_matches(['.', ',', ';', ':', ')']);
+    let is_sign = word.starts_with(['°', '%']);
+    let is_ratio = word.split_once('/').is_some_and(|(unit, _)| UNIT_WORDS.contains(&unit));
+    is_sign || is_ratio || UNIT_WORDS.contains(&word)
+}
+
+/// Text of a page with every number and its unit on one line: a browser would break the line at the space between them,
+/// and behind the slash of a unit.
+fn whole_quantities(text: &str) -> String {
+    let words: Vec<&str> = text.split(' ').collect();
+    let mut out = String::with_capacity(text.len());
+    let mut at = 0;
+    while let Some(word) = words.get(at) {
+        let next = words.get(at + 1).filter(|w| word.ends_with(|c: char| c.is_ascii_digit()) && is_unit(w));
+        let joined = word.contains(['\u{202f}', '\u{a0}']) && word.contains('/');
+        if at > 0 {
+            out.push(' ');
+        }
+        match next {
+            Some(unit) => {
+                let (word, unit) = (svg::escape(word), svg::escape(unit));
+                out.push_str(&format!("<span class=\"unit\">{word} {unit}</span>"));
+                at += 1;
+            }
+            None if joined => out.push_str(&format!("<span class=\"unit\">{}</span>", svg::escape(word))),
+            None => out.push_str(&svg::escape(word)),
+        }
+        at += 1;
+    }
+    out
 }
 
 /// Text of a Markdown file in which nothing is markup.
@@ -63,6 +123,19 @@ pub fn markdown(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_and_its_unit_stay_on_one_line() {
+        let seen = whole_quantities("from 3 to 4.5 °/√h, a < b, 12 rates, 61\u{202f}°/h.");
+        let kept = "<span class=\"unit\">4.5 °/√h,</span>";
+        assert_eq!(
+            seen,
+            format!("from 3 to {kept} a &lt; b, 12 rates, <span class=\"unit\">61\u{202f}°/h.</span>")
+        );
+        assert_eq!(whole_quantities("5 s"), "<span class=\"unit\">5 s</span>");
+        assert_eq!(whole_quantities("0,002 град/√ч"), "<span class=\"unit\">0,002 град/√ч</span>");
+        assert_eq!(whole_quantities("file 6 limits/2 sold"), "file 6 limits/2 sold");
+    }
 
     #[test]
     fn markdown_cells_stay_whole() {

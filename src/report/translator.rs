@@ -4,6 +4,7 @@ use super::{number, unit};
 use crate::estimate::Verdict;
 use crate::i18n;
 use crate::i18n::{Arg, Lang, LocalText, Localize, Note, fill, lookup};
+use crate::measurand::{self, Test};
 use serde::Serialize;
 
 /// A label and its value.
@@ -110,6 +111,23 @@ impl Translator {
             "°" | "′" | "″" => format!("{number}{unit}"),
             _ => format!("{number}\u{202f}{unit}"),
         }
+    }
+
+    /// A channel as it is read. Rows of a test with several temperatures, ramps or levels name theirs behind the channel,
+    /// as limits do: `rate@-40`.
+    pub fn channel(self, channel: &str, measurand: &str) -> String {
+        let Some((base, place)) = channel.split_once('@') else { return channel.to_owned() };
+        if let Some(number) = place.strip_prefix("ramp") {
+            return self.with("report.at_ramp", &[("channel", base), ("number", number)]);
+        }
+        let (axis, level) = place.rsplit_once(':').unwrap_or(("", place));
+        let level = level.parse().map_or_else(|_| level.to_owned(), |l| number::limit(l, self.lang));
+        if measurand::find(measurand).is_some_and(|m| m.test() == Test::Temperature) {
+            let level = self.quantity(&level, "degC");
+            return self.with("report.at_temperature", &[("channel", base), ("temperature", &level)]);
+        }
+        let level = if axis.is_empty() { level } else { format!("{axis} {level}") };
+        self.with("report.at_level", &[("channel", base), ("level", &level)])
     }
 
     /// The word of a verdict.

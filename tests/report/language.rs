@@ -205,7 +205,6 @@ const LATIN: &[&str] = &[
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
-    "datasheet.of_unit",
     "help.schema.value.kind.datasheet",
     "explain.noticeable.at",
     "explain.noticeable.beyond",

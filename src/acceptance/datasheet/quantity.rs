@@ -28,7 +28,8 @@ fn key(m: &InputMeasurand) -> Key<'_> {
 pub(super) fn quantities(units: &[TestedUnit], promise: Promise) -> Vec<SheetQuantity> {
     let mut keys: Vec<Key<'_>> = vec![];
     for m in units.iter().flat_map(|u| &u.input.measurands) {
-        if !keys.contains(&key(m)) {
+        // The Earth rate is one of the site, not of the units.
+        if m.id != measurand::EARTH_RATE_COMPONENT.id && !keys.contains(&key(m)) {
             keys.push(key(m));
         }
     }

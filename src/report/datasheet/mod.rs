@@ -171,7 +171,7 @@ fn pair(p: &SheetPair, several: bool, words: Translator) -> PairView {
         allan: words.name("measurand", &p.allan),
         allan_value: value(p.allan_value),
         ratio: digits(p.ratio),
-        range: words.with("datasheet.span", &[("from", &digits(low)), ("to", &digits(high))]),
+        range: words.with("report.interval", &[("low", &digits(low)), ("high", &digits(high))]),
         units: count(p.units as u64, words.lang),
     }
 }

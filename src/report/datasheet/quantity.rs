@@ -12,26 +12,34 @@ use serde::Serialize;
 pub struct QuantityView {
     /// Name, with its phase and channel where there are several.
     pub name: String,
-    /// Units that count, and how many are only bounded, in words.
+    /// Unit of every number that states none.
+    pub unit: String,
+    /// Units that count.
     pub units: String,
-    /// Median with its unit; empty where it cannot be told.
+    /// How many of them are only bounded, in words; empty where none is.
+    pub bounded: String,
+    /// Median; empty where it cannot be told.
     pub typical: String,
     /// Its interval.
     pub interval: String,
-    /// Spread between units.
+    /// Spread between units; in percent where it is one of logarithms.
     pub between_units: String,
     /// Spread between lots.
     pub between_lots: String,
     /// Spread of the measurement.
     pub measurement: String,
-    /// Bounds for true values, with their unit.
+    /// Bounds for true values.
     pub bound_true: String,
     /// Bounds for measured values.
     pub bound_measured: String,
     /// Each bound with what it means.
     pub bounds: Vec<BoundView>,
-    /// Largest value with the serial number of its unit.
+    /// How all bounds were obtained, in words; empty where they were obtained in several ways.
+    pub method: String,
+    /// Largest value.
     pub largest: String,
+    /// Serial number of the unit that has it.
+    pub largest_of: String,
     /// Limit of the results; empty where there is none.
     pub limit: String,
     /// What the number of the quantity means, in sentences.
@@ -45,7 +53,7 @@ pub struct QuantityView {
 /// A bound, printed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct BoundView {
-    /// The bound with its unit.
+    /// The bound.
     pub value: String,
     /// How it was obtained, in words.
     pub method: String,
@@ -63,24 +71,28 @@ impl QuantityView {
     ) -> QuantityView {
         let title = title(q, words);
         let name = [Some(title.clone()), q.phase.clone()];
-        let name = name.into_iter().flatten().chain(several.then(|| q.channel.clone()));
+        let name = name.into_iter().flatten().chain(several.then(|| words.channel(&q.channel, &q.id)));
         let rounding =
             q.typical.as_ref().map(|t| Rounding::of(t.value, Some((t.interval.low, t.interval.high))));
         let show =
             |v: f64| rounding.map_or_else(|| limit_digits(v, 4, words.lang), |r| r.show(v, words.lang));
-        let spread = |v: f64| spread_text(q, v, words);
-        let units = count(q.units as u64, words.lang);
+        let spread = |v: f64| match q.scale {
+            SheetScale::Log => spread_text(q, v, words),
+            SheetScale::Linear => limit_digits(v, 2, words.lang),
+        };
         let footnote = q.footnote.as_ref().map(|f| words.local(f));
         QuantityView {
             name: name.collect::<Vec<_>>().join(" · "),
-            units: match q.bounded {
-                0 => units,
-                n => words.with("datasheet.units_bounded", &[("n", &units), ("bounded", &n.to_string())]),
+            unit: words.unit(&q.unit),
+            units: count(q.units as u64, words.lang),
+            bounded: match q.bounded {
+                0 => String::new(),
+                n => words.with("datasheet.units_bounded", &[("bounded", &count(n as u64, words.lang))]),
             },
-            typical: q.typical.as_ref().map_or_else(String::new, |t| words.quantity(&show(t.value), &q.unit)),
+            typical: q.typical.as_ref().map_or_else(String::new, |t| show(t.value)),
             interval: q.typical.as_ref().map_or_else(String::new, |t| {
                 let (low, high) = (show(t.interval.low), show(t.interval.high));
-                words.with("datasheet.span", &[("from", &low), ("to", &high)])
+                words.with("report.interval", &[("low", &low), ("high", &high)])
             }),
             between_units: q.spread.as_ref().map_or_else(String::new, |s| spread(s.between_units)),
             between_lots: q.spread.as_ref().and_then(|s| s.between_lots).map_or_else(String::new, spread),
@@ -88,12 +100,16 @@ impl QuantityView {
             bound_true: bound_text(q, SheetOf::True, words),
             bound_measured: bound_text(q, SheetOf::Measured, words),
             bounds: q.bounds.iter().map(|b| bound_view(q, b, words)).collect(),
-            largest: q.largest.as_ref().map_or_else(String::new, |l| {
-                let value = words.quantity(&show(l.value), &q.unit);
-                words.with("datasheet.of_unit", &[("value", &value), ("serial", &l.serial)])
-            }),
+            method: match q.bounds.first() {
+                Some(b) if q.bounds.iter().all(|o| o.method == b.method) => {
+                    words.name("datasheet.method", &b.method)
+                }
+                _ => String::new(),
+            },
+            largest: q.largest.as_ref().map_or_else(String::new, |l| show(l.value)),
+            largest_of: q.largest.as_ref().map_or_else(String::new, |l| l.serial.clone()),
             limit: limit_text(q, words),
-            meaning: meaning(q, words),
+            meaning: meaning(q, &show, words),
             notes: footnote.into_iter().chain(q.notes.iter().map(|n| n.say(words.lang))).collect(),
             figure: figure.map(|f| FigureView { title, ..f }),
         }
@@ -113,17 +129,17 @@ fn spread_text(q: &SheetQuantity, value: f64, words: Translator) -> String {
     }
 }
 
-fn one(q: &SheetQuantity, b: &SheetBound, words: Translator) -> String {
+fn one(b: &SheetBound, words: Translator) -> String {
     let upper = b.side == SheetSide::Upper;
     let sign = if upper { '≤' } else { '≥' };
-    format!("{sign}\u{202f}{}", words.quantity(&bound(b.value, upper, words.lang), &q.unit))
+    format!("{sign}\u{202f}{}", bound(b.value, upper, words.lang))
 }
 
 /// The bounds of a kind, lower before upper.
 fn bound_text(q: &SheetQuantity, of: SheetOf, words: Translator) -> String {
     let on = |side: SheetSide| q.bounds.iter().find(|b| b.of == of && b.side == side);
     let both = [on(SheetSide::Lower), on(SheetSide::Upper)];
-    both.into_iter().flatten().map(|b| one(q, b, words)).collect::<Vec<_>>().join("; ")
+    both.into_iter().flatten().map(|b| one(b, words)).collect::<Vec<_>>().join("; ")
 }
 
 fn bound_view(q: &SheetQuantity, b: &SheetBound, words: Translator) -> BoundView {
@@ -136,7 +152,7 @@ fn bound_view(q: &SheetQuantity, b: &SheetBound, words: Translator) -> BoundView
     let percent = |p: f64| limit_digits(100.0 * p, 4, words.lang);
     let value = words.quantity(&bound(b.value, b.side == SheetSide::Upper, words.lang), &q.unit);
     BoundView {
-        value: one(q, b, words),
+        value: one(b, words),
         method: words.name("datasheet.method", &b.method),
         meaning: words.with(
             key,
@@ -151,25 +167,31 @@ fn bound_view(q: &SheetQuantity, b: &SheetBound, words: Translator) -> BoundView
 
 fn limit_text(q: &SheetQuantity, words: Translator) -> String {
     let Some(limit) = q.limit else { return String::new() };
-    let side = |v: f64, sign: char| {
-        format!("{sign}\u{202f}{}", words.quantity(&crate::report::number::limit(v, words.lang), &q.unit))
-    };
-    let both = [limit.min.map(|v| side(v, '≥')), limit.max.map(|v| side(v, '≤'))];
-    both.into_iter().flatten().collect::<Vec<_>>().join("; ")
+    let shown = |v: f64| crate::report::number::limit(v, words.lang);
+    match (limit.min, limit.max) {
+        (Some(min), Some(max)) if max > 0.0 && (min + max).abs() <= 1e-9 * max => {
+            format!("±\u{202f}{}", shown(max))
+        }
+        (Some(min), Some(max)) => {
+            words.with("report.interval", &[("low", &shown(min)), ("high", &shown(max))])
+        }
+        (Some(min), None) => format!("≥\u{202f}{}", shown(min)),
+        (None, Some(max)) => format!("≤\u{202f}{}", shown(max)),
+        (None, None) => String::new(),
+    }
 }
 
 /// What the numbers of the quantity mean.
-fn meaning(q: &SheetQuantity, words: Translator) -> Vec<String> {
+fn meaning(q: &SheetQuantity, show: &impl Fn(f64) -> String, words: Translator) -> Vec<String> {
     let (Some(typical), Some(spread)) = (&q.typical, &q.spread) else { return vec![] };
-    let digits = |v: f64| limit_digits(v, 3, words.lang);
-    let unit = |v: f64| words.quantity(&digits(v), &q.unit);
+    let unit = |v: f64| words.quantity(&show(v), &q.unit);
     let mut out = vec![words.with(
         "datasheet.meaning.typical",
         &[
             ("value", &unit(typical.value)),
-            ("low", &digits(typical.interval.low)),
+            ("low", &show(typical.interval.low)),
             ("high", &unit(typical.interval.high)),
-            ("coverage", &digits(100.0 * typical.interval.coverage)),
+            ("coverage", &limit_digits(100.0 * typical.interval.coverage, 3, words.lang)),
         ],
     )];
     out.push(words.with(
@@ -186,7 +208,10 @@ fn meaning(q: &SheetQuantity, words: Translator) -> Vec<String> {
     let upper = q.bounds.iter().find(|b| b.of == SheetOf::Measured && b.side == SheetSide::Upper);
     if let Some(b) = upper {
         if let Some(max) = q.limit.and_then(|l| l.max).filter(|m| *m > 0.0 && b.value > 0.0) {
-            out.push(words.with("datasheet.meaning.limit_ratio", &[("times", &digits(max / b.value))]));
+            out.push(words.with(
+                "datasheet.meaning.limit_ratio",
+                &[("times", &limit_digits(max / b.value, 2, words.lang))],
+            ));
         }
         if let Some(share) = q.share_above_bound {
             let limit = words.quantity(&bound(b.value, true, words.lang), &q.unit);

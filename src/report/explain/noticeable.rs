@@ -49,9 +49,11 @@ pub(super) fn sizes(all: &Explanation, words: Translator) -> Vec<NoticeableRow> 
 
 fn row(n: &NoticeableSize, words: Translator) -> NoticeableRow {
     let worst = n.worst.as_ref().map(|w| {
-        let given = [("size", size(n, w.size, words)), ("place", place(&w.at, words))];
-        let given: Vec<(&str, &str)> = given.iter().map(|(k, v)| (*k, v.as_str())).collect();
-        words.with("explain.noticeable.at", &given)
+        let (size, place) = (size(n, w.size, words), place(&w.at, words));
+        if place.is_empty() {
+            return size;
+        }
+        words.with("explain.noticeable.at", &[("size", &size), ("place", &place)])
     });
     NoticeableRow {
         title: capital(&title(&n.kind, words)),

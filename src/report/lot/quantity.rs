@@ -64,7 +64,7 @@ fn quantity(of: Key<'_>, units: &[LotUnit], several_channels: bool, words: Trans
     let same = limits.iter().all(|l| Some(l) == limits.first());
     let (phase, channel, id) = of;
     let parts = [Some(words.name("measurand", id)), phase.map(str::to_owned)];
-    let parts = parts.into_iter().flatten().chain(several_channels.then(|| channel.to_owned()));
+    let parts = parts.into_iter().flatten().chain(several_channels.then(|| words.channel(channel, id)));
     QuantityView {
         name: parts.collect::<Vec<_>>().join(" · "),
         limit: limits.first().filter(|_| same).cloned().unwrap_or_default(),

@@ -125,21 +125,27 @@ pub fn labels(out: &mut String, plot: &Plot<'_>, panel: &Panel, lang: Lang) {
     let frame = Rect { left: plot.left, top: plot.top, width: plot.width, height: plot.height }.grown(-3.0);
     let drawn = Drawn::of(plot, panel);
     let mut taken: Vec<Rect> = vec![];
+    let mut leads: Vec<((f64, f64), (f64, f64))> = vec![];
     for layer in &panel.layers {
         let Layer::Label { at, text: said } = layer else { continue };
         let Some(point) = plot.at(*at).filter(|_| plot.x.holds(at.0) && plot.y.holds(at.1)) else { continue };
         let said = words.say(said);
         let size = (width(&said, SIZE), SIZE + 2.0);
-        let free = |place: &Rect| {
+        // The line that leads from the point to far words.
+        let lead =
+            |place: &Rect, distance: f64| (distance >= LED).then(|| (point, place.grown(1.0).nearest(point)));
+        let free = |(place, distance): &(Rect, f64)| {
             let clear = place.grown(CLEAR);
             frame.contains((place.left, place.top))
                 && frame.contains((place.left + place.width, place.top + place.height))
                 && !taken.iter().any(|t| t.overlaps(&clear))
+                && !leads.iter().any(|l| clear.is_crossed(*l))
+                && !lead(place, *distance).is_some_and(|l| taken.iter().any(|t| t.is_crossed(l)))
                 && !drawn.is_covered_by(&clear)
         };
-        let Some((place, distance)) = places(point, size).find(|(place, _)| free(place)) else { continue };
-        if distance >= LED {
-            let (x, y) = place.grown(1.0).nearest(point);
+        let Some((place, distance)) = places(point, size).find(free) else { continue };
+        if let Some((point, (x, y))) = lead(&place, distance) {
+            leads.push((point, (x, y)));
             let _ = writeln!(
                 out,
                 "<path d=\"M{} {}L{} {}\" stroke=\"#777\" stroke-width=\"0.7\" fill=\"none\"/>",
@@ -230,6 +236,38 @@ mod tests {
             .collect();
         assert!(points.len() > 1500);
         assert!(!points.windows(2).any(|w| place.is_crossed((w[0], w[1]))), "{place:?}");
+    }
+
+    #[test]
+    fn a_leading_line_crosses_no_words() {
+        // Labels at one point push each other away, farther than a line is needed.
+        let svg = render(&figure((0..14).map(|_| label()).collect()), Lang::En);
+        let number = |line: &str, name: &str| -> f64 {
+            line.split(&format!(" {name}=\"")).nth(1).unwrap().split('"').next().unwrap().parse().unwrap()
+        };
+        let size = (width("1.5 Hz", SIZE), SIZE + 2.0);
+        let words = svg.lines().filter(|l| l.contains("1.5\u{202f}Hz") || l.contains("1.5 Hz"));
+        let places: Vec<Rect> = words
+            .map(|l| Rect {
+                left: number(l, "x"),
+                top: number(l, "y") - SIZE + 1.0,
+                width: size.0,
+                height: size.1,
+            })
+            .collect();
+        let strokes: Vec<((f64, f64), (f64, f64))> = svg
+            .lines()
+            .filter(|l| l.contains("#777") && l.contains("stroke-width=\"0.7\""))
+            .map(|l| {
+                let d = l.split('"').nth(1).unwrap().trim_start_matches('M').replace('L', " ");
+                let p: Vec<f64> = d.split(' ').map(|v| v.parse().unwrap()).collect();
+                ((p[0], p[1]), (p[2], p[3]))
+            })
+            .collect();
+        assert!(places.len() > 8 && strokes.len() > 2, "{} words, {} lines", places.len(), strokes.len());
+        for place in &places {
+            assert!(!strokes.iter().any(|s| place.grown(-0.5).is_crossed(*s)), "{place:?}");
+        }
     }
 
     #[test]

@@ -24,9 +24,18 @@ pub fn datasheet(view: &SheetView, lang: Lang, terminal: Terminal) -> String {
         .quantities
         .iter()
         .map(|q| {
-            [&q.name, &q.units, &q.typical, &q.bound_true, &q.bound_measured, &q.largest]
-                .map(|text| Cell::from(text.clone()))
-                .to_vec()
+            let with_unit = |text: &str| match text {
+                "" => "–".to_owned(),
+                text => words.joined(text, &q.unit),
+            };
+            vec![
+                q.name.clone().into(),
+                q.units.clone().into(),
+                with_unit(&q.typical).into(),
+                with_unit(&q.bound_true).into(),
+                with_unit(&q.bound_measured).into(),
+                with_unit(&q.largest).into(),
+            ]
         })
         .collect();
     out += &table(&columns, &rows, terminal);

@@ -10,6 +10,8 @@ use unicode_width::UnicodeWidthStr;
 const GAP: usize = 2;
 /// Widest first column; longer names are wrapped.
 const NAME_WIDTH: usize = 46;
+/// Narrowest column that names are wrapped to where the others need the room.
+const LEAST_NAME_WIDTH: usize = 26;
 
 /// On which side the cells of a column are in line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,18 +57,23 @@ pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Stri
     let cell = |row: &[Cell], c: usize| row.get(c).cloned().unwrap_or_default();
     let filled = |c: &usize| rows.iter().any(|row| !cell(row, *c).text.is_empty());
     let mut shown: Vec<usize> = (0..columns.len()).filter(filled).collect();
-    let widest = |c: usize| {
+    let needed = |c: usize| {
         let head = columns.get(c).map_or(0, |column| column.head.width());
-        let widest = rows.iter().map(|row| cell(row, c).text.width()).max().unwrap_or(0).max(head);
-        if c == 0 { widest.min(NAME_WIDTH) } else { widest }
+        rows.iter().map(|row| cell(row, c).text.width()).max().unwrap_or(0).max(head)
     };
-    let total = |shown: &[usize]| shown.iter().map(|c| widest(*c) + GAP).sum::<usize>();
-    if total(&shown) > terminal.width {
+    let room = |shown: &[usize]| {
+        let others: usize = shown.iter().filter(|c| **c != 0).map(|c| needed(*c) + GAP).sum();
+        terminal.width.checked_sub(others + GAP)
+    };
+    let names = needed(0).min(NAME_WIDTH);
+    if room(&shown).is_none_or(|room| room < names) {
         shown.retain(|c| columns.get(*c).is_some_and(|column| !column.optional));
     }
-    if total(&shown) > terminal.width {
+    let Some(name_width) = room(&shown).filter(|room| *room >= names.min(LEAST_NAME_WIDTH)) else {
         return stacked(columns, &rows, terminal);
-    }
+    };
+    let name_width = names.min(name_width);
+    let widest = |c: usize| if c == 0 { name_width } else { needed(c) };
     let line = |texts: &[(usize, Cell)]| {
         let mut out = String::new();
         for (c, cell) in texts {
@@ -87,7 +94,7 @@ pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Stri
     let mut out = line(&heads);
     for row in &rows {
         let name = cell(row, 0);
-        let mut names = wrapped(&name.text, NAME_WIDTH).into_iter();
+        let mut names = wrapped(&name.text, name_width).into_iter();
         let first = Cell { text: names.next().unwrap_or_default(), style: name.style };
         let cells: Vec<(usize, Cell)> =
             shown.iter().map(|c| (*c, if *c == 0 { first.clone() } else { cell(row, *c) })).collect();

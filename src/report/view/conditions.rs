@@ -3,7 +3,7 @@
 use super::common::{required, status};
 use super::faults;
 use crate::record::{ConditionRecord, RunRecord};
-use crate::report::number::{NOTHING, count, duration, limit_digits};
+use crate::report::number::{NOTHING, count, duration, limit_digits, percent};
 use crate::report::translator::Translator;
 use serde::Serialize;
 use serde_json::Value;
@@ -38,6 +38,9 @@ const ENDINGS: &[(&str, &str)] = &[
     ("_s", "s"),
     ("_h", "h"),
 ];
+
+/// Values that say nothing without their name, even where they stand alone.
+const ALWAYS_NAMED: &[&str] = &["factor", "probability", "stretches"];
 
 /// Values that the explanation states better.
 const IN_WORDS: &[&str] = &["difference"];
@@ -99,6 +102,9 @@ fn one(name: &str, value: &Value, alone: bool, words: Translator) -> String {
         (Value::Number(n), Some((_, "s"))) => {
             n.as_f64().map_or_else(|| n.to_string(), |v| duration(v, words.lang))
         }
+        (Value::Number(n), _) if name == "probability" => {
+            n.as_f64().map_or_else(|| n.to_string(), |p| percent(p, words.lang))
+        }
         (Value::Number(n), _) => {
             let text = match n.as_u64() {
                 Some(whole) => count(whole, words.lang),
@@ -111,6 +117,6 @@ fn one(name: &str, value: &Value, alone: bool, words: Translator) -> String {
         (Value::Null, _) => NOTHING.to_owned(),
         (other, _) => other.to_string(),
     };
-    // What stands alone needs no name.
-    if alone || name == "value" { shown } else { format!("{}\u{a0}{shown}", words.name("observed", name)) }
+    let is_clear = alone && !ALWAYS_NAMED.contains(&name);
+    if is_clear || name == "value" { shown } else { format!("{}\u{a0}{shown}", words.name("observed", name)) }
 }

@@ -38,7 +38,7 @@ impl Matrix {
             }
         }
         // Rows by zone or by ramp are a list, not a channel beside others.
-        if !(2..=MAX_COLUMNS).contains(&channels.len()) || channels.iter().any(|c| c.contains('@')) {
+        if !(2..=MAX_COLUMNS).contains(&channels.len()) || rows.iter().any(|r| r.is_part) {
             return None;
         }
         let mut lines: Vec<(&str, MatrixRow)> = vec![];
@@ -73,6 +73,7 @@ mod tests {
         Row {
             id: id.into(),
             channel: channel.into(),
+            is_part: channel.contains('@'),
             name: id.into(),
             place: String::new(),
             bound: String::new(),

@@ -14,8 +14,10 @@ use serde::Serialize;
 pub struct Row {
     /// Id of the measurand.
     pub id: String,
-    /// Channel.
+    /// Channel, with the temperature, ramp or level that the row is of.
     pub channel: String,
+    /// True where the row is of a temperature, a ramp or a level of a channel.
+    pub is_part: bool,
     /// Name of the quantity.
     pub name: String,
     /// How it was obtained, in words.
@@ -172,7 +174,8 @@ pub fn reason(m: &MeasurandRecord, several_channels: bool, words: Translator) ->
         _ => return None,
     };
     let name = words.name("measurand", &m.id);
-    let name = if several_channels { format!("{name} · {}", m.channel) } else { name };
+    let name =
+        if several_channels { format!("{name} · {}", words.channel(&m.channel, &m.id)) } else { name };
     let value = if m.value.is_some() { value(m, words) } else { bound_alone(m, words) };
     let mut value = if value.is_empty() { value } else { words.quantity(&value, &m.unit) };
     let interval = interval(m, words);
@@ -241,7 +244,8 @@ fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> R
     numbers.dedup();
     Row {
         id: m.id.clone(),
-        channel: m.channel.clone(),
+        channel: words.channel(&m.channel, &m.id),
+        is_part: m.channel.contains('@'),
         name: words.name("measurand", &m.id),
         method: words.name("how", &m.method),
         place: place(m, words),
