@@ -260,12 +260,18 @@ fn samples() {
     for effect in EFFECTS {
         let Model::Samples(samples) = effect.model() else { continue };
         let kind = effect.kind();
-        let mut rate = noise(23, drivers.samples, 0.05);
-        let mut keep = vec![true; rate.len()];
-        found(&samples.detector(), &drivers, &rate, &keep, &mut figures, &format!("{kind} not there"));
-        samples.apply(&stated(kind), &drivers, 7, &mut rate, &mut keep);
-        figures.add(format!("{kind} applied"), &(&rate, keep.iter().filter(|k| !**k).count()));
-        found(&samples.detector(), &drivers, &rate, &keep, &mut figures, kind);
+        let even = noise(23, drivers.samples, 0.05);
+        let last = even.len() as f64;
+        let rising = even.iter().enumerate().map(|(i, e)| e * (0.5 + 2.0 * i as f64 / last)).collect();
+        for (level, mut rate) in [("", even), (" in rising noise", rising)] {
+            let mut keep = vec![true; rate.len()];
+            let name = format!("{kind}{level}");
+            found(&samples.detector(), &drivers, &rate, &keep, &mut figures, &format!("{name} not there"));
+            samples.apply(&stated(kind), &drivers, 7, &mut rate, &mut keep);
+            let dropped = keep.iter().filter(|k| !**k).count();
+            figures.add(format!("{name} applied"), &(&rate, dropped));
+            found(&samples.detector(), &drivers, &rate, &keep, &mut figures, &name);
+        }
     }
     figures.check("samples.txt");
 }

@@ -15,7 +15,7 @@ use sagnac_core::noise::intervals::bounded;
 use sagnac_core::noise::model::{NoiseModel, TERMS};
 use sagnac_core::noise::motion::{motion, scatter};
 use sagnac_core::noise::null_ratio::null_ratio;
-use sagnac_core::noise::prediction::{WindowPrediction, unseen_variance};
+use sagnac_core::noise::prediction::{WindowPrediction, covariance_of, unseen_variance};
 use sagnac_core::noise::residual::whitened;
 use sagnac_core::noise::russian;
 use sagnac_core::noise::simulate::{Setup, Simulator};
@@ -276,6 +276,15 @@ fn expectations() {
         wanted.map(|w| hours_until_identifiable_among(w, &described.model, &described.parameters, 1.0));
     figures.add("hours among", &hours);
     figures.add("propagated", &described.propagate(|m| m.allan_variance(100.0, 0.5).sqrt()));
+    // A quantity with itself has its variance, and with its negative the same with the other sign.
+    let deviation = |m: &Composite| m.allan_variance(100.0, 0.5).sqrt();
+    let variance = described.propagate(deviation).standard_uncertainty.powi(2);
+    for (sign, size) in [(1.0, 0.05), (-1.0, 0.2)] {
+        let other = |m: &Composite| sign * deviation(m);
+        let together = covariance_of(&described, (deviation, 0.05), (other, size));
+        assert!((together - sign * variance).abs() < 1e-3 * variance, "{together} of {variance}");
+        figures.add(format!("covariance {sign}"), &together);
+    }
     figures.add("russian", &(russian::predict(&model, 100.0, 36), russian::angle_random_walk_from_10s(0.2)));
     let covariance = [[1e-8; 5]; 5];
     figures.add("russian uncertainty", &russian::prediction_uncertainty(&model, &covariance, 100.0, 36));

@@ -193,7 +193,7 @@ fn shape_of(item: &Item, shape: &mut String, numbers: &mut Vec<f64>) {
             }
             Piece::Group(open, items, close) => {
                 shape.push(*open);
-                for inner in condensed(items) {
+                for inner in condensed(*open, items) {
                     shape_of(&inner, shape, numbers);
                     shape.push_str(", ");
                 }
@@ -203,9 +203,9 @@ fn shape_of(item: &Item, shape: &mut String, numbers: &mut Vec<f64>) {
     }
 }
 
-/// A long list by its alike items; a short one as it is.
-fn condensed(items: &[Item]) -> Vec<Item> {
-    if items.len() <= SHORT {
+/// A long list by its alike items; a short one, a tuple or the fields of a struct as they are.
+fn condensed(open: char, items: &[Item]) -> Vec<Item> {
+    if items.len() <= SHORT || open != '[' {
         return items.to_vec();
     }
     let mut kinds: Vec<(String, Vec<Vec<f64>>)> = vec![];
@@ -253,7 +253,7 @@ fn on_one_line(item: &Item) -> String {
             Piece::Count(x) => out.push_str(&x.to_string()),
             Piece::Group(open, items, close) => {
                 let inner: Vec<String> =
-                    condensed(items).iter().map(|i| on_one_line(i).trim_end().to_owned()).collect();
+                    condensed(*open, items).iter().map(|i| on_one_line(i).trim_end().to_owned()).collect();
                 out.push_str(&format!("{open}{}{close}", inner.join(", ")));
             }
         }
@@ -277,7 +277,7 @@ fn lay_out(item: &Item, indent: usize, out: &mut String) {
             Piece::Count(x) => out.push_str(&x.to_string()),
             Piece::Group(open, items, close) => {
                 out.push_str(&format!("{open}\n"));
-                condensed(items).iter().for_each(|i| lay_out(i, indent + 2, out));
+                condensed(*open, items).iter().for_each(|i| lay_out(i, indent + 2, out));
                 out.push_str(&format!("{margin}{close}"));
             }
         }
