@@ -223,7 +223,7 @@ fn rate_table() {
     for (name, rates, response, sigma) in cases {
         let at = |t: f64| {
             let rate = rate_at(rates, t);
-            let outer = if (t / 40.0) as usize % 2 == 0 { 7200.0 } else { 0.0 };
+            let outer = if ((t / 40.0) as usize).is_multiple_of(2) { 7200.0 } else { 0.0 };
             let warm = 20.0 + 0.002 * t;
             let turned = 3.0 * (2.0 * PI * (t * rate) / 1_296_000.0).cos();
             let output = response(rate) + sigma * e[t as usize] + 2e-4 * outer + 0.01 * warm;
