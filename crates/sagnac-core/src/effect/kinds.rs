@@ -77,3 +77,5 @@ pub fn parameter(name: &str) -> Option<&'static Param> {
 mod spectral_tests;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod truths;
