@@ -4,6 +4,7 @@
 
 mod datasheet;
 mod explanation;
+mod history;
 mod lot;
 mod plan;
 mod run;
@@ -13,6 +14,7 @@ mod wrap;
 
 pub use datasheet::datasheet;
 pub use explanation::explanation;
+pub use history::history;
 pub use lot::{lot, lot_unit};
 pub use plan::plan;
 pub use run::run;
