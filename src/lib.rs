@@ -40,6 +40,7 @@
 //! | [`record`] | what a run leaves behind, as `result.json` holds it |
 //! | [`acceptance`] | conditions, the run, comparisons, inspection |
 //! | [`report`] | views of a record as HTML, Markdown and SVG |
+//! | [`store`] | results that are kept, and their index |
 //! | [`i18n`] | sentences in English and Russian |
 //! | [`output`] | folders that appear complete or not at all |
 //! | [`cli`] | the program |
@@ -57,6 +58,7 @@ pub mod report;
 pub mod selftest;
 pub mod series;
 pub mod simulate;
+pub mod store;
 
 pub use i18n::Lang;
 pub use library::{Error, Explanation, Model, Noise, Procedure, Rate, Recording, RunResult, explain};

@@ -6,6 +6,7 @@
 //! A result lists its inputs and its files. It takes the place of an earlier one unasked only where both have the same
 //! inputs, and only files that the earlier one lists are ever removed.
 
+mod addressed;
 mod csv;
 mod earlier;
 mod error;
@@ -14,6 +15,7 @@ mod kind;
 mod part;
 mod partial;
 
+pub use addressed::AddressedFolder;
 pub use csv::quoted;
 pub use error::OutputError;
 pub use file::StagedFile;
@@ -30,7 +32,7 @@ use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Attempts to put a folder in place while other runs put theirs there.
@@ -219,6 +221,11 @@ fn listed(
 /// The folder that holds a path.
 fn parent(path: &Path) -> &Path {
     path.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+/// True for a name that stays in its folder, and may have folders in it.
+pub fn is_plain(name: &str) -> bool {
+    !name.is_empty() && Path::new(name).components().all(|c| matches!(c, Component::Normal(_)))
 }
 
 /// Refuses a place that holds something that is read.

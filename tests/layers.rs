@@ -35,7 +35,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
             &["record"],
             &["config"],
             &["ingest"],
-            &["series"],
+            &["series", "store"],
             &["simulate"],
             &["acceptance", "selftest"],
             &["report"],

@@ -6,6 +6,7 @@ use super::reading::tidy;
 use super::request::{Request, RunError, session};
 use super::test_kind::Reading;
 use super::verdict;
+use crate::config::procedure::unit_facts::unknown;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::Note;
@@ -75,11 +76,8 @@ pub(super) fn clauses(declared: &[ClauseRecord], here: &str) -> Vec<ClauseRecord
 }
 
 fn errors(request: &Request<'_>) -> Vec<Note> {
-    let serial = request.unit.serial.as_deref().map(str::trim).filter(|s| !s.is_empty());
-    if request.procedure.unit_under_test.serial_required && request.is_run() && serial.is_none() {
-        return vec![Note::new("error.serial_missing")];
-    }
-    vec![]
+    let asked = &request.procedure.unit_under_test;
+    if request.is_run() { unknown(&request.unit, asked.serial_required, &asked.requires) } else { vec![] }
 }
 
 /// The record with what is known before the recording is read.
@@ -94,6 +92,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         procedure: request.procedure_record.clone(),
         unit_under_test: request.unit.clone(),
         session: session(request),
+        attempt: None,
         recording: vec![],
         verdict: Verdict::None,
         summary: vec![],

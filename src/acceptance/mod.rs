@@ -17,6 +17,7 @@ pub mod condition;
 pub mod datasheet;
 pub mod explained;
 pub mod figures;
+pub mod history;
 pub mod inspect;
 mod interval_means;
 mod kinds;

@@ -5,6 +5,7 @@ use super::condition::checks::none_made;
 use super::kinds;
 use super::request::Outcome;
 use crate::config::procedure::phases::{Phase, Phased};
+use crate::config::procedure::unit_facts::unknown;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::{Arg, Note};
@@ -30,12 +31,7 @@ pub fn folder(phase: &Phase) -> String {
 pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session: Session) -> RunRecord {
     let phases: Vec<PhaseRecord> = done.iter().map(of).collect();
     let worst = phases.iter().map(|p| p.verdict).max().unwrap_or(Verdict::None);
-    let serial = unit.serial.as_deref().map(str::trim).filter(|s| !s.is_empty());
-    let errors: Vec<Note> = if phased.serial_required && serial.is_none() {
-        vec![Note::new("error.serial_missing")]
-    } else {
-        vec![]
-    };
+    let errors: Vec<Note> = unknown(&unit, phased.serial_required, &phased.requires);
     let of_phase = |p: &PhaseRecord| {
         let verdict = Arg::key("verdict", p.verdict.id());
         match failure(p) {
@@ -69,6 +65,7 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         procedure: Some(phased.identity.clone()),
         unit_under_test: unit,
         session,
+        attempt: None,
         recording: phases.iter().flat_map(|p| p.recording.clone()).collect(),
         verdict: if errors.is_empty() { worst } else { Verdict::Error },
         summary,

@@ -2,10 +2,11 @@
 
 use super::finish::write;
 use super::inputs::Inputs;
+use super::keep::StoreArgs;
 use super::options::OutputArgs;
 use super::place::OutputPlace;
 use super::printer::Printer;
-use super::{exit, place};
+use super::{exit, place, store};
 use crate::acceptance::datasheet::{Refusal, TestedUnit, apply, datasheet, select};
 use crate::config::sheet;
 use crate::i18n::{Lang, Note};
@@ -16,6 +17,7 @@ use crate::record::{RESULT_FORMAT, SheetInput, read};
 use crate::report::datasheet::SheetView;
 use crate::report::export::EXPORTERS;
 use crate::report::{Results, terminal};
+use crate::store::Filter;
 use chrono::{SecondsFormat, Utc};
 use clap::Args;
 use sha2::{Digest, Sha256};
@@ -24,8 +26,20 @@ use std::path::{Path, PathBuf};
 #[derive(Debug, Args)]
 pub struct DatasheetArgs {
     /// Results of the units: result.json files, their folders, or quoted patterns of them
-    #[arg(required = true, value_name = "RESULT")]
+    #[arg(required_unless_present_any = ["store", "model", "lot"], value_name = "RESULT")]
     results: Vec<PathBuf>,
+    /// Store that the results are taken from [default: SAGNAC_STORE, else the configuration of the user]
+    #[arg(long, value_name = "STORE", conflicts_with = "results")]
+    store: Option<PathBuf>,
+    /// Model of the units, for a store
+    #[arg(long, value_name = "MODEL", conflicts_with = "results")]
+    model: Option<String>,
+    /// Lot of the units, for a store; several by repeating the option
+    #[arg(long, value_name = "LOT", conflicts_with = "results")]
+    lot: Vec<String>,
+    /// Id of the procedure, for a store
+    #[arg(long, value_name = "ID", conflicts_with = "results")]
+    procedure: Option<String>,
     /// Proportion of all units that a bound holds for
     #[arg(long, value_name = "SHARE", default_value_t = 0.95)]
     proportion: f64,
@@ -57,14 +71,7 @@ pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
     let renderer = args.output.renderer(lang)?;
     let printer = Printer::new(&args.output, lang);
     let now = Utc::now();
-    let mut files = vec![];
-    for named in &args.results {
-        match each_of(named) {
-            Ok(found) => files.extend(found.into_iter().map(|p| result_file(&p))),
-            Err(e) => return Err(crate::ingest::RecordingError::from(e).say(lang)),
-        }
-    }
-    let mut broken: Vec<Note> = vec![];
+    let (files, mut broken) = args.files(lang)?;
     let mut read_units = vec![];
     for file in &files {
         match tested(file) {
@@ -96,6 +103,44 @@ pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
     let place = write(&results, folder, EXPORTERS, &renderer, lang)?;
     printer.outcome(&place, Kind::DataSheet, |t| terminal::datasheet(&view, lang, t))?;
     Ok(exit::PASS)
+}
+
+impl DatasheetArgs {
+    /// The results, as named or by what the store has of them, with what must be known of the choice.
+    fn files(&self, lang: Lang) -> Result<(Vec<PathBuf>, Vec<Note>), String> {
+        if self.results.is_empty() {
+            return self.of_store(lang);
+        }
+        let mut files = vec![];
+        for named in &self.results {
+            match each_of(named) {
+                Ok(found) => files.extend(found.into_iter().map(|p| result_file(&p))),
+                Err(e) => return Err(crate::ingest::RecordingError::from(e).say(lang)),
+            }
+        }
+        Ok((files, vec![]))
+    }
+
+    /// The results of a store: of products, as far as no other counts in their place.
+    fn of_store(&self, lang: Lang) -> Result<(Vec<PathBuf>, Vec<Note>), String> {
+        let say = |note: Note| place::error(&note, lang);
+        let named = StoreArgs { store: self.store.clone(), ..StoreArgs::default() };
+        let path = named.path(lang)?.ok_or_else(|| say("history.no_store".into()))?;
+        let opened = store::open_to_read(&path, lang)?;
+        let filter = Filter {
+            model: self.model.clone(),
+            lots: self.lot.clone(),
+            procedure: self.procedure.clone(),
+            ..Filter::default()
+        };
+        let found = opened.addresses(&filter).map_err(|e| say(e.note()))?;
+        let folder = |address: &String| opened.layout().result(address).join(Kind::Result.record_file());
+        let mut notes = vec![];
+        if found.left_out > 0 {
+            notes.push(Note::new("datasheet.note.left_out").with("n", found.left_out));
+        }
+        Ok((found.addresses.iter().map(folder).collect(), notes))
+    }
 }
 
 /// The result that a path stands for.

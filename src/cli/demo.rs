@@ -1,6 +1,7 @@
 //! `sagnac demo`: the main job on a recording that the program carries.
 
 use super::join::JoinArgs;
+use super::keep::StoreArgs;
 use super::options::OutputArgs;
 use super::printer::Printer;
 use super::run;
@@ -40,9 +41,11 @@ pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
         limits: Some("sample-unit".into()),
         serial: Some("SN-0001".to_owned()),
         lot: None,
+        unit_data: None,
         operator: None,
         station: None,
         out: Some(report),
+        store: StoreArgs { no_store: true, ..StoreArgs::default() },
         output: args.output,
         grid: GridArgs { taus: None, exact: false },
     };

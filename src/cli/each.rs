@@ -3,6 +3,7 @@
 use super::exit;
 use super::finish::write_files;
 use super::inputs::{Inputs, publish};
+use super::keep::Keeper;
 use super::phased_test::{PhasedTest, belong};
 use super::place::{self, OutputPlace};
 use super::printer::Printer;
@@ -140,6 +141,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
 fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang) -> Result<u8, String> {
     let error = |note: Note| place::error(&note, lang);
     let renderer = args.output.renderer(lang)?;
+    let keeper = Keeper::new(&args.store, lang)?;
     let printer = Printer::new(&args.output, lang);
     let mut progress = printer.progress();
     let session = Session {
@@ -162,7 +164,15 @@ fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang)
         Kind::Lot,
         lang,
     )?;
-    let work = Work { test, members: &members, inputs: &inputs, folder: &folder, renderer: &renderer, lang };
+    let work = Work {
+        test,
+        members: &members,
+        inputs: &inputs,
+        folder: &folder,
+        keeper: &keeper,
+        renderer: &renderer,
+        lang,
+    };
     let jobs =
         args.each.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let units = work.run(jobs, printer, &mut progress)?;
@@ -175,6 +185,9 @@ fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang)
     let place = publish(folder, results.whole(lang).record(), lang)?;
     drop(progress);
     printer.outcome(&place, Kind::Lot, |t| terminal::lot(&view, lang, t))?;
+    for member in &members {
+        keeper.keep(&place.join(&member.folder), printer)?;
+    }
     Ok(code)
 }
 
@@ -210,6 +223,7 @@ struct Work<'a> {
     members: &'a [Member],
     inputs: &'a [BTreeMap<String, String>],
     folder: &'a StagedFolder,
+    keeper: &'a Keeper,
     renderer: &'a Renderer,
     lang: Lang,
 }
@@ -263,7 +277,10 @@ impl Work<'_> {
     /// Tests one unit and writes its folder; `None` after the last.
     fn unit(&self, i: usize) -> Option<Result<(LotUnit, Option<Problems>), String>> {
         let (member, inputs) = (self.members.get(i)?, self.inputs.get(i)?);
-        let (results, problems) = self.test.run(member, &mut Progress::silent(self.lang));
+        let (mut results, problems) = self.test.run(member, &mut Progress::silent(self.lang));
+        if let Err(why) = self.keeper.number(&mut results.outcome.record) {
+            return Some(Err(why));
+        }
         let unit = lot::unit(member, &results.outcome.record);
         let results = Results::Run(Box::new(results));
         let part = StagedPart::begin(self.folder, &member.folder, inputs.clone());

@@ -1,6 +1,7 @@
 //! From a request to the folder of its results and the words on the terminal.
 
 use super::inputs;
+use super::keep::Keeper;
 use super::printer::Printer;
 use super::progress::Progress;
 use super::{exit, place};
@@ -36,7 +37,8 @@ pub fn run_and_finish(
     mut progress: Progress,
 ) -> Result<u8, String> {
     let evaluated = evaluate(request, None, &mut progress);
-    settle(evaluated, folder, renderer, printer, progress)
+    let keeper = Keeper::none(printer.lang);
+    settle(evaluated, folder, &keeper, renderer, printer, progress)
 }
 
 /// What came of a request.
@@ -78,22 +80,27 @@ pub fn evaluate(request: &Request<'_>, against: Option<Against<'_>>, progress: &
 pub fn settle(
     evaluated: Evaluated,
     folder: StagedFolder,
+    keeper: &Keeper,
     renderer: &Renderer,
     printer: Printer,
     progress: Progress,
 ) -> Result<u8, String> {
     match evaluated.refused {
-        None => finish(evaluated.results, folder, renderer, printer, progress),
+        None => finish(evaluated.results, folder, keeper, renderer, printer, progress),
         Some(note) => {
             let lang = printer.lang;
-            let results = Results::Run(Box::new(evaluated.results));
+            let mut results = evaluated.results;
+            keeper.number(&mut results.outcome.record)?;
+            let results = Results::Run(Box::new(results));
             let place = write(&results, folder, EXPORTERS, renderer, lang)?;
             let report = Note::new("cli.report_says_so").with("place", place.display().to_string());
             let why = match &evaluated.problems {
                 Some(problems) => format!("{}\n", problems.say(lang)),
                 None => place::error(&note, lang),
             };
-            Err(format!("{why}{}\n", report.say(lang)))
+            let why = format!("{why}{}\n", report.say(lang));
+            let kept = keeper.keep(&place, printer);
+            Err(why + &kept.err().unwrap_or_default())
         }
     }
 }
@@ -136,8 +143,9 @@ fn explain(request: &Request<'_>, against: Against<'_>, results: &mut RunResults
 /// # Errors
 /// The diagnostic, in words.
 pub fn finish(
-    results: RunResults,
+    mut results: RunResults,
     folder: StagedFolder,
+    keeper: &Keeper,
     renderer: &Renderer,
     printer: Printer,
     mut progress: Progress,
@@ -145,10 +153,12 @@ pub fn finish(
     let code = exit::code(results.outcome.record.verdict);
     let lang = printer.lang;
     progress.stage("progress.writing");
+    keeper.number(&mut results.outcome.record)?;
     let view = view(&results, lang);
     let place = write(&Results::Run(Box::new(results)), folder, EXPORTERS, renderer, lang)?;
     drop(progress);
     printer.outcome(&place, Kind::Result, |terminal| terminal::run(&view, lang, terminal))?;
+    keeper.keep(&place, printer)?;
     Ok(code)
 }
 

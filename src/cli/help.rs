@@ -69,9 +69,14 @@ fn translated(command: Command, path: &str, lang: Lang) -> Command {
     command = command.override_usage(usage);
     let names: Vec<String> = command.get_subcommands().map(|c| c.get_name().to_owned()).collect();
     for name in names {
-        command = command.mut_subcommand(&name, |below| translated(below, &name, lang));
+        command = command.mut_subcommand(&name, |below| translated(below, &below_path(path, &name), lang));
     }
     command
+}
+
+/// Path of the entries of a verb: its name, behind that of the verb that it is below.
+fn below_path(path: &str, name: &str) -> String {
+    if path == "sagnac" { name.to_owned() } else { format!("{path}_{name}") }
 }
 
 fn flag(name: &'static str, short: char, action: ArgAction, common: &dyn Fn(&str) -> &'static str) -> Arg {
@@ -81,7 +86,8 @@ fn flag(name: &'static str, short: char, action: ArgAction, common: &dyn Fn(&str
 
 /// The line that shows how the command is written.
 fn usage(command: &Command, path: &str, common: &dyn Fn(&str) -> &'static str) -> String {
-    let mut out = if path == "sagnac" { path.to_owned() } else { format!("sagnac {path}") };
+    let mut out =
+        if path == "sagnac" { path.to_owned() } else { format!("sagnac {}", path.replace('_', " ")) };
     out.push_str(&format!(" [{}]", common("usage_options")));
     for arg in command.get_positionals() {
         out.push_str(&format!(" {arg}"));

@@ -9,7 +9,7 @@ fn has_cyrillic(text: &str) -> bool {
 fn walk(command: &Command, path: &str, out: &mut Vec<(String, Command)>) {
     out.push((path.to_owned(), command.clone()));
     for below in command.get_subcommands() {
-        walk(below, below.get_name(), out);
+        walk(below, &below_path(path, below.get_name()), out);
     }
 }
 

@@ -5,8 +5,10 @@ use crate::config::manifest::Manifest;
 use crate::config::shipped;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::lot::stated_serial_of;
+use crate::ingest::unit_data::UnitData;
 use crate::ingest::{ReadOptions, Source, files_read};
 use crate::output::{Kind, Order, StagedFolder};
+use crate::record::UnitUnderTest;
 use serde::Serialize;
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
@@ -132,6 +134,17 @@ impl Serial {
         let stated = stated_serial_of(sources);
         Ok(Serial { of_recording: stated.is_some(), number: stated })
     }
+}
+
+/// A unit with what the manifest, and else the table of units, knows of it.
+pub fn completed(mut unit: UnitUnderTest, manifest: Option<&Manifest>, units: &UnitData) -> UnitUnderTest {
+    if let Some(manifest) = manifest {
+        unit.fill(&manifest.unit);
+    }
+    if let Some(known) = unit.serial.as_deref().and_then(|serial| units.of(serial)) {
+        unit.fill(known);
+    }
+    unit
 }
 
 /// The serial number given; the manifest's where none is. Two that differ are an error: this is another unit's recording.

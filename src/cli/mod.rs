@@ -13,10 +13,12 @@ mod explain;
 mod explain_jointly;
 mod finish;
 mod help;
+mod history;
 mod init;
 mod inputs;
 mod inspect;
 mod join;
+mod keep;
 mod next_step;
 mod options;
 mod phased_test;
@@ -34,6 +36,7 @@ mod schema;
 mod selftest;
 mod simulate;
 mod single_test;
+mod store;
 
 use crate::config::procedure::phases::is_phased;
 use crate::i18n::{Lang, visible};
@@ -94,7 +97,8 @@ enum Verb {
     Compare(compare::CompareArgs),
     /// Write the data sheet of a lot from the results of its units, with limits that it can keep
     #[command(after_help = "Examples:\n  sagnac datasheet reports/*/result.json --out sheet\n  \
-        sagnac datasheet 'samples/lot/*/result.json' --lang ru --out sheet")]
+        sagnac datasheet 'samples/lot/*/result.json' --lang ru --out sheet\n  \
+        sagnac datasheet --store /srv/sagnac --model OIUS-501 --lot 2026-14")]
     Datasheet(datasheet::DatasheetArgs),
     /// Simulate a recording from a model: noise, mean, effects and columns, reproducible to the bit
     #[command(
@@ -120,6 +124,16 @@ enum Verb {
         sagnac simulate model.toml --schedule next/schedule.toml --out simulated.csv"
     )]
     Plan(plan::PlanArgs),
+    /// Keep results: immutable, addressed by content, with an index of all attempts at a test
+    #[command(after_help = "Exit codes: 0 done, 1 something is wrong in the store, 2 could not.\n\n\
+        Examples:\n  sagnac store init /srv/sagnac\n  \
+        sagnac store import /srv/sagnac reports --recordings /data\n  \
+        sagnac store verify /srv/sagnac")]
+    Store(store::StoreVerbArgs),
+    /// Show what the results of a store tell over time: verdicts, yields, reasons, control charts, drift
+    #[command(after_help = "Examples:\n  sagnac history SN-0042 --store /srv/sagnac\n  \
+        sagnac history --model OIUS-501 --since 2026-01-01 --format html --out history.html")]
+    History(history::HistoryArgs),
     /// List, print or save the shipped procedures and limits
     #[command(
         after_help = "Examples:\n  sagnac procedures\n  sagnac procedures show static-bias > mine.toml"
@@ -178,6 +192,8 @@ pub fn main() -> ExitCode {
         Verb::Effects(args) => effects::main(&args, lang),
         Verb::Explain(args) => explain::main(&args, lang),
         Verb::Plan(args) => plan::main(&args, lang),
+        Verb::Store(args) => store::main(&args, lang),
+        Verb::History(args) => history::main(&args, lang),
         Verb::Procedures(args) => procedures::main(&args, lang),
         Verb::Demo(args) => demo::main(args, lang),
         Verb::Completions { shell } => {

@@ -1,7 +1,7 @@
 //! A procedure of several phases, ready to be run on manifests: each phase on its files.
 
 use super::finish::{not_run, with_progress};
-use super::inputs::{Inputs, Serial};
+use super::inputs::{Inputs, Serial, completed};
 use super::place;
 use super::procedures::say_which;
 use super::progress::Progress;
@@ -14,6 +14,7 @@ use crate::config::procedure::phases::{Phase, Phased, load_phased};
 use crate::config::procedure::{EffectiveLimits, effective};
 use crate::estimate::Verdict;
 use crate::i18n::{Lang, Localize, Note};
+use crate::ingest::unit_data::UnitData;
 use crate::ingest::{IngestError, ReadOptions, Source, open_files};
 use crate::noise::tau_grid::TauGrid;
 use crate::record::{RunKind, Session, UnitUnderTest};
@@ -27,6 +28,7 @@ pub struct PhasedTest<'a> {
     pub phased: Phased,
     limits: Vec<EffectiveLimits>,
     taus: Option<TauGrid>,
+    units: UnitData,
     now: DateTime<Utc>,
 }
 
@@ -53,7 +55,8 @@ impl<'a> PhasedTest<'a> {
                 place::eprint_diagnostic(&format!("{}\n", warning.say(lang)));
             }
         }
-        Ok(PhasedTest { args, phased, limits, taus, now })
+        let units = args.units(lang)?;
+        Ok(PhasedTest { args, phased, limits, taus, units, now })
     }
 
     /// What a result of this test is made from, but for the recording and its unit.
@@ -71,6 +74,7 @@ impl<'a> PhasedTest<'a> {
             .files("procedure", &procedures)
             .files("limits", &limits)
             .files("layout", &layouts)
+            .file("unit_data", self.args.unit_data.as_deref())
             .options(&(&self.args.grid.taus, self.args.grid.exact))
             .beside(self.args.output.templates.as_deref())
     }
@@ -83,7 +87,7 @@ impl<'a> PhasedTest<'a> {
     /// Runs every phase on its files.
     pub fn evaluate(&self, manifest: &Manifest, serial: Serial, progress: &mut Progress) -> PhasesEvaluated {
         let of_recording = serial.of_recording;
-        let unit = self.unit(serial.number);
+        let unit = self.unit(serial.number, Some(manifest));
         let mut done: Vec<Done<'_>> = Vec::new();
         let mut who = None;
         let mut explained = vec![];
@@ -116,7 +120,7 @@ impl<'a> PhasedTest<'a> {
             station: self.args.station.clone(),
             evaluated_at: self.now.to_rfc3339_opts(SecondsFormat::Secs, true),
         };
-        let mut record = combine(&self.phased, &done, self.unit(serial), session);
+        let mut record = combine(&self.phased, &done, self.unit(serial, None), session);
         record.verdict = Verdict::Error;
         record.errors.push(Note::new("error.not_evaluated").with("reason", why).into());
         record.summary = record.errors.clone();
@@ -124,14 +128,17 @@ impl<'a> PhasedTest<'a> {
         RunResults { outcome: Outcome { record, figures: vec![], tables: vec![] }, phases, explanation: None }
     }
 
-    fn unit(&self, serial: Option<String>) -> UnitUnderTest {
-        UnitUnderTest {
+    /// What is known of the unit: from the command line, else the manifest, else the table of units.
+    fn unit(&self, serial: Option<String>, manifest: Option<&Manifest>) -> UnitUnderTest {
+        let unit = UnitUnderTest {
             serial,
             family: self.phased.family.clone(),
             part: self.phased.part.clone(),
             revision: self.phased.part_revision.clone(),
             lot: self.args.lot.clone(),
-        }
+            ..UnitUnderTest::default()
+        };
+        completed(unit, manifest, &self.units)
     }
 
     /// The serial number of the unit: as given, or else by the manifest, or else by the files of the phases.

@@ -38,8 +38,7 @@ impl Printer {
     /// Prints a part of the outcome while the work goes on, where the outcome is printed as text.
     pub fn line(self, text: impl FnOnce(Terminal) -> String) {
         if !self.quiet && self.format == PrintFormat::Text {
-            let said = text(terminal());
-            let _ = AutoStream::new(std::io::stdout().lock(), choice()).write_all(said.as_bytes());
+            print_styled(&text(terminal()));
         }
     }
 
@@ -69,7 +68,7 @@ impl Printer {
         let terminal = terminal();
         let place = Note::new("terminal.report").with("place", place::shown(&page)).say(self.lang);
         let said = if self.quiet { format!("{place}\n") } else { format!("{}\n{place}\n", text(terminal)) };
-        let _ = AutoStream::new(std::io::stdout().lock(), choice()).write_all(said.as_bytes());
+        print_styled(&said);
         Ok(())
     }
 }
@@ -88,7 +87,14 @@ fn choice() -> ColorChoice {
     AutoStream::choice(&std::io::stdout())
 }
 
-fn terminal() -> Terminal {
+/// Prints text with the control sequences that the report gave it, or without them where colours are not wanted. A reader that
+/// went away is no error.
+pub fn print_styled(text: &str) {
+    let _ = AutoStream::new(std::io::stdout().lock(), choice()).write_all(text.as_bytes());
+}
+
+/// What standard output is.
+pub fn terminal() -> Terminal {
     let columns = || std::env::var("COLUMNS").ok()?.parse::<usize>().ok();
     let real = || terminal_size::terminal_size_of(std::io::stdout()).map(|(width, _)| usize::from(width.0));
     let width = columns().or_else(real).unwrap_or(DEFAULT_WIDTH).max(LEAST_WIDTH);

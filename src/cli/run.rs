@@ -2,6 +2,7 @@
 
 use super::finish::settle;
 use super::inputs::Serial;
+use super::keep::Keeper;
 use super::place::{self, OutputPlace};
 use super::printer::Printer;
 use super::run_args::RunArgs;
@@ -18,6 +19,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let now = Utc::now();
     let test = SingleTest::load(args, now, lang)?;
     let renderer = args.output.renderer(lang)?;
+    let keeper = Keeper::new(&args.store, lang)?;
     let printer = Printer::new(&args.output, lang);
     let mut progress = printer.progress();
     progress.stage("progress.inputs");
@@ -46,7 +48,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let lacks = evaluated.problems.is_some() && find(&args.procedure).is_some();
     let own = next_step::init(&args.recording, "").filter(|_| lacks);
     let own = own.map(|step| format!("{}\n", step.say(lang))).unwrap_or_default();
-    let code = settle(evaluated, folder, &renderer, printer, progress)
+    let code = settle(evaluated, folder, &keeper, &renderer, printer, progress)
         .map_err(|message| format!("{message}{own}"))?;
     let step = next_step::after_fail(&args.recording, &test.procedure.value);
     printer.next_step(step.filter(|_| code == exit::FAIL).as_ref());

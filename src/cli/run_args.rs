@@ -1,7 +1,10 @@
 //! The arguments of `sagnac run`.
 
 use super::join::JoinArgs;
+use super::keep::StoreArgs;
 use super::options::{GridArgs, OutputArgs};
+use crate::i18n::Lang;
+use crate::ingest::unit_data::UnitData;
 use clap::Args;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -26,6 +29,9 @@ pub struct RunArgs {
     /// Lot or batch of the unit, for data sheets
     #[arg(long, value_name = "LOT")]
     pub lot: Option<String>,
+    /// Table of units (CSV) with columns serial, model, lot, build_date, reference and others
+    #[arg(long, value_name = "FILE")]
+    pub unit_data: Option<PathBuf>,
     /// Name of the operator
     #[arg(long, value_name = "NAME")]
     pub operator: Option<String>,
@@ -36,9 +42,22 @@ pub struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
     #[command(flatten)]
+    pub store: StoreArgs,
+    #[command(flatten)]
     pub output: OutputArgs,
     #[command(flatten)]
     pub grid: GridArgs,
+}
+
+impl RunArgs {
+    /// The table of units; empty where none is given.
+    ///
+    /// # Errors
+    /// The diagnostics, in words.
+    pub fn units(&self, lang: Lang) -> Result<UnitData, String> {
+        let loaded = self.unit_data.as_deref().map(UnitData::load).transpose();
+        loaded.map(Option::unwrap_or_default).map_err(|p| p.say(lang))
+    }
 }
 
 /// Units instead of one recording.

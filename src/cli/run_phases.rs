@@ -1,6 +1,7 @@
 //! `sagnac run` with a procedure of several phases: each on its files of a manifest, one report over all.
 
 use super::finish::finish;
+use super::keep::Keeper;
 use super::phased_test::{PhasedTest, PhasesEvaluated, belong};
 use super::place::{self, OutputPlace};
 use super::printer::Printer;
@@ -27,6 +28,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let manifest = manifest::load(path).map_err(|p| p.say(lang))?;
     belong(&test.phased, &manifest).map_err(error)?;
     let renderer = args.output.renderer(lang)?;
+    let keeper = Keeper::new(&args.store, lang)?;
     let serial = test.serial(args.serial.as_deref(), &manifest).map_err(error)?;
     let id = &test.phased.identity.id;
     let out = OutputPlace::new(args.out.as_deref(), id, serial.number.as_deref(), now);
@@ -41,5 +43,5 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
             progress.beside(|| place::eprint_diagnostic(&place::error(&note, lang)));
         }
     }
-    finish(results, folder, &renderer, printer, progress)
+    finish(results, folder, &keeper, &renderer, printer, progress)
 }

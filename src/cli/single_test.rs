@@ -1,18 +1,20 @@
 //! A procedure with its limits, ready to be run on recordings.
 
 use super::finish::{Against, Evaluated, evaluate};
-use super::inputs::{Inputs, Serial};
+use super::inputs::{Inputs, Serial, completed};
 use super::place;
 use super::procedures::say_which;
 use super::progress::Progress;
 use super::run_args::RunArgs;
 use crate::acceptance::{Request, RunError, explained};
+use crate::config::manifest::Manifest;
 use crate::config::model::Claim;
 use crate::config::procedure::missing_columns::missing_columns;
 use crate::config::procedure::{
     EffectiveLimits, LimitsFile, Loaded, Procedure, effective, load, load_limits,
 };
 use crate::i18n::Lang;
+use crate::ingest::unit_data::UnitData;
 use crate::ingest::{Recording, RecordingError, Source, open_recording};
 use crate::noise::tau_grid::TauGrid;
 use crate::record::{RunKind, UnitUnderTest};
@@ -27,6 +29,7 @@ pub struct SingleTest<'a> {
     effective: EffectiveLimits,
     model: Option<Claim>,
     taus: Option<TauGrid>,
+    units: UnitData,
     now: DateTime<Utc>,
 }
 
@@ -56,7 +59,8 @@ impl<'a> SingleTest<'a> {
         for warning in procedure.warnings.iter().chain(&effective.warnings) {
             place::eprint_diagnostic(&format!("{}\n", warning.say(lang)));
         }
-        Ok(SingleTest { args, procedure, limits, effective, model, taus, now })
+        let units = args.units(lang)?;
+        Ok(SingleTest { args, procedure, limits, effective, model, taus, units, now })
     }
 
     /// What a result of this test is made from, but for the recording and its unit.
@@ -64,6 +68,7 @@ impl<'a> SingleTest<'a> {
         Inputs::new(self.args.output.force)
             .file("procedure", Some(&self.args.procedure))
             .file("limits", self.args.limits.as_deref())
+            .file("unit_data", self.args.unit_data.as_deref())
             .file("model", self.procedure.value.explain.as_ref().map(|e| e.model.as_path()))
             .options(&(&self.args.grid.taus, self.args.grid.exact))
             .beside(self.args.output.templates.as_deref())
@@ -81,6 +86,21 @@ impl<'a> SingleTest<'a> {
     /// [`RecordingError`].
     pub fn open(&self, recording: &[PathBuf]) -> Result<Recording, RecordingError> {
         open_recording(recording, &self.procedure.value.recording.read)
+    }
+
+    /// What is known of the unit: from the command line, else the manifest, else the table of units.
+    fn unit(&self, serial: Option<String>, manifest: Option<&Manifest>) -> UnitUnderTest {
+        let spec = &self.procedure.value.unit_under_test;
+        let family = self.limits.as_ref().and_then(|l| l.value.family.clone());
+        let unit = UnitUnderTest {
+            serial,
+            family: spec.family.clone().or(family),
+            part: spec.part.clone(),
+            revision: spec.revision.clone(),
+            lot: self.args.lot.clone(),
+            ..UnitUnderTest::default()
+        };
+        completed(unit, manifest, &self.units)
     }
 
     /// Runs the test. A recording that could not be opened gives a record that says so.
@@ -101,7 +121,6 @@ impl<'a> SingleTest<'a> {
             Serial { number: given.map(str::to_owned), of_recording: false }
         });
         let procedure = &self.procedure.value;
-        let family = self.limits.as_ref().and_then(|l| l.value.family.clone());
         let request = Request {
             kind: RunKind::Run,
             procedure,
@@ -109,13 +128,7 @@ impl<'a> SingleTest<'a> {
             limits: &self.effective,
             source: &source,
             use_stamps: true,
-            unit: UnitUnderTest {
-                serial: serial.number,
-                family: procedure.unit_under_test.family.clone().or(family),
-                part: procedure.unit_under_test.part.clone(),
-                revision: procedure.unit_under_test.revision.clone(),
-                lot: self.args.lot.clone(),
-            },
+            unit: self.unit(serial.number, manifest.as_ref()),
             serial_of_recording: serial.of_recording,
             operator: self.args.operator.clone(),
             station: self.args.station.clone(),

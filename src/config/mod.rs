@@ -1,7 +1,7 @@
 //! TOML files whose keys are described once, as data: reading with every problem placed, and the parts of schema and
 //! guide that follow from the description.
 //!
-//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`manifest`] and [`layout`] are the files; the other modules
+//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`manifest`], [`layout`] and [`user`] are the files; the others
 //! know none of them.
 
 pub mod alternatives;
@@ -26,4 +26,5 @@ pub mod spec;
 mod syntax;
 pub(crate) mod text_file;
 mod texts;
+pub mod user;
 pub(crate) mod values;

@@ -3,6 +3,7 @@
 pub mod lot;
 mod recording;
 pub mod serial;
+pub mod unit_data;
 
 pub use recording::{
     Recording, RecordingError, are_several, each_of, files_read, open_files, open_recording, open_with,

@@ -4,6 +4,7 @@
 //! compared byte for byte. `result.json` is this value; HTML and Markdown are views of it; nothing is computed in a
 //! template.
 
+mod attempt;
 mod check;
 mod comparison;
 mod context;
@@ -12,6 +13,7 @@ mod deviation;
 mod evidence;
 mod explained;
 mod goodness;
+mod history;
 pub mod integrity;
 mod interval_mean;
 pub(crate) mod local;
@@ -23,6 +25,7 @@ mod phase;
 pub mod read;
 mod table_step;
 
+pub use attempt::{AttemptRecord, EarlierAttempt};
 pub use check::{CheckRecord, CheckStatus};
 pub use comparison::{
     Agreement, CoherentLine, ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord,
@@ -39,6 +42,11 @@ pub use deviation::DeviationRecord;
 pub use evidence::Evidence;
 pub use explained::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
+pub use history::{
+    HISTORY_FORMAT, HistoryAsked, HistoryCapability, HistoryChart, HistoryChartOf, HistoryControl,
+    HistoryControlPoint, HistoryCounts, HistoryDrift, HistoryLimit, HistoryMonth, HistoryPoint,
+    HistoryQuantity, HistoryReason, HistoryRecord, HistoryResult, HistoryShare, HistoryStation, HistoryYield,
+};
 pub use integrity::{FaultRecord, Integrity};
 pub use interval_mean::IntervalMeanRecord;
 pub use lot::{LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, SerialSource, VerdictCounts};
@@ -83,6 +91,9 @@ pub struct RunRecord {
     pub unit_under_test: UnitUnderTest,
     /// Who tested, where, when.
     pub session: Session,
+    /// Which test of the unit this is, where a store knows.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub attempt: Option<AttemptRecord>,
     /// The files that were read.
     pub recording: Vec<RecordingFile>,
     /// Worst verdict of all rows and conditions.

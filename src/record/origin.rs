@@ -4,6 +4,7 @@ use crate::i18n::LocalText;
 use crate::recording::Role;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// The program that wrote a result.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -81,6 +82,42 @@ pub struct UnitUnderTest {
     pub revision: Option<String>,
     /// Lot or batch.
     pub lot: Option<String>,
+    /// Model, where it is stated apart from the family.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub model: Option<String>,
+    /// Date on which it was built, ISO 8601.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub build_date: Option<String>,
+    /// True for a reference unit, which is tested to watch the bench and is no product.
+    #[serde(default, skip_serializing_if = "is_false")]
+    pub reference: bool,
+    /// What else is stated of it, by name.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub attributes: BTreeMap<String, String>,
+}
+
+impl UnitUnderTest {
+    /// Takes over what is known of the unit elsewhere and not stated here: all but the serial number and what the procedure
+    /// says of the family.
+    pub fn fill(&mut self, known: &UnitUnderTest) {
+        let fill = |own: &mut Option<String>, other: &Option<String>| {
+            if own.is_none() {
+                own.clone_from(other);
+            }
+        };
+        fill(&mut self.lot, &known.lot);
+        fill(&mut self.model, &known.model);
+        fill(&mut self.build_date, &known.build_date);
+        self.reference |= known.reference;
+        for (name, value) in &known.attributes {
+            self.attributes.entry(name.clone()).or_insert_with(|| value.clone());
+        }
+    }
+}
+
+/// True for what is left out where it is not so.
+fn is_false(flag: &bool) -> bool {
+    !flag
 }
 
 /// Who tested, where, when.

@@ -9,6 +9,7 @@ mod document;
 pub mod explain;
 pub mod export;
 mod figure_file;
+pub mod history;
 pub mod joint;
 pub mod lot;
 pub mod methods;

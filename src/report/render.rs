@@ -40,6 +40,7 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("lot.md", include_str!("../../templates/lot.md")),
     ("datasheet.html", include_str!("../../templates/datasheet.html")),
     ("datasheet.md", include_str!("../../templates/datasheet.md")),
+    ("history.html", include_str!("../../templates/history.html")),
     ("explain.html", include_str!("../../templates/explain.html")),
     ("explain.md", include_str!("../../templates/explain.md")),
     ("joint.html", include_str!("../../templates/joint.html")),

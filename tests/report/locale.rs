@@ -62,6 +62,7 @@ const LISTED: &[(&str, &[&str])] = &[
             "input.model",
             "input.simulation",
             "input.unit",
+            "input.unit_data",
             "input.options",
             "input.results",
         ],
@@ -100,6 +101,10 @@ const OPEN: &[&str] = &[
     "datasheet.column",
     "datasheet.condition",
     "datasheet.method",
+    "history.column",
+    "history.control",
+    "history.kind",
+    "history.rule",
 ];
 
 /// A table that the tests of the command line hold against the command itself.
@@ -118,6 +123,11 @@ const NO_KEYS: &[&str] = &[
     "datasheet.column",
     "datasheet.condition",
     "datasheet.method",
+    "history.column",
+    "history.control",
+    "history.kind",
+    "history.rule",
+    "unit.attribute",
     "unit.rec",
 ];
 

@@ -24,6 +24,16 @@ const STUDIES: &[LongStudy] = &[
         title: "A run that is killed 200 times (minutes)",
         target: &["--test", "atomic"],
     },
+    LongStudy {
+        name: "store-kills",
+        title: "Writers of a store that are killed 300 times (minutes)",
+        target: &["--test", "store", "300_times"],
+    },
+    LongStudy {
+        name: "store-scale",
+        title: "How long a store of 100 000 runs takes to answer (minutes)",
+        target: &["--test", "store", "large_store"],
+    },
 ];
 
 /// Runs the named study, or lists all.

@@ -12,6 +12,7 @@ use crate::config::reader::Reader;
 use crate::config::section::Section;
 use crate::config::text_file::{self, Wording};
 use crate::i18n::Note;
+use crate::record::UnitUnderTest;
 use sagnac_ingest::layout::LayoutFile;
 use sagnac_ingest::multi_file::PartSpec;
 use sagnac_ingest::pattern::natural;
@@ -30,6 +31,8 @@ pub struct Manifest {
     pub path: PathBuf,
     /// Serial number of the unit that was recorded.
     pub serial: Option<String>,
+    /// What else is known of the unit.
+    pub unit: UnitUnderTest,
     /// True when each file follows the one before without a gap.
     pub contiguous: bool,
     /// How the files are to be read.
@@ -112,11 +115,25 @@ pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Man
         checked(&text_file::source(name, bytes)?, &MANIFEST_FILE, |root, reader| Manifest {
             path: path.to_owned(),
             serial: root.text("serial"),
+            unit: root.table("unit").map(unit).unwrap_or_default(),
             contiguous: root.flag("contiguous"),
             options: root.table("recording").map(|r| options(r, folder, reader)).unwrap_or_default(),
             files: files(root, folder, reader),
         });
     manifest.ok_or(problems)
+}
+
+/// What a manifest says of its unit, but for the serial number.
+fn unit(section: &Section) -> UnitUnderTest {
+    let attribute = |s: &Section| Some((s.text("name")?, s.text("value")?));
+    UnitUnderTest {
+        model: section.text("model"),
+        lot: section.text("lot"),
+        build_date: section.date("build_date").map(|d| d.to_string()),
+        reference: section.flag("reference"),
+        attributes: section.tables("attribute").iter().filter_map(attribute).collect(),
+        ..UnitUnderTest::default()
+    }
 }
 
 fn complain(reader: &mut Reader<'_>, span: &Span, note: Note, help: Option<&'static str>) {

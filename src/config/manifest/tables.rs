@@ -31,8 +31,36 @@ pub static MANIFEST_FILE: TableSpec = TableSpec {
             "true",
             "True when files of several phases belong to one test: positions or turns, which a procedure names by their phases.",
         ),
+        optional("unit", Kind::Table(&UNIT), "", "What else is known of the unit."),
         optional("recording", Kind::Table(&READING), "", "How the files are read, where not detected."),
         optional("file", Kind::Tables(&FILE), "", "The files, one table each, in their order."),
+    ],
+};
+
+static UNIT: TableSpec = TableSpec {
+    name: "unit",
+    doc: "The unit that was recorded, for stores, histories and data sheets.",
+    keys: &[
+        optional("model", Kind::Text, "\"OIUS-501\"", "Model."),
+        optional("lot", Kind::Text, "\"2026-14\"", "Lot or batch."),
+        optional("build_date", Kind::Date, "\"2026-03-01\"", "Date on which the unit was built."),
+        with_default(
+            "reference",
+            Kind::Flag,
+            "false",
+            "true",
+            "True for a reference unit, which is tested to watch the bench. It counts in no yield.",
+        ),
+        optional("attribute", Kind::Tables(&ATTRIBUTE), "", "Free attributes of the unit, one table each."),
+    ],
+};
+
+static ATTRIBUTE: TableSpec = TableSpec {
+    name: "unit.attribute",
+    doc: "A free attribute of the unit.",
+    keys: &[
+        required("name", Kind::Text, "\"coil\"", "Name."),
+        required("value", Kind::Text, "\"K12\"", "Value."),
     ],
 };
 

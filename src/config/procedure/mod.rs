@@ -20,6 +20,7 @@ pub mod schema;
 pub mod site;
 pub mod slips;
 pub mod tables;
+pub mod unit_facts;
 mod validate;
 
 pub use crate::config::diagnostics;

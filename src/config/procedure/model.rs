@@ -4,6 +4,7 @@ use super::diagnostics::{Problem, SourceText, Span};
 use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
+use super::unit_facts::UnitFact;
 use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::measurand::Measurand;
@@ -109,6 +110,8 @@ pub struct UnitSpec {
     pub revision: Option<String>,
     /// True when a run without a serial number is an error.
     pub serial_required: bool,
+    /// What else must be known of the unit.
+    pub requires: Vec<UnitFact>,
 }
 
 /// A channel with what the checks of its values need.

@@ -11,6 +11,7 @@ use super::section::{Entry, Section};
 use super::site::{Orientation, Site};
 use super::tables::PROCEDURE_FILE;
 use super::tables::limits::LIMITS_FILE;
+use super::unit_facts::UnitFact;
 use super::{channel, recording_options, validate};
 use crate::config::contained_files;
 use crate::config::read_tables::checked;
@@ -126,6 +127,15 @@ fn unit(section: Option<&Section>) -> UnitSpec {
         part: section.text("part"),
         revision: section.text("revision"),
         serial_required: section.flag("serial_required"),
+        requires: required_facts(section),
+    }
+}
+
+/// What a procedure demands to be known of a unit.
+pub(super) fn required_facts(section: &Section) -> Vec<UnitFact> {
+    match section.entry("requires") {
+        Some(Entry::Words(words)) => words.iter().filter_map(|w| UnitFact::of(w)).collect(),
+        _ => vec![],
     }
 }
 

@@ -7,6 +7,7 @@ use super::model::{Loaded, Procedure};
 use super::reader::Reader;
 use super::section::Section;
 use super::tables::phases::PHASES_FILE;
+use super::unit_facts::UnitFact;
 use crate::config::contained_files;
 use crate::config::read_tables::checked;
 use crate::config::shipped::{self, Shipped};
@@ -31,6 +32,8 @@ pub struct Phased {
     pub part_revision: Option<String>,
     /// True when a run without a serial number is an error.
     pub serial_required: bool,
+    /// What else must be known of the unit.
+    pub requires: Vec<UnitFact>,
     /// The phases in their order.
     pub phases: Vec<Phase>,
     /// Clauses of the standard.
@@ -143,6 +146,7 @@ fn read(
             part: of_unit("part"),
             part_revision: of_unit("revision"),
             serial_required: unit.is_none_or(|u| u.flag("serial_required")),
+            requires: unit.map(super::parse::required_facts).unwrap_or_default(),
             phases: vec![],
             clauses: root.tables("clause").iter().map(super::parse::clause).collect(),
         };

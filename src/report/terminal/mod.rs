@@ -4,6 +4,7 @@
 
 mod datasheet;
 mod explanation;
+mod history;
 mod joint;
 mod lot;
 mod plan;
@@ -14,6 +15,7 @@ mod wrap;
 
 pub use datasheet::datasheet;
 pub use explanation::explanation;
+pub use history::history;
 pub use joint::joint;
 pub use lot::{lot, lot_unit};
 pub use plan::plan;

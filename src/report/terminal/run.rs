@@ -27,6 +27,9 @@ pub fn run(view: &View, lang: Lang, terminal: Terminal) -> String {
         out += &phases(&view.phases, words, terminal);
         out += &terminal.indented(&view.errors);
     }
+    if !view.attempt.is_empty() {
+        out += &format!("\n{}", terminal.indented(&view.attempt));
+    }
     if let Some(explained) = &view.explained {
         out += &section("terminal.explained", words, terminal);
         out += &terminal.indented(&explained.summary);

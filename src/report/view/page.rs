@@ -29,6 +29,8 @@ pub struct View {
     pub summary: Vec<String>,
     /// Errors, first of all when there are any.
     pub errors: Vec<String>,
+    /// Which attempt at the test this is, and what came of those before; empty for the first.
+    pub attempt: Vec<String>,
     /// Unit, procedure, session.
     pub identity: Vec<Field>,
     /// Paths of the recording; how many there are where they are many.
@@ -122,6 +124,7 @@ impl View {
             verdict_word: words.verdict(record.verdict),
             summary: summary(&record.summary, &record.measurands, channels.len() > 1, words),
             errors: record.errors.iter().map(|n| words.say(n)).collect(),
+            attempt: attempt(record, words),
             identity: identity(record, words),
             recordings: recordings(record, words),
             files: files(record, words),
@@ -166,6 +169,11 @@ impl View {
             phases: vec![],
         }
     }
+}
+
+/// What must be known of earlier attempts.
+fn attempt(record: &RunRecord, words: Translator) -> Vec<String> {
+    record.attempt.iter().flat_map(|a| &a.summary).map(|m| words.say(m)).collect()
 }
 
 /// Files of a recording that are named on the first page.
@@ -286,7 +294,10 @@ fn identity(record: &RunRecord, words: Translator) -> Vec<Field> {
     put("report.family", unit.family.as_ref().map(|f| words.local(f)).as_deref());
     put("report.part", unit.part.as_deref());
     put("report.part_revision", unit.revision.as_deref());
+    put("report.model", unit.model.as_deref());
     put("report.lot", unit.lot.as_deref());
+    put("report.build_date", unit.build_date.as_deref());
+    put("report.reference_unit", unit.reference.then(|| words.t("report.yes")).as_deref());
     if let Some(p) = &record.procedure {
         let id = words.with("report.id_revision", &[("id", &p.id), ("revision", &p.revision)]);
         put("report.procedure", Some(&id));
@@ -309,6 +320,10 @@ fn identity(record: &RunRecord, words: Translator) -> Vec<Field> {
     put("report.operator", record.session.operator.as_deref());
     put("report.evaluated_at", Some(&date_time(&record.session.evaluated_at)));
     put("report.program", Some(&format!("{} {}", record.program.name, record.program.version)));
+    // The names of free attributes are the user's own.
+    let free =
+        unit.attributes.iter().map(|(name, value)| Field { label: name.clone(), value: value.clone() });
+    out.extend(free);
     out
 }
 

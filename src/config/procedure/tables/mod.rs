@@ -8,6 +8,7 @@ pub(crate) mod rate_table;
 mod site;
 pub mod temperature;
 
+use crate::config::procedure::unit_facts::UnitFact;
 use crate::config::recording_keys;
 use crate::config::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
 use conditions::{CONDITIONS, EXCLUDE};
@@ -163,6 +164,12 @@ pub(crate) static UNIT_UNDER_TEST: TableSpec = TableSpec {
             "true",
             "true",
             "Whether a run is an error if neither `--serial` nor the recording states a serial number.",
+        ),
+        optional(
+            "requires",
+            Kind::Choices(UnitFact::WORDS),
+            "[\"lot\"]",
+            "What must be known of the unit besides, or a run is an error: from `--lot`, `--unit-data` or the manifest.",
         ),
     ],
 };

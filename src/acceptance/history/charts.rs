@@ -1,0 +1,140 @@
+//! Quantities over time, with control limits.
+
+use super::selection::{Selection, Tested, limit, points};
+use crate::estimate::normal_quantile;
+use crate::i18n::Note;
+use crate::lot::capability::{self, Capability, Limits};
+use crate::lot::control_chart::{Chart, LEAST_VALUES, Measured, SETTLED_VALUES};
+use crate::record::{
+    HistoryCapability, HistoryChart, HistoryChartOf, HistoryControl, HistoryControlPoint, HistoryLimit,
+    HistoryPoint, HistoryQuantity, Message,
+};
+use std::collections::BTreeSet;
+
+/// The charts of some quantities: of the unit that was asked for or of the process, and of every bench that a reference unit
+/// watches.
+pub(super) fn charts(
+    selection: &Selection<'_>,
+    quantities: &[HistoryQuantity],
+    of_unit: bool,
+) -> Vec<HistoryChart> {
+    let mut charts = vec![];
+    for quantity in quantities {
+        if of_unit {
+            let tests: Vec<Tested<'_>> = selection.all().filter(Tested::counts).collect();
+            charts.extend(chart(HistoryChartOf::Unit, &tests, quantity));
+        } else {
+            charts.extend(chart(HistoryChartOf::Process, &selection.first_of_each(), quantity));
+        }
+    }
+    if !of_unit {
+        charts.extend(quantities.iter().flat_map(|q| benches(selection, q)));
+    }
+    charts
+}
+
+/// A chart for each station and reference unit.
+fn benches(selection: &Selection<'_>, quantity: &HistoryQuantity) -> Vec<HistoryChart> {
+    let key = |t: &Tested<'_>| (t.attempt.entry.test.station.clone(), t.attempt.entry.unit.key());
+    let benches: BTreeSet<(String, String)> = selection.references().map(|t| key(&t)).collect();
+    let each = |bench: (String, String)| {
+        let tests: Vec<Tested<'_>> = selection.references().filter(|t| key(t) == bench).collect();
+        chart(HistoryChartOf::Bench, &tests, quantity)
+    };
+    benches.into_iter().filter_map(each).collect()
+}
+
+/// A chart of results in the order of time; `None` of fewer than two values.
+fn chart(of: HistoryChartOf, tests: &[Tested<'_>], quantity: &HistoryQuantity) -> Option<HistoryChart> {
+    let points = points(tests.iter().copied(), quantity);
+    let first = points.first().filter(|_| points.len() > 1)?;
+    let mut notes: Vec<Note> = vec![];
+    let limit = limit(tests.iter().copied(), quantity).unwrap_or_else(|()| {
+        notes.push("history.note.limits_differ".into());
+        None
+    });
+    let measured: Vec<Measured> = points.iter().map(measured).collect();
+    let chart = Chart::of(&measured);
+    match &chart {
+        None if points.len() < LEAST_VALUES => {
+            notes.push(
+                Note::new("history.note.few_values").with("n", points.len()).with("needed", LEAST_VALUES),
+            );
+        }
+        Some(_) if points.len() < SETTLED_VALUES => {
+            notes.push(
+                Note::new("history.note.unsettled").with("n", points.len()).with("needed", SETTLED_VALUES),
+            );
+        }
+        _ => {}
+    }
+    if points.iter().any(|p| p.interval.is_none()) {
+        notes.push("history.note.no_interval".into());
+    }
+    let capability = (of == HistoryChartOf::Process).then(|| capable(&points, limit, &mut notes)).flatten();
+    Some(HistoryChart {
+        serial: (of != HistoryChartOf::Process).then(|| first.serial.clone()),
+        station: (of == HistoryChartOf::Bench).then(|| first.station.clone()),
+        of,
+        quantity: quantity.clone(),
+        limit,
+        control: chart.map(control),
+        capability,
+        notes: notes.into_iter().map(Message::from).collect(),
+        points,
+    })
+}
+
+/// A value with the standard uncertainty that its interval tells.
+pub(super) fn measured(point: &HistoryPoint) -> Measured {
+    let standard = point.interval.filter(|i| i.coverage > 0.0 && i.coverage < 1.0 && i.high >= i.low);
+    let standard = standard.map(|i| (i.high - i.low) / (2.0 * normal_quantile(0.5 + 0.5 * i.coverage)));
+    Measured { value: point.value, standard: standard.unwrap_or(0.0) }
+}
+
+fn control(chart: Chart) -> HistoryControl {
+    HistoryControl {
+        center: chart.center,
+        observed: chart.observed,
+        process: chart.process,
+        range_limit: chart.range_limit(),
+        in_control: chart.is_in_control(),
+        points: chart
+            .points
+            .into_iter()
+            .map(|p| HistoryControlPoint {
+                reach: p.reach,
+                range: p.range,
+                ewma: p.ewma,
+                ewma_reach: p.ewma_reach,
+                broken: p.broken.iter().map(|r| r.id().to_owned()).collect(),
+                ewma_beyond: p.ewma_beyond,
+            })
+            .collect(),
+    }
+}
+
+/// The capability of a process within its limits.
+fn capable(
+    points: &[HistoryPoint],
+    limit: Option<HistoryLimit>,
+    notes: &mut Vec<Note>,
+) -> Option<HistoryCapability> {
+    let limit = limit?;
+    if points.len() < capability::LEAST_VALUES {
+        let note = Note::new("history.note.no_capability").with("n", points.len());
+        notes.push(note.with("needed", capability::LEAST_VALUES));
+        return None;
+    }
+    let values: Vec<f64> = points.iter().map(|p| p.value).collect();
+    let found = Capability::of(&values, Limits { min: limit.min, max: limit.max })?;
+    Some(HistoryCapability {
+        units: found.values,
+        mean: found.mean,
+        deviation: found.deviation,
+        cp: found.cp.map(|i| i.value),
+        cp_at_least: found.cp.map(|i| i.at_least),
+        cpk: found.cpk.value,
+        cpk_at_least: found.cpk.at_least,
+    })
+}

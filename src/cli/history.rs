@@ -1,0 +1,163 @@
+//! `sagnac history`: what the results of a store tell over time.
+
+use super::keep::StoreArgs;
+use super::options::renderer;
+use super::printer::{print_styled, terminal as standard_output};
+use super::{exit, place, store};
+use crate::acceptance::history::history;
+use crate::i18n::{Lang, Note};
+use crate::ingest::serial;
+use crate::measurand;
+use crate::output::StagedFile;
+use crate::record::{HistoryAsked, HistoryRecord};
+use crate::report::history::{HistoryView, csv};
+use crate::report::terminal::{self, Terminal};
+use crate::store::{Attempt, Filter};
+use clap::{Args, ValueEnum};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+/// Width of text in a file.
+const FILE_WIDTH: usize = 120;
+
+#[derive(Debug, Args)]
+pub struct HistoryArgs {
+    /// Serial number of a unit [default: all units]
+    #[arg(value_name = "SN")]
+    serial: Option<String>,
+    /// Store to ask [default: SAGNAC_STORE, else the configuration of the user]
+    #[arg(long, value_name = "STORE")]
+    store: Option<PathBuf>,
+    /// Model
+    #[arg(long, value_name = "MODEL")]
+    model: Option<String>,
+    /// Lot; several by repeating the option
+    #[arg(long, value_name = "LOT")]
+    lot: Vec<String>,
+    /// Id of the procedure
+    #[arg(long, value_name = "ID")]
+    procedure: Option<String>,
+    /// Id of a measurand; all with a limit without the option
+    #[arg(long, value_name = "ID")]
+    measurand: Option<String>,
+    /// Station
+    #[arg(long, value_name = "NAME")]
+    station: Option<String>,
+    /// First day or moment, such as 2026-03-01
+    #[arg(long, value_name = "DATE")]
+    since: Option<String>,
+    /// Standard uncertainty that all tests of a unit share, in the unit of the measurand; it cancels in a drift
+    #[arg(long, value_name = "NUMBER", default_value_t = 0.0, requires = "measurand")]
+    common: f64,
+    /// Form of the answer
+    #[arg(long, value_name = "FORMAT", default_value = "table")]
+    format: HistoryFormat,
+    /// File to write [default: standard output]
+    #[arg(long, value_name = "FILE")]
+    out: Option<PathBuf>,
+    /// Replace the file if it exists
+    #[arg(long, requires = "out")]
+    force: bool,
+    /// Folder of templates that override built-in ones of the same name
+    #[arg(long, value_name = "DIR")]
+    templates: Option<PathBuf>,
+}
+
+/// Form of the answer.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum HistoryFormat {
+    /// Text
+    Table,
+    /// One row a result and measurand
+    Csv,
+    /// Everything
+    Json,
+    /// A page with figures
+    Html,
+}
+
+pub fn main(args: &HistoryArgs, lang: Lang) -> Result<u8, String> {
+    let say = |note: Note| place::error(&note, lang);
+    if let Some(id) = args.measurand.as_deref().filter(|id| measurand::find(id).is_none()) {
+        return Err(say(Note::new("history.no_measurand").with("id", id)));
+    }
+    if !(args.common >= 0.0 && args.common.is_finite()) {
+        return Err(say(Note::new("history.common").with("given", args.common.to_string())));
+    }
+    let named = StoreArgs { store: args.store.clone(), ..StoreArgs::default() };
+    let path = named.path(lang)?.ok_or_else(|| say("history.no_store".into()))?;
+    let opened = store::open_to_read(&path, lang)?;
+    let attempts = opened.attempts(&args.filter()).map_err(|e| say(e.note()))?;
+    if attempts.is_empty() {
+        return Err(say("history.nothing".into()));
+    }
+    let record = history(&attempts, args.asked(), args.common);
+    let text = rendered(args, &attempts, &record, lang)?;
+    match &args.out {
+        Some(out) => {
+            write(out, &text, args.force).map_err(say)?;
+            place::print(&format!("{}\n", place::shown(out)));
+        }
+        None if args.format == HistoryFormat::Table => print_styled(&text),
+        None => place::print(&text),
+    }
+    Ok(exit::PASS)
+}
+
+impl HistoryArgs {
+    fn filter(&self) -> Filter {
+        Filter {
+            serial_key: self.serial.as_deref().map(serial::plain),
+            model: self.model.clone(),
+            lots: self.lot.clone(),
+            procedure: self.procedure.clone(),
+            station: self.station.clone(),
+            since: self.since.clone(),
+        }
+    }
+
+    fn asked(&self) -> HistoryAsked {
+        HistoryAsked {
+            serial: self.serial.clone(),
+            model: self.model.clone(),
+            lots: self.lot.clone(),
+            procedure: self.procedure.clone(),
+            measurand: self.measurand.clone(),
+            station: self.station.clone(),
+            since: self.since.clone(),
+        }
+    }
+}
+
+fn rendered(
+    args: &HistoryArgs,
+    attempts: &[Attempt],
+    record: &HistoryRecord,
+    lang: Lang,
+) -> Result<String, String> {
+    let say = |note: Note| place::error(&note, lang);
+    Ok(match args.format {
+        HistoryFormat::Csv => csv(attempts, args.measurand.as_deref()),
+        HistoryFormat::Json => {
+            let json = serde_json::to_string_pretty(record)
+                .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
+            format!("{json}\n")
+        }
+        HistoryFormat::Table => {
+            let plain = Terminal { width: FILE_WIDTH, colour: false };
+            let target = if args.out.is_some() { plain } else { standard_output() };
+            terminal::history(&HistoryView::new(record, lang), lang, target)
+        }
+        HistoryFormat::Html => renderer(args.templates.as_deref(), lang)?
+            .render_view("history.html", &HistoryView::new(record, lang), lang)
+            .map_err(|e| say(e.note()))?,
+    })
+}
+
+fn write(out: &Path, text: &str, force: bool) -> Result<(), Note> {
+    let staged = StagedFile::begin(out, &[], force).map_err(|e| e.note())?;
+    let written = staged.file().map_err(|e| e.note())?.write_all(text.as_bytes());
+    written.map_err(|e| staged.refused(e).note())?;
+    staged.publish().map_err(|e| e.note())?;
+    Ok(())
+}

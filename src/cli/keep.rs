@@ -1,0 +1,116 @@
+//! The store that a run is kept in.
+
+use super::place;
+use super::printer::Printer;
+use crate::config::user;
+use crate::i18n::{Lang, Localize, Note};
+use crate::record::RunRecord;
+use crate::store::{Store, StoreError, attempt_of};
+use clap::Args;
+use std::path::{Path, PathBuf};
+
+/// The variable of the environment that names a store.
+const VARIABLE: &str = "SAGNAC_STORE";
+/// Digits of an address that are shown.
+const SHOWN: usize = 12;
+
+/// The choice of a store.
+#[derive(Debug, Default, Args)]
+pub struct StoreArgs {
+    /// Store to keep the result in [default: SAGNAC_STORE, else the configuration of the user, else none]
+    #[arg(long, value_name = "STORE")]
+    pub store: Option<PathBuf>,
+    /// Keep a copy of the recording in the store too
+    #[arg(long)]
+    pub keep_recording: bool,
+    /// Keep the result in no store
+    #[arg(long, conflicts_with = "store")]
+    pub no_store: bool,
+}
+
+impl StoreArgs {
+    /// The store asked for: by the option, the environment, or the settings of the user.
+    ///
+    /// # Errors
+    /// The diagnostic of settings that cannot be read, in words.
+    pub fn path(&self, lang: Lang) -> Result<Option<PathBuf>, String> {
+        if self.no_store {
+            return Ok(None);
+        }
+        let set = || std::env::var_os(VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
+        match self.store.clone().or_else(set) {
+            Some(path) => Ok(Some(path)),
+            None => Ok(user::load(|name| std::env::var_os(name)).map_err(|p| p.say(lang))?.store),
+        }
+    }
+}
+
+/// Keeps results in the store that was asked for, if any.
+pub struct Keeper {
+    path: Option<PathBuf>,
+    recordings: bool,
+    lang: Lang,
+}
+
+impl Keeper {
+    /// Keeps nothing.
+    pub fn none(lang: Lang) -> Keeper {
+        Keeper { path: None, recordings: false, lang }
+    }
+
+    /// What the options ask for. A store that cannot be used is found now, before any work is done.
+    ///
+    /// # Errors
+    /// The diagnostic, in words.
+    pub fn new(args: &StoreArgs, lang: Lang) -> Result<Keeper, String> {
+        let keeper = Keeper { path: args.path(lang)?, recordings: args.keep_recording, lang };
+        if let Some(store) = keeper.open()? {
+            for note in store.notes() {
+                place::eprint_diagnostic(&place::warning(note, lang));
+            }
+        }
+        Ok(keeper)
+    }
+
+    /// The store is open as briefly as possible: who makes its index anew must have it alone.
+    fn open(&self) -> Result<Option<Store>, String> {
+        self.path.as_deref().map(Store::open).transpose().map_err(|e| self.say(&e))
+    }
+
+    fn say(&self, error: &StoreError) -> String {
+        place::error(&error.note(), self.lang)
+    }
+
+    /// Writes into a record which attempt at the test it is.
+    ///
+    /// # Errors
+    /// The diagnostic, in words.
+    pub fn number(&self, record: &mut RunRecord) -> Result<(), String> {
+        if let Some(store) = self.open()? {
+            record.attempt = attempt_of(&store, record).map_err(|e| self.say(&e))?;
+        }
+        Ok(())
+    }
+
+    /// Keeps a result folder that is in its place, and says where.
+    ///
+    /// # Errors
+    /// The diagnostic, in words, with how the result can be added later.
+    pub fn keep(&self, folder: &Path, printer: Printer) -> Result<(), String> {
+        let Some(path) = &self.path else { return Ok(()) };
+        let later = |message: String| {
+            let note = Note::new("store.not_kept").with("folder", place::shown(folder));
+            format!("{message}{}\n", note.say(self.lang))
+        };
+        let Some(mut store) = self.open().map_err(later)? else { return Ok(()) };
+        let added = store.add(folder).map_err(|e| later(self.say(&e)))?;
+        if self.recordings {
+            store.keep_recordings(&added.address).map_err(|e| self.say(&e))?;
+        }
+        let note = Note::new("store.kept")
+            .with("address", added.address.get(..SHOWN).unwrap_or(&added.address))
+            .with("store", place::shown(path));
+        printer.next_step(Some(&note));
+        Ok(())
+    }
+}

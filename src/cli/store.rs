@@ -1,0 +1,207 @@
+//! `sagnac store`: a store of results, made, looked after and exchanged with others.
+
+use super::{exit, place};
+use crate::i18n::{Lang, Localize, Note};
+use crate::store::{self, Filter, RecordingSearch, Store, StoreError, result_folders};
+use chrono::{SecondsFormat, Utc};
+use clap::{Args, Subcommand};
+use std::path::{Path, PathBuf};
+
+#[derive(Debug, Args)]
+pub struct StoreVerbArgs {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// Make a store in an empty folder
+    Init {
+        /// Folder of the store
+        #[arg(value_name = "STORE")]
+        store: PathBuf,
+        /// Several machines will use the store: locks in place of memory that its users share
+        #[arg(long)]
+        shared_disk: bool,
+    },
+    /// Add result folders that were made elsewhere, and find recordings that have moved
+    Import {
+        /// Folder of the store
+        #[arg(value_name = "STORE")]
+        store: PathBuf,
+        /// Result folders, or folders that hold some
+        #[arg(required = true, value_name = "DIR")]
+        folders: Vec<PathBuf>,
+        /// Folders in which recordings are looked for by their hashes
+        #[arg(long, value_name = "DIR")]
+        recordings: Vec<PathBuf>,
+    },
+    /// Write a table of all measurands (Parquet), one row each
+    Export {
+        /// Folder of the store
+        #[arg(value_name = "STORE")]
+        store: PathBuf,
+        /// File to write
+        #[arg(long, value_name = "FILE")]
+        out: PathBuf,
+        /// Replace the file if it exists
+        #[arg(long)]
+        force: bool,
+    },
+    /// State that a result counts in place of another, and why; both stay in the store
+    Supersede {
+        /// Folder of the store
+        #[arg(value_name = "STORE")]
+        store: PathBuf,
+        /// Address of the result that does not count any more, or its beginning
+        #[arg(value_name = "ADDRESS")]
+        superseded: String,
+        /// Address of the result that counts in its place, or its beginning
+        #[arg(long, value_name = "ADDRESS")]
+        by: String,
+        /// Reason
+        #[arg(long, value_name = "TEXT")]
+        reason: String,
+        /// Name of the operator
+        #[arg(long, value_name = "NAME")]
+        operator: Option<String>,
+    },
+    /// Move copies of recordings out of the store; results stay
+    Prune {
+        /// Folder of the store
+        #[arg(value_name = "STORE")]
+        store: PathBuf,
+        /// Folder that the copies are moved to
+        #[arg(long, value_name = "DIR")]
+        to: PathBuf,
+        /// Leave the copies of results that were evaluated on this day or later
+        #[arg(long, value_name = "DATE")]
+        before: Option<String>,
+    },
+    /// Make the index anew from the result folders
+    Rebuild {
+        /// Folder of the store
+        #[arg(value_name = "STORE")]
+        store: PathBuf,
+    },
+    /// Compute every hash anew and compare the index with the folders
+    Verify {
+        /// Folder of the store
+        #[arg(value_name = "STORE")]
+        store: PathBuf,
+    },
+}
+
+pub fn main(args: &StoreVerbArgs, lang: Lang) -> Result<u8, String> {
+    let say = |e: StoreError| place::error(&e.note(), lang);
+    match &args.what {
+        What::Init { store, shared_disk } => {
+            for note in store::init(store, *shared_disk).map_err(say)? {
+                place::eprint_diagnostic(&place::warning(&note, lang));
+            }
+            done(&Note::new("store.made").with("store", place::shown(store)), lang)
+        }
+        What::Import { store, folders, recordings } => import(store, folders, recordings, lang),
+        What::Export { store, out, force } => {
+            let opened = open_to_read(store, lang)?;
+            let rows = store::export(&opened, &Filter::default(), out, *force).map_err(say)?;
+            done(&Note::new("store.exported").with("n", rows).with("file", place::shown(out)), lang)
+        }
+        What::Supersede { store, superseded, by, reason, operator } => {
+            let mut opened = Store::open(store).map_err(say)?;
+            let operator = operator.as_deref().unwrap_or_default();
+            opened.supersede(superseded, by, reason, operator, now()).map_err(say)?;
+            done(&"store.superseded".into(), lang)
+        }
+        What::Prune { store, to, before } => {
+            let mut opened = Store::open(store).map_err(say)?;
+            let moved = opened.prune(to, before.as_deref(), &now()).map_err(say)?;
+            done(&Note::new("store.pruned").with("n", moved).with("folder", place::shown(to)), lang)
+        }
+        What::Rebuild { store } => {
+            let rebuilt = store::rebuild(store).map_err(say)?;
+            let note = Note::new("store.rebuilt").with("n", rebuilt.results);
+            found(&rebuilt.findings, &note.with("statements", rebuilt.statements), lang)
+        }
+        What::Verify { store } => {
+            let opened = open_to_read(store, lang)?;
+            let verified = store::verify(&opened).map_err(say)?;
+            let note = Note::new("store.verified").with("n", verified.results);
+            let note = note.with("statements", verified.statements).with("wrong", verified.findings.len());
+            found(&verified.findings, &note, lang)
+        }
+    }
+}
+
+fn now() -> String {
+    Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true)
+}
+
+/// Opens a store to ask it, and says what must be known of it.
+///
+/// # Errors
+/// The diagnostic, in words.
+pub fn open_to_read(path: &Path, lang: Lang) -> Result<Store, String> {
+    let store = Store::open_to_read(path).map_err(|e| place::error(&e.note(), lang))?;
+    for note in store.notes() {
+        place::eprint_diagnostic(&place::warning(note, lang));
+    }
+    Ok(store)
+}
+
+fn done(note: &Note, lang: Lang) -> Result<u8, String> {
+    place::print(&format!("{}\n", note.say(lang)));
+    Ok(exit::PASS)
+}
+
+/// Says what was found to be wrong, then how much was looked at; what is wrong is a failure.
+fn found(findings: &[store::Finding], note: &Note, lang: Lang) -> Result<u8, String> {
+    for finding in findings {
+        place::eprint_diagnostic(&place::error(&finding.note(), lang));
+    }
+    done(note, lang)?;
+    Ok(if findings.is_empty() { exit::PASS } else { exit::FAIL })
+}
+
+fn import(store: &Path, folders: &[PathBuf], recordings: &[PathBuf], lang: Lang) -> Result<u8, String> {
+    let say = |e: StoreError| place::error(&e.note(), lang);
+    let mut opened = Store::open(store).map_err(say)?;
+    for note in opened.notes() {
+        place::eprint_diagnostic(&place::warning(note, lang));
+    }
+    let (mut new, mut known, mut refused) = (0_usize, 0_usize, 0_usize);
+    for named in folders {
+        let results = result_folders(named).map_err(say)?;
+        if results.is_empty() {
+            let note = Note::new("result_error.no_result_in").with("path", place::shown(named));
+            return Err(place::error(&note, lang));
+        }
+        for folder in results {
+            let added = match opened.add(&folder) {
+                Ok(added) => added,
+                // What is no result is left out; a store that cannot be written ends the import.
+                Err(e @ (StoreError::Result { .. } | StoreError::NoTest(_))) => {
+                    place::eprint_diagnostic(&place::warning(&e.note(), lang));
+                    refused += 1;
+                    continue;
+                }
+                Err(e) => return Err(say(e)),
+            };
+            if !added.missing.is_empty() {
+                let note = Note::new("store.files_missing").with("path", place::shown(&folder));
+                let note = note.with("n", added.missing.len()).with("names", added.missing.join(", "));
+                place::eprint_diagnostic(&place::warning(&note, lang));
+            }
+            *if added.new { &mut new } else { &mut known } += 1;
+        }
+    }
+    let note = Note::new("store.imported").with("new", new).with("known", known).with("refused", refused);
+    done(&note, lang)?;
+    if !recordings.is_empty() {
+        let RecordingSearch { found, in_place, missing } =
+            opened.find_recordings(recordings, &now()).map_err(say)?;
+        let note = Note::new("store.recordings").with("found", found).with("in_place", in_place);
+        done(&note.with("missing", missing), lang)?;
+    }
+    Ok(if refused > 0 { exit::FAIL } else { exit::PASS })
+}

@@ -1,0 +1,72 @@
+//! A history as a table: one row a result and measurand; the same in every language.
+
+use crate::output::quoted;
+use crate::store::Attempt;
+
+/// The columns.
+const COLUMNS: [&str; 24] = [
+    "evaluated_at",
+    "serial",
+    "model",
+    "lot",
+    "reference",
+    "procedure",
+    "revision",
+    "station",
+    "operator",
+    "attempt",
+    "verdict",
+    "measurand",
+    "channel",
+    "phase",
+    "unit",
+    "value",
+    "low",
+    "high",
+    "upper_limit",
+    "limit_min",
+    "limit_max",
+    "measurand_verdict",
+    "superseded_by",
+    "address",
+];
+
+/// The table of some results; of one measurand only where it is named.
+pub fn csv(attempts: &[Attempt], measurand: Option<&str>) -> String {
+    let mut out = format!("{}\n", COLUMNS.join(","));
+    let number = |v: Option<f64>| v.map_or_else(String::new, |v| v.to_string());
+    for a in attempts {
+        let (unit, test) = (&a.entry.unit, &a.entry.test);
+        for m in a.entry.measurands.iter().filter(|m| measurand.is_none_or(|id| m.id == id)) {
+            let fields = [
+                quoted(&test.evaluated_at),
+                quoted(&unit.serial),
+                quoted(&unit.model),
+                quoted(&unit.lot),
+                unit.reference.to_string(),
+                quoted(&test.procedure),
+                quoted(&test.revision),
+                quoted(&test.station),
+                quoted(&test.operator),
+                a.number.to_string(),
+                a.entry.verdict.id().to_owned(),
+                quoted(&m.id),
+                quoted(&m.channel),
+                quoted(m.phase.as_deref().unwrap_or_default()),
+                quoted(&m.unit),
+                number(m.value),
+                number(m.interval.map(|i| i.low)),
+                number(m.interval.map(|i| i.high)),
+                number(m.upper_limit.map(|u| u.value)),
+                number(m.min),
+                number(m.max),
+                m.verdict.id().to_owned(),
+                a.superseded.as_ref().map(|c| c.by.clone()).unwrap_or_default(),
+                a.address.clone(),
+            ];
+            out.push_str(&fields.join(","));
+            out.push('\n');
+        }
+    }
+    out
+}

@@ -1,0 +1,36 @@
+//! A store of results: folders that never change, addressed by their contents, and an index of them.
+//!
+//! The folders and statements are what there is; the index is made from them, and can be made anew at any time. A folder
+//! appears whole by one rename, and its rows by one transaction; an address between the two is listed as pending, and whoever
+//! opens the store next completes it.
+
+mod add;
+pub mod address;
+mod attempt;
+mod entry;
+mod error;
+mod export;
+mod finding;
+mod folders;
+mod import;
+mod index;
+mod layout;
+mod lock;
+mod maintenance;
+mod marker;
+mod opened;
+mod recordings;
+mod statement;
+
+pub use add::Added;
+pub use attempt::attempt_of;
+pub use entry::{Entry, EntryMeasurand, EntryRecording, EntryTest, EntryUnit, Reason, ReasonKind};
+pub use error::StoreError;
+pub use export::export;
+pub use finding::Finding;
+pub use import::{RecordingSearch, result_folders};
+pub use index::{Attempt, Correction, Counted, Filter};
+pub use layout::{Layout, STORE_FORMAT};
+pub use maintenance::{Rebuilt, Verified, rebuild, verify};
+pub use marker::init;
+pub use opened::Store;
