@@ -224,6 +224,7 @@ const LATIN: &[&str] = &[
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "explain.error.of_recording",
     "history.column.cp",
     "history.column.cpk",
     "history.index",
