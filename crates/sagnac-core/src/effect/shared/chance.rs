@@ -40,15 +40,24 @@ pub(in crate::effect) fn follows_by_chance(
         left.iter().zip(&roots).map(|(l, r)| if r.is_finite() { l * r } else { 0.0 }).collect();
     let on_left = SearchContext { modes: &modes, ..*context };
     let of_slide = |slide: usize| {
-        let shifted = mirrored_shift(values, slide * 2 * values.len() / (SLIDES + 1));
-        search(&shifted, drivers, &on_left).map_or(0.0, |by_chance| by_chance.gain)
+        search(&moved(values, slide), drivers, &on_left).map_or(0.0, |by_chance| by_chance.gain)
     };
+    is_chance(found.gain, NOTHING, of_slide)
+}
+
+/// True where columns shifted in time gain more than `nothing`, and no small part of what they gain in their own place.
+pub(super) fn is_chance(gain: f64, nothing: f64, of_slide: impl Fn(usize) -> f64 + Sync + Send) -> bool {
     let by_chance = (1..=SLIDES).into_par_iter().map(of_slide).reduce(|| 0.0, f64::max);
-    by_chance > NOTHING && found.gain < OVER_CHANCE * by_chance
+    by_chance > nothing && gain < OVER_CHANCE * by_chance
+}
+
+/// A column in the place of one of the slides, counted from 1.
+pub(super) fn moved(values: &[f64], slide: usize) -> Vec<f64> {
+    mirrored_shift(values, slide * 2 * values.len() / (SLIDES + 1))
 }
 
 /// A series moved along its even extension: what leaves at one end comes back at the other without a jump.
-pub(super) fn mirrored_shift(values: &[f64], shift: usize) -> Vec<f64> {
+fn mirrored_shift(values: &[f64], shift: usize) -> Vec<f64> {
     let n = values.len();
     let at = |i: usize| {
         let i = (i + shift) % (2 * n);
@@ -57,7 +66,8 @@ pub(super) fn mirrored_shift(values: &[f64], shift: usize) -> Vec<f64> {
     (0..n).map(at).collect()
 }
 
-fn orthonormal(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
+/// Orthonormal directions that span some columns; what others hold already is left out.
+pub(super) fn orthonormal(columns: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     let mut out: Vec<Vec<f64>> = vec![];
     for mut column in columns {
         let size = dot(&column, &column);

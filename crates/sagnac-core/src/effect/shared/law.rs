@@ -3,7 +3,7 @@
 //! Forms are the value, its square, the rate of change and the value behind a delay. The terms are chosen by what they gain
 //! under the noise at hand. A law that columns shifted in time reach as well is chance.
 
-use super::chance::mirrored_shift;
+use super::chance::{is_chance, moved, orthonormal};
 use super::decay::decay;
 use super::polynomial::Scale;
 use super::pursuit::{Pursued, choices, pursue, remove, unit};
@@ -20,10 +20,6 @@ const DELAYS_S: [f64; 3] = [150.0, 940.0, 5900.0];
 pub(in crate::effect) const MAX_TERMS: usize = 3;
 /// What a term must gain beyond the logarithm of the number of terms, nats.
 const PRICE: f64 = 3.0;
-/// Shifts of the columns.
-const SLIDES: usize = 8;
-/// Times the largest gain of shifted columns that a law must gain.
-const OVER_CHANCE: f64 = 10.0;
 /// Gain of shifted columns beyond the logarithm of the number of terms, nats, up to which it is that of plain noise.
 const NOTHING: f64 = 8.0;
 
@@ -234,9 +230,10 @@ impl<'a> Columns<'a> {
 
     /// All of them moved in time by the same shift.
     fn shifted(&self, slide: usize) -> Columns<'static> {
-        let one = |c: &Scaled<'_>| {
-            let shift = slide * 2 * c.values.len() / (SLIDES + 1);
-            Scaled { column: c.column, values: mirrored_shift(&c.values, shift).into(), scale: c.scale }
+        let one = |c: &Scaled<'_>| Scaled {
+            column: c.column,
+            values: moved(&c.values, slide).into(),
+            scale: c.scale,
         };
         Columns(self.0.iter().map(one).collect())
     }
@@ -303,20 +300,14 @@ pub(in crate::effect) fn search(drivers: &Drivers, context: &SearchContext<'_>) 
         // Of one column each there are kinds.
         return None;
     }
-    let mut directions: Vec<Vec<f64>> = vec![];
-    for i in &found.terms {
-        let mut direction = modes[*i].clone();
-        directions.iter().for_each(|d| remove(&mut direction, d));
-        directions.push(unit(direction));
-    }
-    directions.iter().for_each(|d| remove(&mut left, d));
+    let own = found.terms.iter().filter_map(|i| modes.get(*i).cloned()).collect();
+    orthonormal(own).iter().for_each(|d| remove(&mut left, d));
     drop(modes);
     let of_slide = |slide: usize| {
         let modes = whitened_terms(&columns.shifted(slide), &terms, drivers, &roots);
         chosen(&modes, &left).gain
     };
-    let by_chance = (1..=SLIDES).map(of_slide).fold(0.0, f64::max);
-    if by_chance > many + NOTHING && found.gain < OVER_CHANCE * by_chance {
+    if is_chance(found.gain, many + NOTHING, of_slide) {
         return None;
     }
     let trials = choices(terms.len(), found.terms.len());
