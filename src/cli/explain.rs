@@ -1,73 +1,23 @@
 //! `sagnac explain`: where, and because of what, a recording differs from its simulation.
 
+use super::explain_args::{ExplainArgs, options, read, shown};
 use super::finish::write;
 use super::inputs::Inputs;
-use super::join::JoinArgs;
-use super::options::OutputArgs;
 use super::place::{self, OutputPlace};
 use super::printer::Printer;
-use super::progress::Progress;
-use super::read::ReadArgs;
 use super::{exit, explain_jointly, next_step};
 use crate::config::model;
-use crate::effect::{Column, EFFECTS, find};
+use crate::effect::Column;
 use crate::i18n::{Arg, EffectText, Lang, Note, effect_key};
 use crate::ingest::{ReadOptions, are_several, files_read};
+use crate::mismatch;
 use crate::mismatch::finding::MismatchVerdict;
-use crate::mismatch::{self, Options};
 use crate::output::Kind;
 use crate::report::explain::{Context, ExplainView};
 use crate::report::export::EXPORTERS;
 use crate::report::{ExplanationResults, Results, terminal};
-use crate::series::{Series, SeriesOptions, load_series};
 use chrono::{SecondsFormat, Utc};
-use clap::Args;
-use sagnac_core::spelling::nearest;
 use std::path::{Path, PathBuf};
-
-#[derive(Debug, Args)]
-pub struct ExplainArgs {
-    /// Recording: a file of any supported format, or a manifest; several files or a quoted pattern are recordings of one unit
-    /// that are explained together, or one recording with --join
-    #[arg(required = true)]
-    pub(super) recording: Vec<PathBuf>,
-    #[command(flatten)]
-    join: JoinArgs,
-    /// The claimed simulation (TOML)
-    #[arg(long, value_name = "FILE", required_unless_present = "simulation", conflicts_with = "simulation")]
-    pub(super) model: Option<PathBuf>,
-    /// Simulated recording from which the claim is identified, instead of a model
-    #[arg(long, value_name = "FILE")]
-    simulation: Option<PathBuf>,
-    /// Probability of calling a correct claim a mismatch [default: 0.01]
-    #[arg(long, value_name = "PROBABILITY")]
-    pub(super) alpha: Option<f64>,
-    /// Column to treat as not recorded, by its standard name (temp_degC) or, if it has none, its own; may be repeated
-    #[arg(long, value_name = "COLUMN")]
-    pub(super) hide: Vec<String>,
-    /// Maximum number of effects to add to the claim [default: 3]
-    #[arg(long, value_name = "COUNT")]
-    pub(super) max_effects: Option<usize>,
-    /// Effect to exclude from the search, by id (`sagnac effects`); may be repeated
-    #[arg(long, value_name = "EFFECT")]
-    pub(super) without: Vec<String>,
-    /// Rate column by name or position [default: the only column that looks like a gyro output]
-    #[arg(long, value_name = "COLUMN")]
-    pub(super) rate: Option<String>,
-    /// Unit of the rate column [default: from its name]
-    #[arg(long, value_name = "UNIT")]
-    pub(super) unit: Option<String>,
-    /// Sample rate, required without a time column
-    #[arg(long, value_name = "HZ")]
-    pub(super) sample_rate: Option<f64>,
-    /// Output folder [default: named after the recording and UTC time]
-    #[arg(long, value_name = "DIR")]
-    pub(super) out: Option<PathBuf>,
-    #[command(flatten)]
-    pub(super) output: OutputArgs,
-    #[command(flatten)]
-    pub(super) read: ReadArgs,
-}
 
 pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     if !args.join.join && are_several(&args.recording) {
@@ -153,69 +103,10 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     })
 }
 
-pub(super) fn shown(path: &Path) -> String {
-    path.display().to_string()
-}
-
 /// The name of a file without its endings.
 fn stem(path: &Path) -> String {
     let name = path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     name.split('.').find(|part| !part.is_empty()).unwrap_or_default().to_owned()
-}
-
-/// The decisions of the user.
-pub(super) fn options(args: &ExplainArgs) -> Result<Options, Note> {
-    let default = Options::default();
-    let alpha = args.alpha.unwrap_or(default.alpha);
-    if !(alpha > 0.0 && alpha < 1.0) {
-        return Err(Note::new("explain.error.alpha").with("given", alpha.to_string()));
-    }
-    let max_effects = args.max_effects.unwrap_or(default.max_effects);
-    if max_effects == 0 {
-        return Err("explain.error.max_effects".into());
-    }
-    let mut hide = vec![];
-    for name in &args.hide {
-        hide.push(Column::of_name(name));
-    }
-    let mut without = vec![];
-    for name in &args.without {
-        let Some(effect) = find(name) else {
-            let note = Note::new("explain.error.effect").with("given", name.as_str());
-            return Err(match nearest(name, EFFECTS.iter().map(|e| e.kind())) {
-                Some(near) => {
-                    Note::new("explain.error.effect_near").with("given", name.as_str()).with("near", near)
-                }
-                None => note,
-            });
-        };
-        without.push(effect.kind());
-    }
-    Ok(Options { alpha, hide, max_effects, without })
-}
-
-/// Reads a recording.
-pub(super) fn read(
-    args: &ExplainArgs,
-    paths: &[PathBuf],
-    progress: &mut Progress,
-    lang: Lang,
-) -> Result<Series, String> {
-    let options = SeriesOptions {
-        read: args.read.options(),
-        rate: args.rate.clone(),
-        unit: args.unit.clone(),
-        any_rate: false,
-        channels: vec![],
-        sample_rate_hz: args.sample_rate,
-    };
-    let series = load_series(paths, &options, &mut |done, total| {
-        progress.explaining(mismatch::Progress { doing: "explain.progress.reading", done, total });
-    });
-    series.map_err(|e| {
-        progress.finish();
-        e.say(lang)
-    })
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! `sagnac explain A B ...`: what several recordings of one unit share, and what each shows besides.
 
-use super::explain::{ExplainArgs, options, read, shown};
+use super::explain_args::{ExplainArgs, options, read, shown};
 use super::finish::write;
 use super::inputs::Inputs;
 use super::place::{self, OutputPlace};

@@ -10,6 +10,7 @@ mod each;
 mod effects;
 pub mod exit;
 mod explain;
+mod explain_args;
 mod explain_jointly;
 mod finish;
 mod help;
@@ -114,9 +115,10 @@ enum Verb {
     #[command(
         after_help = "Exit codes: 0 consistent, 1 mismatch explained, 2 could not run, 3 unknown mismatch.\n\n\
         Examples:\n  sagnac explain recording.csv --model model.toml --out explained\n  \
+        sagnac explain monday.csv tuesday.csv wednesday.csv --model model.toml\n  \
         sagnac explain recording.csv --simulation simulated.csv --hide temp_degC"
     )]
-    Explain(explain::ExplainArgs),
+    Explain(explain_args::ExplainArgs),
     /// Plan the next test: the shortest schedule that tells the explanations of a recording apart
     #[command(
         after_help = "Exit codes: 0 the schedule decides, or nothing is to be decided, 2 could not run, 3 not decided within limits and budget.\n\n\

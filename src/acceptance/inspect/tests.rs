@@ -123,7 +123,7 @@ fn a_slow_change_with_the_temperature_is_told_from_a_turn() {
         &[
             "Not proven to be at rest",
             "static test No: the output of `rate_deg_h` changes slowly",
-            "temperature test Yes, for the bias: `temp_degC` spans 80 degC",
+            "temperature test Yes, for the bias: `temp_degC` spans 80 °C",
         ],
     );
     let steady = told(
@@ -134,7 +134,7 @@ fn a_slow_change_with_the_temperature_is_told_from_a_turn() {
     let up: Vec<f64> = (0..n).map(|i| 20.0 + 0.002 * f64::from(i)).collect();
     let one_way =
         told(vec![("time_s", stamps(1.0, 8000)), ("rate_deg_h", rate(0.0)), ("temp_degC", up)], None);
-    says(&one_way, &["temperature test Partly", "in one direction only", "steepest trend 7.2 degC/h"]);
+    says(&one_way, &["temperature test Partly", "in one direction only", "steepest trend 7.2 °C/h"]);
 }
 
 #[test]

@@ -3,7 +3,7 @@
 
 mod sentence;
 
-use super::explain::print::{chance, difference, parameter, title, value};
+use super::explain::print::{difference, parameter, title, value};
 use super::explain::{FileView, ParameterRow};
 use super::number::{date_time, digits};
 use super::translator::{Field, Translator};
@@ -203,7 +203,7 @@ fn parameter_row(
         && find(s.effect.as_deref().unwrap_or(&s.kind)).is_some_and(|e| e.domain() == Domain::Driver);
     let unit = match s.column.as_deref().filter(|_| by_column) {
         Some(column) => words.with("joint.per_column", &[("column", column)]),
-        None => p.unit.clone(),
+        None => words.unit(&p.unit),
     };
     ParameterRow {
         name: parameter(name, words),
@@ -236,9 +236,4 @@ fn files(words: Translator) -> Vec<FileView> {
         ("report.md", "joint.wrote.markdown"),
     ];
     rows.into_iter().map(|(name, key)| FileView { name: name.to_owned(), what: words.t(key) }).collect()
-}
-
-/// Probability as the sentences print it.
-fn p(p: f64, words: Translator) -> String {
-    chance(p, words)
 }

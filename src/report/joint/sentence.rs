@@ -1,9 +1,8 @@
 //! What a joint explanation says.
 
-use super::p;
 use crate::mismatch::finding::MismatchVerdict;
 use crate::mismatch::joint::record::{JointExplanation, SharedEffect};
-use crate::report::explain::print::{difference, title};
+use crate::report::explain::print::{chance, difference, title};
 use crate::report::number::count;
 use crate::report::translator::Translator;
 
@@ -50,10 +49,11 @@ pub(super) fn shared(s: &SharedEffect, words: Translator) -> Vec<String> {
         &[
             ("gain", &difference(s.gain, words)),
             ("bic", &difference(s.delta_bic, words)),
-            ("p", &p(s.p_value, words)),
+            ("p", &chance(s.p_value, words)),
         ],
     );
-    let agree = words.with("joint.agreement", &[("p", &p(s.agreement_p_value, words)), ("n", &recordings)]);
+    let agree =
+        words.with("joint.agreement", &[("p", &chance(s.agreement_p_value, words)), ("n", &recordings)]);
     let better = count(s.of.iter().filter(|o| o.predicted_gain > 0.0).count() as u64, words.lang);
     let gain = difference(s.predicted_gain, words);
     let predicted = words.with("joint.predicted", &[("gain", &gain), ("k", &better), ("n", &recordings)]);

@@ -136,6 +136,18 @@ impl Fitted {
         Some((score[0] / information, information.powf(-0.5)))
     }
 
+    /// Whether a coefficient, or a number that was searched for, differs from that of another fit of the law: by some of its
+    /// deviations, or by a hundredth.
+    pub fn is_apart_from(&self, other: &Fitted, deviations: f64) -> bool {
+        let away = |i: usize| (self.coefficients[i] - other.coefficients[i]).abs();
+        let same_law = self.coefficients.len() == other.coefficients.len();
+        let moved =
+            (0..self.coefficients.len()).any(|i| away(i) > deviations * self.covariance[(i, i)].sqrt());
+        let numbers = self.law.searched().into_iter().zip(other.law.searched());
+        let elsewhere = numbers.into_iter().any(|((_, a), (_, b))| (a - b).abs() > 0.01 * a.abs());
+        !same_law || moved || elsewhere
+    }
+
     /// Probability of coefficients that differ so much between recordings that have the same: Cochran's Q, which is χ²
     /// distributed.
     pub fn agreement(&self) -> f64 {

@@ -36,6 +36,10 @@ use crate::message::Note;
 use crate::series::Series;
 use std::collections::BTreeMap;
 
+/// Rounds of explaining the recordings beside the laws, and of fitting the laws beside what that found.
+const ROUNDS: usize = 3;
+/// A law has moved where a coefficient changed by this many of its deviations.
+const LITTLE: f64 = 0.1;
 /// A 95 % interval in standard deviations.
 const HALF_WIDTH: f64 = 1.959_963_985;
 
@@ -100,9 +104,17 @@ pub fn explain_jointly(
         recordings.iter().enumerate().map(of).collect::<Result<Vec<Outcome>, _>>()
     };
     let alone = explained(claim, progress)?;
-    let Shared { laws, unlike, claim: augmented } = shared(&recordings, &alone, claim, &each, progress)?;
+    let mut shared = shared(&recordings, &alone, claim, &each, progress)?;
     let briefs: Vec<Brief> = alone.iter().map(|o| brief(&o.explanation)).collect();
-    let together = if laws.is_empty() { alone } else { explained(&augmented, progress)? };
+    let mut together = alone;
+    for _ in 0..if shared.laws.is_empty() { 0 } else { ROUNDS } {
+        together = explained(&shared.claim, progress)?;
+        if !refit(&mut shared, &recordings, &together, claim, &each)? {
+            break;
+        }
+    }
+    let Shared { laws, unlike, claim: augmented, .. } = shared;
+    let laws: Vec<SharedEffect> = laws.into_iter().map(|l| l.told).collect();
     let of = recordings.iter().zip(briefs).zip(&together);
     let recordings = of.map(|((r, alone), outcome)| JointRecording {
         name: r.name.clone(),
@@ -144,9 +156,19 @@ fn verdict(shared: &[SharedEffect], recordings: &[JointRecording]) -> MismatchVe
 
 /// What the recordings share.
 struct Shared {
-    laws: Vec<SharedEffect>,
+    laws: Vec<SharedLaw>,
     unlike: Vec<SharedEffect>,
+    /// The claim with the laws, in their order behind its own effects.
     claim: Claim,
+    rows: usize,
+}
+
+/// A law that the recordings share.
+struct SharedLaw {
+    fitted: Fitted,
+    told: SharedEffect,
+    /// Causes that were looked at to find it.
+    family: f64,
 }
 
 fn shared(
@@ -163,7 +185,7 @@ fn shared(
         .filter_map(of_stated)
         .collect();
     let rows = recordings.iter().map(|r| r.series.time_s.len()).sum();
-    let mut out = Shared { laws: vec![], unlike: vec![], claim: claim.clone() };
+    let mut out = Shared { laws: vec![], unlike: vec![], claim: claim.clone(), rows };
     let mut taken = vec![];
     for done in 0..options.max_effects {
         let of = Progress {
@@ -176,14 +198,42 @@ fn shared(
         let grounds: Vec<Ground<'_>> = problems.iter().map(|(p, b)| Ground::new(p, b)).collect();
         let look = select::look(&grounds, &found, &taken, rows, options);
         let told = |f: &Fitted| told(f, &grounds, rows, look.family);
-        out.unlike = look.unlike.iter().map(told).collect();
-        let Some(best) = &look.best else { break };
-        out.laws.push(told(best));
+        out.unlike = look.unlike.iter().map(&told).collect();
+        let Some(best) = look.best else { break };
+        let Some(stated) = stated(&best, &grounds) else { break };
         taken.push(best.law.cause());
-        let Some(stated) = stated(best, &grounds) else { break };
+        out.laws.push(SharedLaw { told: told(&best), fitted: best, family: look.family });
         out.claim.effects.push(stated);
     }
     Ok(out)
+}
+
+/// Fits the laws anew, each beside the others and beside what the explanations with them found in single recordings: what a
+/// recording alone took for an event of its own may have been part of a law. True where a law moved.
+fn refit(
+    shared: &mut Shared,
+    recordings: &[Recording],
+    together: &[Outcome],
+    claim: &Claim,
+    options: &Options,
+) -> Result<bool, JointError> {
+    let mut moved = false;
+    for i in 0..shared.laws.len() {
+        let at = claim.effects.len() + i;
+        let mut without = shared.claim.clone();
+        without.effects.remove(at);
+        let problems = problems(recordings, together, &shared.claim, &without, options)?;
+        let grounds: Vec<Ground<'_>> = problems.iter().map(|(p, b)| Ground::new(p, b)).collect();
+        let (Some(law), rows) = (shared.laws.get_mut(i), shared.rows) else { continue };
+        let Some(again) = fit::fit(&law.fitted.law, &grounds) else { continue };
+        let again = fit::refined(again, &grounds);
+        let Some(stated) = stated(&again, &grounds) else { continue };
+        moved |= again.is_apart_from(&law.fitted, LITTLE);
+        law.told = told(&again, &grounds, rows, law.family);
+        law.fitted = again;
+        shared.claim.effects[at] = stated;
+    }
+    Ok(moved)
 }
 
 /// What the explanation of a recording adds to the claim.

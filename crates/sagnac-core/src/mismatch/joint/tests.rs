@@ -100,3 +100,13 @@ fn recordings_that_disagree_share_no_law() {
     assert!(unlike.agreement_p_value < 1e-6, "{unlike:?}");
     assert_eq!(joint.verdict, MismatchVerdict::Mismatch);
 }
+
+#[test]
+fn what_a_recording_takes_for_an_event_of_its_own_does_not_bend_the_law() {
+    // Strong enough for single recordings, whose temperature goes one way, to show it as a ramp or as what it is.
+    let joint = of(&[0.05; 4]).explanation;
+    let shared = joint.shared.iter().find(|s| s.kind == "temp_linear").unwrap_or_else(|| panic!("{joint:?}"));
+    let found = &shared.parameters["coefficient_deg_h_per_degC"];
+    assert!((found.ci95[0]..=found.ci95[1]).contains(&0.05), "{found:?}");
+    assert!(joint.recordings.iter().all(|r| r.together.verdict == MismatchVerdict::Consistent), "{joint:?}");
+}
