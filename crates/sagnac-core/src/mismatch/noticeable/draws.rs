@@ -10,7 +10,7 @@ const DRAWS: usize = 400;
 /// Seed of the spectra: a report is a function of recording and claim alone.
 const SEED: u64 = 0x5a67_6e61_6320_0008;
 
-/// Mean squares of the modes of each bin over what is expected of them, spectrum by spectrum.
+/// Mean squares of the modes over what is expected of them: for each bin those of all spectra side by side.
 pub(super) struct Draws(Vec<Vec<f64>>);
 
 /// A spectrum that may be the true one: its densities, and what stands beside them in the log-likelihood.
@@ -22,10 +22,12 @@ pub(super) struct Rival {
 impl Draws {
     pub fn new(spectral: &SpectralData) -> Draws {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
-        let laws: Vec<(Option<ChiSquared<f64>>, f64)> =
-            spectral.bins.iter().map(|b| spectral.weight(b)).map(|n| (ChiSquared::new(n).ok(), n)).collect();
-        let mut one = || laws.iter().map(|(law, n)| law.map_or(1.0, |l| l.sample(&mut rng) / n)).collect();
-        Draws((0..DRAWS).map(|_| one()).collect())
+        let one = |bin| {
+            let weight = spectral.weight(bin);
+            let law = ChiSquared::new(weight).ok();
+            (0..DRAWS).map(|_| law.map_or(1.0, |l| l.sample(&mut rng) / weight)).collect()
+        };
+        Draws(spectral.bins.iter().map(one).collect())
     }
 
     /// Twice the gain of the best of some rivals over another, which 95 of 100 spectra drawn from `truth` exceed.
@@ -40,13 +42,17 @@ impl Draws {
             (constant + 2.0 * (rival.prior - over.prior), factors)
         };
         let rivals: Vec<(f64, Vec<f64>)> = rivals.iter().map(of).collect();
-        let gain = |drawn: &Vec<f64>| {
-            let of = |(constant, factors): &(f64, Vec<f64>)| {
-                constant + factors.iter().zip(drawn).map(|(f, x)| f * x).sum::<f64>()
-            };
-            rivals.iter().map(of).fold(f64::NEG_INFINITY, f64::max)
-        };
-        let mut gains: Vec<f64> = self.0.iter().map(gain).collect();
+        let mut each: Vec<Vec<f64>> = rivals.iter().map(|(constant, _)| vec![*constant; DRAWS]).collect();
+        // Bin by bin, so that the spectra of a bin are read once for all rivals.
+        for (bin, drawn) in self.0.iter().enumerate() {
+            for (gains, (_, factors)) in each.iter_mut().zip(&rivals) {
+                let factor = factors.get(bin).copied().unwrap_or(0.0);
+                gains.iter_mut().zip(drawn).for_each(|(g, x)| *g += factor * x);
+            }
+        }
+        let best =
+            |draw: usize| each.iter().filter_map(|g| g.get(draw)).copied().fold(f64::NEG_INFINITY, f64::max);
+        let mut gains: Vec<f64> = (0..DRAWS).map(best).collect();
         gains.sort_by(f64::total_cmp);
         gains.get(DRAWS / 20).copied().unwrap_or(f64::NAN)
     }
