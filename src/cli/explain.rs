@@ -21,7 +21,10 @@ use std::path::{Path, PathBuf};
 
 pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     if !args.join.join && are_several(&args.recording) {
-        return explain_jointly::main(args, lang);
+        let files = explain_jointly::files(args, lang)?;
+        if files.len() > 1 {
+            return explain_jointly::main(args, files, lang);
+        }
     }
     let say = |note: Note| place::error(&note, lang);
     let simulation: Vec<PathBuf> = args.simulation.clone().into_iter().collect();

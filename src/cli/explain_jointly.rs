@@ -20,11 +20,23 @@ use crate::report::{ExplanationResults, JointResults, Results, terminal};
 use chrono::{SecondsFormat, Utc};
 use std::path::{Path, PathBuf};
 
+/// The files of the recordings that are named, patterns among them.
+///
+/// # Errors
+/// The diagnostic of a pattern that matches nothing.
+pub fn files(args: &ExplainArgs, lang: Lang) -> Result<Vec<PathBuf>, String> {
+    let mut files = vec![];
+    for named in &args.recording {
+        files.extend(each_of(named).map_err(|e| RecordingError::from(e).say(lang))?);
+    }
+    Ok(files)
+}
+
 /// Explains several recordings together.
 ///
 /// # Errors
 /// The diagnostic, in words; it names the recording.
-pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
+pub fn main(args: &ExplainArgs, files: Vec<PathBuf>, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
     let Some(path) = args.model.as_deref() else {
         return Err(say("explain.error.several_need_model".into()));
@@ -32,10 +44,6 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let options = options(args).map_err(say)?;
     let renderer = args.output.renderer(lang)?;
     let claim = model::load(path).map_err(|p| p.say(lang))?;
-    let mut files: Vec<PathBuf> = vec![];
-    for named in &args.recording {
-        files.extend(each_of(named).map_err(|e| RecordingError::from(e).say(lang))?);
-    }
     let now = Utc::now();
     let out = OutputPlace::new(
         args.out.as_deref(),
