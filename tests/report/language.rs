@@ -220,6 +220,10 @@ const LATIN: &[&str] = &[
     "next",
     "plan",
     "schedule",
+    "joint",
+    "monday",
+    "tuesday",
+    "wednesday",
 ];
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.

@@ -31,6 +31,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/layout/tables.rs", "the key tables of layouts: documentation, as of procedures"),
     ("src/config/model/tables.rs", "the key tables of claims: documentation, as of procedures"),
     ("src/config/alternatives/tables.rs", "the key tables of alternatives: documentation, as of procedures"),
+    ("src/config/sheet/tables.rs", "the key tables of sheet files: documentation, as of procedures"),
     ("src/config/schedule/tables.rs", "the key tables of schedules: documentation, as of procedures"),
     (
         "crates/sagnac-ingest/src/formats/matlab/element_reader.rs",

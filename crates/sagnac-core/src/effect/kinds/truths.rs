@@ -119,7 +119,7 @@ pub fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "column_product" => (drivers(), vec![0.0, 25.0, 15.0, 27.0, 0.5]),
         "column_curve" => (drivers(), vec![0.0, 27.0, 0.5]),
         "drifting_line" => (drivers(), vec![0.2345, 1e-5, 0.015, 117.0, 2499.75]),
-        _ => panic!("no truth for {kind}"),
+        _ => panic!("{kind}"),
     }
 }
 
