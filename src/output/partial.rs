@@ -83,9 +83,11 @@ impl<T: AsRef<Path>> Partial<T> {
             attempt += 1;
             let thing = make()?;
             let path = thing.as_ref().to_owned();
-            let lock = lock(&path);
-            // Between making and locking it, another run may have taken it for abandoned.
-            if path.exists() || attempt == ATTEMPTS {
+            // Between making and locking it, another run may have taken it for abandoned: it is gone, or locked to be removed.
+            let held = File::open(&path).map(|file| file.try_lock().map(|()| file));
+            let doomed = matches!(held, Ok(Err(TryLockError::WouldBlock)));
+            let lock = held.ok().and_then(Result::ok);
+            if path.exists() && !doomed || attempt == ATTEMPTS {
                 live.push(path.clone());
                 return Ok(Partial { thing, entry: Entry { path, _lock: lock } });
             }
