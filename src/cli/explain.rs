@@ -19,6 +19,10 @@ use crate::report::{ExplanationResults, Results, terminal};
 use chrono::{SecondsFormat, Utc};
 use std::path::{Path, PathBuf};
 
+/// Explains a recording, or several together.
+///
+/// # Errors
+/// The diagnostic, in words.
 pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     if !args.join.join && are_several(&args.recording) {
         let files = explain_jointly::files(args, lang)?;
@@ -26,6 +30,10 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
             return explain_jointly::main(args, files, lang);
         }
     }
+    single(args, lang)
+}
+
+fn single(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
     let simulation: Vec<PathBuf> = args.simulation.clone().into_iter().collect();
     args.join.check(&simulation, "join.help.other", lang)?;

@@ -86,6 +86,18 @@ fn together(kind: &str, place: Place, claim: &Claim, seed: u64, sizes: &[f64]) -
     explain_jointly(recordings, claim, &Options::default(), &mut |_| {}).ok().map(|o| o.explanation)
 }
 
+/// What the recordings of one unit showed.
+struct Shown {
+    /// The effect is named, first of all.
+    named: bool,
+    /// Recordings that show anything alone.
+    alone: u64,
+    /// The interval holds the truth; `None` where the effect is not named.
+    holds: Option<bool>,
+    /// Another effect is named beside it.
+    second: bool,
+}
+
 fn with_effect(kind: &str, place: Place, records: u64, first: u64) -> Vec<Row> {
     let claim = loaded(place);
     let one = |seed: u64| {
@@ -103,20 +115,19 @@ fn with_effect(kind: &str, place: Place, records: u64, first: u64) -> Vec<Row> {
             let parameter = s.parameters.iter().find(|(name, _)| *name != "rms_deg_h");
             parameter.is_some_and(|(_, p)| (p.ci95[0]..=p.ci95[1]).contains(&(claimed + size)))
         });
-        Some((named, alone as u64, holds, joint.shared.len() > 1))
+        Some(Shown { named, alone: alone as u64, holds, second: joint.shared.len() > 1 })
     };
-    let found: Vec<_> = (first..first + records).into_par_iter().filter_map(one).collect();
+    let found: Vec<Shown> = (first..first + records).into_par_iter().filter_map(one).collect();
     let of = found.len() as u64;
-    let count =
-        |f: &dyn Fn(&(bool, u64, Option<bool>, bool)) -> bool| found.iter().filter(|x| f(x)).count() as u64;
-    let alone: u64 = found.iter().map(|f| f.1).sum();
-    let intervals: Vec<bool> = found.iter().filter_map(|f| f.2).collect();
+    let count = |f: &dyn Fn(&Shown) -> bool| found.iter().filter(|x| f(x)).count() as u64;
+    let alone: u64 = found.iter().map(|f| f.alone).sum();
+    let intervals: Vec<bool> = found.iter().filter_map(|f| f.holds).collect();
     let hold = intervals.iter().filter(|h| **h).count() as u64;
     vec![
-        Row::share(kind, "named first by all together", Asked::AtLeast(0.9), count(&|f| f.0), of),
+        Row::share(kind, "named first by all together", Asked::AtLeast(0.9), count(&|f| f.named), of),
         Row::share(kind, "recordings that show anything alone", Asked::Nothing, alone, of * RECORDINGS),
         Row::share(kind, "95 % interval holds the truth", Asked::AtLeast(0.93), hold, intervals.len() as u64),
-        Row::share(kind, "a second shared effect is named", Asked::AtMost(0.05), count(&|f| f.3), of),
+        Row::share(kind, "a second shared effect is named", Asked::AtMost(0.05), count(&|f| f.second), of),
     ]
 }
 
