@@ -125,10 +125,6 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
         Some(SheetOutlook { value: back(more.value), ..more })
     });
     let outlook = outlook.collect();
-    let share = |p: &Population, at: f64| {
-        let Central { value, low, high } = p.share_above(at, COVERAGE);
-        SheetShare { value, interval: Interval { low, high, coverage: COVERAGE } }
-    };
     let risks = population.as_ref().zip(limit.and_then(|l| l.max)).map(|(p, max)| risks(p, to(max)));
     Some(SheetQuantity {
         id: of.2.to_owned(),
@@ -151,7 +147,7 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
             between_lots: p.between_lots(),
             measurement: p.measurement(),
         }),
-        share_above_bound: population.as_ref().zip(upper).map(|(p, u)| share(p, to(u))),
+        share_above_bound: population.as_ref().zip(upper).map(|(p, u)| share_above(p, to(u))),
         bounds,
         outlook,
         largest: largest(&rows),
@@ -271,13 +267,16 @@ fn limit(rows: &[Row<'_>], population: Option<&Population>, scale: SheetScale) -
     if !rows.iter().all(|r| r.told.limit == Some(first)) {
         return None;
     }
-    let share_above =
-        population.zip(first.max.filter(|m| scale == SheetScale::Linear || *m > 0.0)).map(|(p, max)| {
-            let on_scale = if scale == SheetScale::Log { max.ln() } else { max };
-            let Central { value, low, high } = p.share_above(on_scale, COVERAGE);
-            SheetShare { value, interval: Interval { low, high, coverage: COVERAGE } }
-        });
+    let share_above = population
+        .zip(first.max.filter(|m| scale == SheetScale::Linear || *m > 0.0))
+        .map(|(p, max)| share_above(p, if scale == SheetScale::Log { max.ln() } else { max }));
     Some(SheetLimit { min: first.min, max: first.max, share_above })
+}
+
+/// The share of true values above a value on the scale of the population.
+fn share_above(population: &Population, at: f64) -> SheetShare {
+    let Central { value, low, high } = population.share_above(at, COVERAGE);
+    SheetShare { value, interval: Interval { low, high, coverage: COVERAGE } }
 }
 
 fn value(row: &Row<'_>) -> SheetValue {

@@ -1,6 +1,6 @@
 //! One cause, printed.
 
-use super::print::{chance, difference, parameter, place, stated, title, value};
+use super::print::{capital, chance, difference, parameter, place, stated, title, value};
 use super::sentence;
 use crate::effect::find;
 use crate::i18n::{EffectText, effect_text};
@@ -115,12 +115,6 @@ impl EffectView {
             equivalents: f.equivalents.iter().map(|k| equivalent(k, &f.kind, all, words)).collect(),
         }
     }
-}
-
-/// The text with a capital.
-pub fn capital(text: &str) -> String {
-    let mut chars = text.chars();
-    chars.next().map(|c| c.to_uppercase().chain(chars).collect()).unwrap_or_default()
 }
 
 /// Parameters in the order of the catalogue, the size of the contribution last.

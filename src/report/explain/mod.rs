@@ -130,11 +130,7 @@ impl ExplainView {
     /// Builds the view.
     pub fn new(all: &Explanation, figures: &[Figure], context: &Context, lang: Lang) -> ExplainView {
         let words = Translator { lang };
-        let (verdict_class, verdict_word) = match all.verdict {
-            MismatchVerdict::Consistent => ("pass", words.t("explain.verdict.consistent")),
-            MismatchVerdict::Mismatch => ("indeterminate", words.t("explain.verdict.mismatch")),
-            MismatchVerdict::UnknownMismatch => ("fail", words.t("explain.verdict.unknown")),
-        };
+        let (verdict_class, verdict_word) = print::verdict(all.verdict, words);
         let generator = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
         let title = if all.case.is_empty() { context.recording.clone() } else { all.case.clone() };
         let effects = all.effects.iter().enumerate();

@@ -1,6 +1,6 @@
 //! The sizes of effects that would have been noticed.
 
-use super::effect::capital;
+use super::print::capital;
 use super::print::{parameter, title};
 use crate::effect;
 use crate::mismatch::finding::Explanation;

@@ -2,7 +2,7 @@
 
 use crate::effect::{self, Domain, find};
 use crate::i18n::{EffectText, effect_text, lookup};
-use crate::mismatch::finding::{ParameterValue, PlaceRecord};
+use crate::mismatch::finding::{MismatchVerdict, ParameterValue, PlaceRecord};
 use crate::report::number::{Rounding, digits, limit_digits, typographic};
 use crate::report::translator::Translator;
 
@@ -19,6 +19,21 @@ pub fn title(kind: &str, words: Translator) -> String {
         Some(effect) => effect_text(effect.kind(), EffectText::Title, words.lang).to_owned(),
         None if kind == "unknown" => words.t("explain.unknown_cause"),
         None => kind.replace('_', " "),
+    }
+}
+
+/// The text with a capital.
+pub fn capital(text: &str) -> String {
+    let mut chars = text.chars();
+    chars.next().map(|c| c.to_uppercase().chain(chars).collect()).unwrap_or_default()
+}
+
+/// Class of a verdict, for colours, and its word.
+pub fn verdict(verdict: MismatchVerdict, words: Translator) -> (&'static str, String) {
+    match verdict {
+        MismatchVerdict::Consistent => ("pass", words.t("explain.verdict.consistent")),
+        MismatchVerdict::Mismatch => ("indeterminate", words.t("explain.verdict.mismatch")),
+        MismatchVerdict::UnknownMismatch => ("fail", words.t("explain.verdict.unknown")),
     }
 }
 

@@ -1,6 +1,6 @@
 //! The tables of an explanation: tests, candidates, the fit before and after.
 
-use super::effect::capital;
+use super::print::capital;
 use super::print::{chance, difference, ends, plain, test, title, view};
 use crate::mismatch::finding::{ColumnRecord, Explanation, FitFigures, PlaceRecord};
 use crate::report::number::digits;

@@ -3,13 +3,12 @@
 
 mod sentence;
 
-use super::explain::print::{difference, parameter, title, value};
+use super::explain::print::{capital, difference, parameter, title, value, verdict};
 use super::explain::{FileView, ParameterRow};
 use super::number::{date_time, digits};
 use super::translator::{Field, Translator};
 use crate::effect::{Domain, find};
 use crate::i18n::{EffectText, Lang, Note, effect_text};
-use crate::mismatch::finding::MismatchVerdict;
 use crate::mismatch::joint::record::{Brief, JointExplanation, SharedEffect, SharedIn};
 use serde::{Deserialize, Serialize};
 
@@ -146,15 +145,6 @@ impl JointView {
     }
 }
 
-/// Class and word of a verdict.
-fn verdict(verdict: MismatchVerdict, words: Translator) -> (&'static str, String) {
-    match verdict {
-        MismatchVerdict::Consistent => ("pass", words.t("explain.verdict.consistent")),
-        MismatchVerdict::Mismatch => ("indeterminate", words.t("explain.verdict.mismatch")),
-        MismatchVerdict::UnknownMismatch => ("fail", words.t("explain.verdict.unknown")),
-    }
-}
-
 /// Class of a brief explanation, and its verdict with its effects.
 fn brief(brief: &Brief, words: Translator) -> (&'static str, String) {
     let (class, word) = verdict(brief.verdict, words);
@@ -181,7 +171,7 @@ fn shared(s: &SharedEffect, all: &JointExplanation, words: Translator) -> Shared
         }
     };
     SharedView {
-        title: sentence::capital(&sentence::effect(s, words)),
+        title: capital(&sentence::effect(s, words)),
         kind: s.kind.clone(),
         sentences: sentence::shared(s, words),
         mechanism: effect_text(id, EffectText::Mechanism, words.lang).to_owned(),

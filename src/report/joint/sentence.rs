@@ -68,9 +68,3 @@ pub(super) fn effect(s: &SharedEffect, words: Translator) -> String {
         None => name,
     }
 }
-
-/// The text with a capital.
-pub(super) fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
-}

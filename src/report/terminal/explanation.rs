@@ -3,7 +3,7 @@
 use super::screen::Terminal;
 use super::table::{Align, Cell, Column, table};
 use crate::i18n::{Lang, visible};
-use crate::report::explain::{EffectView, ExplainView, NoticeableRow};
+use crate::report::explain::{ExplainView, NoticeableRow, ParameterRow};
 use crate::report::translator::Translator;
 
 /// The outcome: verdict in sentences, each effect with its parameters, the fit before and after.
@@ -14,7 +14,7 @@ pub fn explanation(view: &ExplainView, lang: Lang, terminal: Terminal) -> String
     out += &terminal.indented(&view.summary);
     for effect in &view.effects {
         out += &format!("\n{}\n", terminal.heading(&visible(&effect.title)));
-        out += &parameters(effect, words, terminal);
+        out += &parameters(&effect.parameters, words, terminal);
     }
     if !view.unchanged && !view.fit_summary.is_empty() {
         out += &format!("\n{}\n", terminal.heading(&words.t("terminal.gained")));
@@ -45,12 +45,12 @@ fn noticeable(all: &[NoticeableRow], words: Translator, terminal: Terminal) -> S
     out
 }
 
-fn parameters(effect: &EffectView, words: Translator, terminal: Terminal) -> String {
+/// Parameters with their values and intervals; nothing where there are none.
+pub(super) fn parameters(parameters: &[ParameterRow], words: Translator, terminal: Terminal) -> String {
     let column = |id: &str, align| Column { head: words.name("terminal_column", id), align, optional: false };
     let columns =
         [column("parameter", Align::Left), column("value", Align::Right), column("interval", Align::Right)];
-    let rows: Vec<Vec<Cell>> = effect
-        .parameters
+    let rows: Vec<Vec<Cell>> = parameters
         .iter()
         .map(|p| {
             vec![p.name.clone().into(), words.joined(&p.value, &p.unit).into(), p.interval.clone().into()]

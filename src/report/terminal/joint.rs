@@ -1,9 +1,10 @@
 //! Several recordings explained together: what they share, and what each says alone and with the others.
 
+use super::explanation::parameters;
 use super::screen::Terminal;
 use super::table::{Align, Cell, Column, table};
 use crate::i18n::{Lang, visible};
-use crate::report::joint::{JointView, SharedView};
+use crate::report::joint::JointView;
 use crate::report::translator::Translator;
 
 /// The outcome: verdict in sentences, each shared effect with its parameters, and the recordings.
@@ -14,7 +15,7 @@ pub fn joint(view: &JointView, lang: Lang, terminal: Terminal) -> String {
     out += &terminal.indented(&view.summary);
     for shared in &view.shared {
         out += &format!("\n{}\n", terminal.heading(&visible(&shared.title)));
-        out += &parameters(shared, words, terminal);
+        out += &parameters(&shared.parameters, words, terminal);
         out += &terminal.indented(&shared.sentences);
     }
     out += &format!("\n{}\n", terminal.heading(&words.t("joint.heading.recordings")));
@@ -26,15 +27,4 @@ pub fn joint(view: &JointView, lang: Lang, terminal: Terminal) -> String {
     };
     let rows: Vec<Vec<Cell>> = view.recordings.iter().map(row).collect();
     out + &table(&columns, &rows, terminal)
-}
-
-fn parameters(shared: &SharedView, words: Translator, terminal: Terminal) -> String {
-    let column = |id: &str, align| Column { head: words.name("terminal_column", id), align, optional: false };
-    let columns =
-        [column("parameter", Align::Left), column("value", Align::Right), column("interval", Align::Right)];
-    let row = |p: &crate::report::explain::ParameterRow| -> Vec<Cell> {
-        vec![p.name.clone().into(), words.joined(&p.value, &p.unit).into(), p.interval.clone().into()]
-    };
-    let rows: Vec<Vec<Cell>> = shared.parameters.iter().map(row).collect();
-    if rows.is_empty() { String::new() } else { table(&columns, &rows, terminal) }
 }
