@@ -1,4 +1,4 @@
-//! What `sagnac explain` is told, for one recording and for several.
+//! Command-line arguments of `sagnac explain`, for one recording and for several.
 
 use super::join::JoinArgs;
 use super::options::OutputArgs;

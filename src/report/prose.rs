@@ -35,7 +35,7 @@ fn parted(sentence: &str, escape: impl Fn(&str) -> String, code: impl Fn(&str) -
     .collect()
 }
 
-/// Units that are a word of their own after a number. Those with a sign or a slash are told by it.
+/// Units written as a separate word after a number. Units with a symbol or a slash are recognised by it.
 const UNIT_WORDS: &[&str] = &[
     "s",
     "ms",

@@ -50,7 +50,7 @@ pub struct EntryUnit {
 }
 
 impl EntryUnit {
-    /// The serial number in the form in which units are told apart; empty where there is none.
+    /// The serial number in the form used for comparison; empty if there is none.
     pub fn key(&self) -> String {
         if self.serial.is_empty() { String::new() } else { serial::plain(&self.serial) }
     }

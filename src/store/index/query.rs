@@ -11,7 +11,7 @@ use rusqlite::{Row, params, params_from_iter};
 /// Which results are asked for. What is `None` does not matter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Filter {
-    /// Serial number in the form in which units are told apart.
+    /// Serial number in the form used for comparison.
     pub serial_key: Option<String>,
     /// Model.
     pub model: Option<String>,

@@ -8,7 +8,7 @@ use crate::effect::{
 /// Sizes at which an effect is tried whose course is not proportional to its size, over the one to begin from.
 const SIZES: [f64; 6] = [0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
 
-/// An effect with parameters, some of which are coefficients that are fitted.
+/// An effect with its parameters. Some of them are coefficients, which are fitted.
 #[derive(Clone)]
 pub(super) struct Law {
     pub effect: &'static dyn Effect,
