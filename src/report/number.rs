@@ -200,6 +200,24 @@ fn grouped(figures: &str, lang: Lang) -> String {
     out
 }
 
+/// Gives the numbers of a column equal decimals: zeros are added to those that have fewer.
+pub fn align(column: Vec<&mut String>, lang: Lang) {
+    let mark = lookup(lang, "number.decimal").unwrap_or(".");
+    let times = lookup(lang, "number.times").unwrap_or("×10");
+    let decimals = |text: &str| text.split_once(mark).map_or(0, |(_, decimals)| decimals.len());
+    let most = column.iter().map(|text| decimals(text)).max().unwrap_or(0);
+    if column.iter().any(|text| text.contains(times)) {
+        return;
+    }
+    for text in column.into_iter().filter(|text| !text.is_empty()) {
+        let missing = most - decimals(text);
+        if missing > 0 && missing == most {
+            text.push_str(mark);
+        }
+        text.push_str(&"0".repeat(missing));
+    }
+}
+
 /// A span of time in the units that suit it: `9 h 29 min 59 s`, `30 min`, `12.005 s`, `1.3 µs`.
 pub fn duration(seconds: f64, lang: Lang) -> String {
     if !seconds.is_finite() {
@@ -319,6 +337,18 @@ mod tests {
                 assert!(!text.contains("inf") && !text.contains("NaN"), "{v}: {text}");
             }
         }
+    }
+
+    #[test]
+    fn numbers_of_a_column_have_equal_decimals() {
+        let aligned = |mut column: [String; 3], lang| {
+            align(column.iter_mut().collect(), lang);
+            column
+        };
+        assert_eq!(aligned(["5", "−0.1", ""].map(str::to_owned), EN), ["5.0", "−0.1", ""]);
+        assert_eq!(aligned(["1,25", "0,5", "3"].map(str::to_owned), Lang::Ru), ["1,25", "0,50", "3,00"]);
+        assert_eq!(aligned(["1", "2", "3"].map(str::to_owned), EN), ["1", "2", "3"]);
+        assert_eq!(aligned(["1×10⁻⁹", "2", "0.5"].map(str::to_owned), EN), ["1×10⁻⁹", "2", "0.5"]);
     }
 
     #[test]

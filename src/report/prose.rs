@@ -20,6 +20,25 @@ pub fn prose(state: &State, sentence: &str) -> Value {
     }
 }
 
+/// A formula, escaped for the file. In HTML, letters and digits behind an underscore stand below the line.
+pub fn formula(state: &State, text: &str) -> Value {
+    match state.auto_escape() {
+        AutoEscape::Html => Value::from_safe_string(subscripted(text)),
+        _ => Value::from(text),
+    }
+}
+
+fn subscripted(text: &str) -> String {
+    let mut parts = text.split('_');
+    let mut out = svg::escape(parts.next().unwrap_or_default());
+    for part in parts {
+        let end = part.find(|c: char| !c.is_alphabetic() && !c.is_ascii_digit()).unwrap_or(part.len());
+        let (below, rest) = part.split_at(end);
+        out.push_str(&format!("<sub>{}</sub>{}", svg::escape(below), svg::escape(rest)));
+    }
+    out
+}
+
 /// Escapes what stands between pairs of backticks and around them.
 fn parted(sentence: &str, escape: impl Fn(&str) -> String, code: impl Fn(&str) -> String) -> String {
     let parts: Vec<&str> = sentence.split('`').collect();
@@ -69,28 +88,33 @@ fn is_unit(word: &str) -> bool {
     is_sign || is_ratio || UNIT_WORDS.contains(&word)
 }
 
-/// Text of a page with every number and its unit on one line: a browser would break the line at the space between them,
-/// and behind the slash of a unit.
+/// True where no line may end between two words: a number and its unit, a sign and its number.
+fn belong_together(word: &str, next: &str) -> bool {
+    let is_number = word.ends_with(|c: char| c.is_ascii_digit());
+    let is_sign = matches!(word.trim_start_matches('('), "<" | ">" | "≤" | "≥" | "±");
+    is_number && (is_unit(next) || next == "±") || is_sign && next.starts_with(|c: char| c.is_ascii_digit())
+}
+
+/// Text of a page with every number on one line with its sign and its unit: a browser would break the line at the space
+/// between them, and behind the slash of a unit.
 fn whole_quantities(text: &str) -> String {
     let words: Vec<&str> = text.split(' ').collect();
     let mut out = String::with_capacity(text.len());
-    let mut at = 0;
-    while let Some(word) = words.get(at) {
-        let next = words.get(at + 1).filter(|w| word.ends_with(|c: char| c.is_ascii_digit()) && is_unit(w));
-        let joined = word.contains(['\u{202f}', '\u{a0}']) && word.contains('/');
-        if at > 0 {
+    let mut rest = words.as_slice();
+    while !rest.is_empty() {
+        let more = rest.windows(2).take_while(|w| belong_together(w[0], w[1])).count();
+        let (together, after) = rest.split_at(more + 1);
+        let quantity = svg::escape(&together.join(" "));
+        let is_unbroken = together.iter().any(|w| w.contains(['\u{202f}', '\u{a0}']) && w.contains('/'));
+        if more > 0 || is_unbroken {
+            out.push_str(&format!("<span class=\"unit\">{quantity}</span>"));
+        } else {
+            out.push_str(&quantity);
+        }
+        if !after.is_empty() {
             out.push(' ');
         }
-        match next {
-            Some(unit) => {
-                let (word, unit) = (svg::escape(word), svg::escape(unit));
-                out.push_str(&format!("<span class=\"unit\">{word} {unit}</span>"));
-                at += 1;
-            }
-            None if joined => out.push_str(&format!("<span class=\"unit\">{}</span>", svg::escape(word))),
-            None => out.push_str(&svg::escape(word)),
-        }
-        at += 1;
+        rest = after;
     }
     out
 }
@@ -135,6 +159,16 @@ mod tests {
         assert_eq!(whole_quantities("5 s"), "<span class=\"unit\">5 s</span>");
         assert_eq!(whole_quantities("0,002 град/√ч"), "<span class=\"unit\">0,002 град/√ч</span>");
         assert_eq!(whole_quantities("file 6 limits/2 sold"), "file 6 limits/2 sold");
+        assert_eq!(
+            whole_quantities("from < 0.01\u{202f}% to 1 ± 5 s"),
+            "from <span class=\"unit\">&lt; 0.01\u{202f}%</span> to <span class=\"unit\">1 ± 5 s</span>"
+        );
+    }
+
+    #[test]
+    fn letters_behind_an_underscore_stand_below_the_line() {
+        assert_eq!(subscripted("θ_x² < Ω_max·V_1"), "θ<sub>x</sub>² &lt; Ω<sub>max</sub>·V<sub>1</sub>");
+        assert_eq!(subscripted("y = x"), "y = x");
     }
 
     #[test]

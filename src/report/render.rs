@@ -225,6 +225,7 @@ impl Renderer {
         env.add_filter("duration", move |v: f64| number::duration(v, lang));
         env.add_filter("date", |v: String| number::date_time(&v));
         env.add_filter("prose", prose);
+        env.add_filter("formula", prose::formula);
         env.add_filter("say", move |note: Value| say(&note, words));
         for (name, source) in TEMPLATES {
             if !self.overrides.contains_key(*name) {

@@ -61,7 +61,7 @@ fn a_chamber_sweep_is_told_from_a_turn() {
     let Some(text) = told("mems_thermal_chamber_sweep/sweep_xy.csv.gz") else { return };
     says(
         &text,
-        &["Not proven to be at rest", "temperature test Yes, for the bias: `temp_degC` spans 91.4 degC"],
+        &["Not proven to be at rest", "temperature test Yes, for the bias: `temp_degC` spans 91.4 °C"],
     );
 }
 

@@ -210,7 +210,7 @@ fn meaning(q: &SheetQuantity, show: &impl Fn(f64) -> String, words: Translator) 
         if let Some(max) = q.limit.and_then(|l| l.max).filter(|m| *m > 0.0 && b.value > 0.0) {
             out.push(words.with(
                 "datasheet.meaning.limit_ratio",
-                &[("times", &limit_digits(max / b.value, 2, words.lang))],
+                &[("times", &limit_digits(max / b.value, 3, words.lang))],
             ));
         }
         if let Some(share) = q.share_above_bound {

@@ -68,8 +68,13 @@ impl Ruled {
         length: f64,
         lang: Lang,
     ) -> Ruled {
-        // A series over time fills its frame; what is measured keeps some distance from it.
-        let room = if direction == Direction::Across { 0.01 } else { 0.08 };
+        // A series over time fills its frame; what is measured keeps some distance from it, and a polar plot has its
+        // angles there.
+        let room = match direction {
+            Direction::Across => 0.01,
+            Direction::Up if axis.scale == Scale::Polar => 0.2,
+            Direction::Up => 0.08,
+        };
         let (low, high) = range(axis.scale, axis.range, data, room);
         let words = lookup(lang, &axis.label).unwrap_or(&axis.label);
         let timed = axis.scale == Scale::Linear && direction == Direction::Across && axis.unit == "s";
@@ -109,6 +114,11 @@ impl Ruled {
     /// True for an axis of decades.
     pub fn is_log(&self) -> bool {
         self.scale == Scale::Log
+    }
+
+    /// True for an axis of a polar plot.
+    pub fn is_polar(&self) -> bool {
+        self.scale == Scale::Polar
     }
 
     /// True when the value lies on the axis.

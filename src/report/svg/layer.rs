@@ -234,8 +234,8 @@ pub fn mark(out: &mut String, (x, y): (f64, f64), look: Look, r: f64) {
 
 /// Extent of the data of panels along one axis.
 ///
-/// Terms, bands and words follow the data rather than stretch the axis: on a logarithmic axis they are given half a
-/// decade of room, and more only when there is nothing else to show.
+/// Bands, and on a logarithmic axis terms, follow the data rather than stretch the axis: on a logarithmic axis they are
+/// given half a decade of room, and more only when there is nothing else to show.
 pub fn extent(panels: &[&Panel], scale: Scale, ordinate: bool) -> Option<(f64, f64)> {
     let fits = |v: &f64| v.is_finite() && (scale != Scale::Log || *v > 0.0);
     let mut main: Option<(f64, f64)> = None;
@@ -248,7 +248,8 @@ pub fn extent(panels: &[&Panel], scale: Scale, ordinate: bool) -> Option<(f64, f
     for layer in panels.iter().flat_map(|p| &p.layers) {
         match layer {
             Layer::Line { points, style, .. } | Layer::Points { points, style, .. } => {
-                let range = if matches!(style, Style::Term(_)) { &mut side } else { &mut main };
+                let follows = scale == Scale::Log && matches!(style, Style::Term(_));
+                let range = if follows { &mut side } else { &mut main };
                 points.iter().filter(|p| !p.0.is_nan() && !p.1.is_nan()).for_each(|p| {
                     grow(range, if ordinate { p.1 } else { p.0 });
                 });

@@ -4,7 +4,7 @@ use super::axis::{Direction, Ruled};
 use super::layer::{Plot, extent};
 use super::legend::Legend;
 use super::write::{FONT, width};
-use crate::figure::{Axis, Figure, Panel, Scale};
+use crate::figure::{Axis, Figure, Layer, Panel, Scale};
 use crate::i18n::{Lang, lookup};
 
 /// Width of the view box, px. The height follows from the content.
@@ -13,10 +13,20 @@ const RIGHT: f64 = 18.0;
 const TITLE: f64 = 26.0;
 const BELOW: f64 = 44.0;
 const BETWEEN: f64 = 14.0;
+/// Distance of marks from the sides of the frame, as a share of what they extend over.
+const BESIDE: f64 = 0.02;
 
 /// Whether the words of the abscissa stand below a panel: the next one has another, or there is none.
 pub fn ends_abscissa(figure: &Figure, i: usize) -> bool {
     figure.panels.get(i + 1).is_none_or(|next| figure.panels.get(i).is_none_or(|p| next.x != p.x))
+}
+
+/// Extent of the data of panels along their abscissa; marks at its ends, and their intervals, stand clear of the frame.
+fn breadth(panels: &[&Panel], scale: Scale) -> Option<(f64, f64)> {
+    let is_marked = panels.iter().flat_map(|p| &p.layers).any(|l| matches!(l, Layer::Points { .. }));
+    let (low, high) = extent(panels, scale, false)?;
+    let room = if is_marked && scale == Scale::Linear { BESIDE * (high - low) } else { 0.0 };
+    Some((low - room, high + room))
 }
 
 /// Where the panels of a figure stand, and their axes.
@@ -57,7 +67,7 @@ impl Layout {
                 return Ruled::new(&axis, None, Direction::Across, across, lang);
             }
             let same: Vec<&Panel> = panels.iter().copied().filter(|q| q.x == p.x).collect();
-            Ruled::new(&p.x, extent(&same, p.x.scale, false), Direction::Across, across, lang)
+            Ruled::new(&p.x, breadth(&same, p.x.scale), Direction::Across, across, lang)
         };
         let axes = panels.iter().zip(ordinates).map(|(p, y)| (abscissa(p, &y), y)).collect();
         Layout { left, width: across, height, axes }
@@ -78,7 +88,9 @@ impl Layout {
             plots.push(Plot { left: self.left, top, width: self.width, height: self.height, x, y });
             // Another panel below words of an abscissa keeps its distance from them.
             let apart = if i + 1 < figure.panels.len() { BETWEEN } else { 0.0 };
-            top += self.height + if ends_abscissa(figure, i) { BELOW + apart } else { BETWEEN };
+            // A polar plot has no words below it.
+            let has_words = ends_abscissa(figure, i) && !x.is_polar();
+            top += self.height + if has_words { BELOW + apart } else { BETWEEN };
         }
         (plots, top)
     }

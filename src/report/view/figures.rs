@@ -1,6 +1,6 @@
 //! Figures as a report shows them.
 
-use crate::figure::Figure;
+use crate::figure::{Figure, Layer};
 use crate::i18n::lookup;
 use crate::record::RunRecord;
 use crate::report::translator::Translator;
@@ -61,6 +61,10 @@ fn caption(figure: &Figure, words: Translator) -> String {
     let id = figure.title.strip_prefix("figure.title.").unwrap_or_default();
     let mut sentences: Vec<String> =
         lookup(words.lang, &format!("figure.caption.{id}")).map(str::to_owned).into_iter().collect();
+    let mut layers = figure.panels.iter().flat_map(|p| &p.layers);
+    if id == "time_series" && layers.any(|l| matches!(l, Layer::Span { .. })) {
+        sentences.push(words.t("figure.caption.shaded"));
+    }
     sentences.extend(figure.remarks.iter().map(|r| words.say(r)));
     sentences.join(" ")
 }

@@ -1,7 +1,7 @@
 //! Runs of a series, or intervals without and with an influence, printed.
 
 use crate::record::{IntervalMeanRecord, RunRecord};
-use crate::report::number::{Rounding, digits, limit_digits};
+use crate::report::number::{Rounding, align, digits, limit_digits};
 use crate::report::translator::Translator;
 use serde::Serialize;
 
@@ -79,6 +79,8 @@ fn of(channel: &str, record: &RunRecord, words: Translator) -> IntervalMeans {
     } else {
         String::new()
     };
+    let mut rows: Vec<IntervalMean> = all.iter().take(SHOWN).map(|m| one(m, words)).collect();
+    align(rows.iter_mut().map(|r| &mut r.level).collect(), words.lang);
     IntervalMeans {
         channel: channel.to_owned(),
         title: words.t(title),
@@ -88,7 +90,7 @@ fn of(channel: &str, record: &RunRecord, words: Translator) -> IntervalMeans {
         has_names: all.iter().any(|m| !m.name.is_empty()),
         has_levels,
         has_temperatures: all.iter().any(|m| m.temperature_deg_c.is_some()),
-        rows: all.iter().take(SHOWN).map(|m| one(m, words)).collect(),
+        rows,
         shown,
     }
 }

@@ -267,7 +267,7 @@ fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> R
         },
         rule: m.limit.as_ref().map_or_else(String::new, |l| rule(l, words)),
         margin: m.margin.map_or_else(String::new, |margin| match m.value {
-            Some(_) => digits(margin, 3, lang),
+            Some(_) => margin_digits(margin, words),
             None => bound(margin, false, lang),
         }),
         risk: m.specific_risk.map_or_else(String::new, |p| percent(p, lang)),
@@ -276,6 +276,14 @@ fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> R
         verdict_word: words.verdict(m.verdict),
         footnotes: numbers,
     }
+}
+
+/// A margin in three digits, with zeros above the units that it is not known to.
+fn margin_digits(margin: f64, words: Translator) -> String {
+    let above_units = margin.abs().max(1.0).log10().floor() - 2.0;
+    let step = 10f64.powf(above_units);
+    let rounded = if above_units > 0.0 { (margin / step).round() * step } else { margin };
+    digits(rounded, 3, words.lang)
 }
 
 /// A range with open ends: `≤ b`, `≥ a`, `± b`, `a … b`.
@@ -354,6 +362,13 @@ mod tests {
             specific_risk: None,
             notes: vec![],
         }
+    }
+
+    #[test]
+    fn a_margin_has_three_digits() {
+        let words = Translator { lang: Lang::En };
+        let said = [-3279.05, 152.8, 0.069_57, 123_456.0].map(|m| margin_digits(m, words));
+        assert_eq!(said, ["−3280", "153", "0.0696", "123\u{202f}000"]);
     }
 
     #[test]

@@ -1,7 +1,7 @@
 //! The steps of a rate table, printed.
 
 use crate::record::{RunRecord, TableStepRecord};
-use crate::report::number::{Rounding, digits, limit_digits};
+use crate::report::number::{Rounding, align, digits, limit_digits};
 use crate::report::translator::Translator;
 use crate::units::RateUnit;
 use serde::Serialize;
@@ -74,6 +74,10 @@ pub(super) fn table_steps(record: &RunRecord, words: Translator) -> Vec<TableSte
         if let Some(table) = tables.last_mut().filter(|t| t.rows.len() < SHOWN) {
             table.rows.push(one(step, unit, unit.of(highest), words));
         }
+    }
+    for table in &mut tables {
+        align(table.rows.iter_mut().map(|r| &mut r.rate).collect(), words.lang);
+        align(table.rows.iter_mut().map(|r| &mut r.turns).collect(), words.lang);
     }
     tables
 }

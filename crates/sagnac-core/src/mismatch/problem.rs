@@ -5,7 +5,7 @@ use super::hypothesis::{Hypothesis, fit};
 use super::impute;
 use super::noise_fit::Noise;
 use super::quantization_grid::{self, QuantizationGrid};
-use super::regular::{Grid, Regular, fast_length};
+use super::regular::{Grid, Regular};
 use super::spectral_data::{SpectralData, smoothed};
 use super::terms::CourseIn;
 use super::terms::SpectrumIn;
@@ -17,7 +17,7 @@ use crate::effect::{
     number,
 };
 use crate::noise::model::NoiseModel;
-use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::cosine::{fast_length, inverse_dct2};
 use std::sync::Arc;
 
 /// Samples up to which a record is looked at in one resolution.

@@ -1,6 +1,7 @@
 //! A recording on the uniform grid that its claim states, with what is missing on it.
 
 use crate::effect::{Column, Rows};
+use crate::numeric::cosine::fast_length;
 use std::collections::BTreeMap;
 
 /// Rows on a grid.
@@ -123,21 +124,6 @@ impl Regular {
     }
 }
 
-/// The largest length up to `n` without a prime factor above 31, at which transforms are several times faster. It leaves
-/// out a few samples at the end, a five-hundredth at most; `n` itself where that is not enough.
-pub fn fast_length(n: usize) -> usize {
-    let fast = |length: &usize| {
-        let mut rest: usize = *length;
-        for p in [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31] {
-            while rest > 1 && rest.is_multiple_of(p) {
-                rest /= p;
-            }
-        }
-        rest == 1
-    };
-    (n - n / 500..=n).rev().find(fast).unwrap_or(n)
-}
-
 /// Values at their places, with lines between them.
 fn spread(values: &[f64], places: &[usize], n: usize) -> Vec<f64> {
     let mut out = vec![0.0; n];
@@ -169,13 +155,6 @@ mod tests {
         assert_eq!(out.grid.missing(), 3);
         assert!(out.rate.iter().enumerate().all(|(i, v)| (v - i as f64).abs() < 1e-12));
         assert_eq!(out.grid.present.iter().filter(|p| !**p).count(), 3);
-    }
-
-    #[test]
-    fn lengths_lose_little_for_speed() {
-        assert_eq!(fast_length(65_536), 65_536);
-        assert_eq!(fast_length(54_103), 54_096);
-        assert_eq!(fast_length(101), 101);
     }
 
     #[test]

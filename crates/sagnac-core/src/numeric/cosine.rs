@@ -159,9 +159,31 @@ pub fn sinusoid_modes(n: usize, omega: f64, phase: f64) -> [Vec<f64>; 2] {
     modes
 }
 
+/// The largest length up to `n` without a prime factor above 31, at which transforms are several times faster. It leaves
+/// out a few samples at the end, a five-hundredth at most; `n` itself where that is not enough.
+pub fn fast_length(n: usize) -> usize {
+    let fast = |length: &usize| {
+        let mut rest: usize = *length;
+        for p in [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31] {
+            while rest > 1 && rest.is_multiple_of(p) {
+                rest /= p;
+            }
+        }
+        rest == 1
+    };
+    (n - n / 500..=n).rev().find(fast).unwrap_or(n)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn lengths_lose_little_for_speed() {
+        assert_eq!(fast_length(65_536), 65_536);
+        assert_eq!(fast_length(54_103), 54_096);
+        assert_eq!(fast_length(101), 101);
+    }
 
     #[test]
     fn modes_of_a_sinusoid_are_those_of_its_transform() {

@@ -8,9 +8,8 @@
 use super::departure::{Departure, Shape, White, ln_at_least, windows};
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_tail, normal_two_sided};
-use crate::mismatch::regular::fast_length;
 use crate::mismatch::spectral_data::SpectralData;
-use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::cosine::{fast_length, inverse_dct2};
 use crate::numeric::special::chi_square_normal;
 use crate::numeric::sums::cumulated;
 use rayon::prelude::*;

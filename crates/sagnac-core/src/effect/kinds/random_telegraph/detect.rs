@@ -184,7 +184,7 @@ impl<'a> Ground<'a> {
             .max_by(|a, b| a.log_likelihood(&values).total_cmp(&b.log_likelihood(&values)))?;
         let mut best: Option<Judged> = None;
         let coloured = self.coloured();
-        let paths = (coloured && values.len() <= PATHS).then(|| {
+        let mut paths = (coloured && values.len() <= PATHS).then(|| {
             let powers: Vec<f64> =
                 self.background.powers.iter().take(values.len()).map(|p| p / m as f64).collect();
             Paths::new(&averages(&self.residual, m), &powers, white)
@@ -194,7 +194,7 @@ impl<'a> Ground<'a> {
             // Slow noise about the levels would make paths look less certain than they are.
             let sharp = Chain { variance: chain.variance.min(white), ..chain };
             let mut short = sharp.path(&values);
-            if let Some(paths) = &paths {
+            if let Some(paths) = &mut paths {
                 // From nothing as well: a background that was held has hidden stretches, or made them.
                 let [kept, anew] = [short, vec![false; values.len()]].map(|path| paths.improved(path));
                 short = if anew.0 > kept.0 { anew.1 } else { kept.1 };

@@ -3,7 +3,8 @@
 //! The noise is integrated out: with C its covariance, a path c is worth ½ (c·C⁻¹r)²/(c·C⁻¹c) less what its jumps cost.
 //! Beside a background that is held, a wrong stretch of a path stays: the background has taken its level.
 
-use crate::numeric::cosine::{dct2, inverse_dct2};
+use crate::numeric::cosine::{dct2, fast_length, inverse_dct2};
+use std::collections::BTreeMap;
 
 /// Changes of a path at most.
 const MOVES: usize = 200;
@@ -22,6 +23,8 @@ pub struct Paths {
     white: f64,
     /// Lengths tried, and what a stretch of each has of c·C⁻¹c.
     lengths: Vec<(usize, f64)>,
+    /// The same of every length that was asked for.
+    squares: BTreeMap<usize, f64>,
 }
 
 /// Sums of a path with the weighted series and with itself.
@@ -58,12 +61,13 @@ fn prefix(values: &[f64]) -> Vec<f64> {
 
 impl Paths {
     /// For a series in noise of these powers by cosine mode; mode 0 is free. `white` is the variance of what no neighbours
-    /// share.
+    /// share. A few values at the end are left out where that makes transforms faster.
     pub fn new(series: &[f64], powers: &[f64], white: f64) -> Paths {
+        let series = series.get(..fast_length(series.len())).unwrap_or(series);
         let n = series.len();
         let inverse: Vec<f64> =
             (0..n).map(|k| if k == 0 { 0.0 } else { powers.get(k).map_or(0.0, |p| 1.0 / p) }).collect();
-        let mut out = Paths { weighted: vec![], inverse, white, lengths: vec![] };
+        let mut out = Paths { weighted: vec![], inverse, white, lengths: vec![], squares: BTreeMap::new() };
         out.weighted = out.weigh(series);
         let octaves = (n.max(2) as f64 / 2.0).log2().max(0.0);
         let mut lengths: Vec<usize> = (0..=(octaves * PER_OCTAVE) as usize)
@@ -80,16 +84,24 @@ impl Paths {
     }
 
     /// c·C⁻¹c of one stretch in the middle.
-    fn square(&self, length: usize) -> f64 {
+    fn square(&mut self, length: usize) -> f64 {
+        if let Some(known) = self.squares.get(&length) {
+            return *known;
+        }
         let n = self.inverse.len();
         let from = (n - length) / 2;
         let stretch: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i >= from && i < from + length))).collect();
-        dct2(&stretch).iter().zip(&self.inverse).map(|(x, i)| x * x * i).sum()
+        let square = dct2(&stretch).iter().zip(&self.inverse).map(|(x, i)| x * x * i).sum();
+        self.squares.insert(length, square);
+        square
     }
 
-    /// The path that is reached from another by turning stretches over, while that gains, and what it is worth.
-    pub fn improved(&self, path: Vec<bool>) -> (f64, Vec<bool>) {
+    /// The path that is reached from another by turning stretches over, while that gains, and what it is worth. Values that
+    /// were left out stay with their neighbour.
+    pub fn improved(&mut self, path: Vec<bool>) -> (f64, Vec<bool>) {
+        let length = path.len();
         let mut path = path;
+        path.truncate(self.inverse.len());
         let mut worth = 0.0;
         for _ in 0..MOVES {
             let (reached, turned) = self.best_move(&path);
@@ -97,16 +109,20 @@ impl Paths {
             let Some((from, to)) = turned else { break };
             path[from..to].iter_mut().for_each(|p| *p = !*p);
         }
+        path.resize(length, path.last().copied().unwrap_or(false));
         (worth, path)
     }
 
     /// The stretch that is best turned over, and what the path is worth then.
-    fn best_move(&self, path: &[bool]) -> (f64, Option<(usize, usize)>) {
+    fn best_move(&mut self, path: &[bool]) -> (f64, Option<(usize, usize)>) {
         let n = path.len();
         let course: Vec<f64> = path.iter().map(|p| f64::from(u8::from(*p))).collect();
         let own = self.weigh(&course);
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
         let edges: Vec<usize> = (1..n).filter(|i| path[*i] != path[i - 1]).collect();
+        let ends: Vec<usize> =
+            std::iter::once(0).chain(edges.iter().copied()).chain(std::iter::once(n)).collect();
+        let whole: Vec<f64> = ends.windows(2).map(|s| self.square(s[1] - s[0])).collect();
         let now = Sums {
             with_series: product(&course, &self.weighted),
             with_itself: product(&course, &own),
@@ -134,11 +150,10 @@ impl Paths {
                 best = (worth, Some((from, to)));
             }
         };
-        let ends: Vec<usize> = std::iter::once(0).chain(edges).chain(std::iter::once(n)).collect();
-        for stretch in ends.windows(2) {
+        for (stretch, square) in ends.windows(2).zip(whole) {
             let (from, to) = (stretch[0], stretch[1]);
             if to - from < n {
-                judge(from, to, self.square(to - from));
+                judge(from, to, square);
             }
             for (length, square) in self.lengths.iter().take_while(|(l, _)| *l < to - from) {
                 (from..=to - length).for_each(|i| judge(i, i + length, *square));
