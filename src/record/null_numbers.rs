@@ -3,8 +3,8 @@
 //! JSON has no NaN; where a record holds one, `result.json` has `null`, as it has for an absent value. Read back through
 //! [`NullNumbers`], a `null` is NaN where a number is expected and `None` where it may be absent.
 
-use serde::de::value::{MapDeserializer, SeqDeserializer};
-use serde::de::{DeserializeOwned, Deserializer, IntoDeserializer, Visitor};
+use serde::de::value::{MapAccessDeserializer, MapDeserializer, SeqDeserializer};
+use serde::de::{DeserializeOwned, Deserializer, Error as _, IntoDeserializer, Unexpected, Visitor};
 use serde::forward_to_deserialize_any;
 use serde_json::{Error, Value};
 
@@ -33,7 +33,11 @@ impl<'de> Deserializer<'de> for NullNumbers {
                 let entries = map.into_iter().map(|(name, value)| (name, NullNumbers(value)));
                 visitor.visit_map(MapDeserializer::new(entries))
             }
-            plain => plain.deserialize_any(visitor),
+            // Not by the deserializer of `Value`: that would compile every type of a record a second time.
+            Value::Null => visitor.visit_unit(),
+            Value::Bool(value) => visitor.visit_bool(value),
+            Value::Number(number) => number.deserialize_any(visitor),
+            Value::String(text) => visitor.visit_string(text),
         }
     }
 
@@ -55,16 +59,35 @@ impl<'de> Deserializer<'de> for NullNumbers {
 
     fn deserialize_enum<V: Visitor<'de>>(
         self,
-        name: &'static str,
-        variants: &'static [&'static str],
+        _: &'static str,
+        _: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Error> {
-        self.0.deserialize_enum(name, variants, visitor)
+        match self.0 {
+            Value::String(name) => visitor.visit_enum(name.into_deserializer()),
+            Value::Object(map) => {
+                let entries = map.into_iter().map(|(name, value)| (name, NullNumbers(value)));
+                visitor.visit_enum(MapAccessDeserializer::new(MapDeserializer::new(entries)))
+            }
+            other => Err(Error::invalid_type(unexpected(&other), &"a name, or an object with one name")),
+        }
     }
 
     forward_to_deserialize_any! {
         bool i8 i16 i32 i64 i128 u8 u16 u32 u64 u128 f32 char str string bytes byte_buf unit unit_struct seq tuple
         tuple_struct map struct identifier ignored_any
+    }
+}
+
+/// What stands where an enum was expected.
+fn unexpected(value: &Value) -> Unexpected<'_> {
+    match value {
+        Value::Null => Unexpected::Unit,
+        Value::Bool(value) => Unexpected::Bool(*value),
+        Value::Number(number) => Unexpected::Float(number.as_f64().unwrap_or(f64::NAN)),
+        Value::String(text) => Unexpected::Str(text),
+        Value::Array(_) => Unexpected::Seq,
+        Value::Object(_) => Unexpected::Map,
     }
 }
 
@@ -98,5 +121,33 @@ mod tests {
             from_value::<Given>(json!({"pair": [1, 2], "list": []})).is_err(),
             "a number that is left out"
         );
+    }
+
+    #[derive(Debug, PartialEq, Deserialize)]
+    enum Kind {
+        Plain,
+        Number(f64),
+        Named { value: Option<f64> },
+    }
+
+    #[test]
+    fn enums_are_read_with_what_they_hold() {
+        assert_eq!(from_value::<Kind>(json!("Plain")).unwrap(), Kind::Plain);
+        assert!(matches!(from_value(json!({"Number": null})).unwrap(), Kind::Number(v) if v.is_nan()));
+        assert_eq!(
+            from_value::<Kind>(json!({"Named": {"value": null}})).unwrap(),
+            Kind::Named { value: None }
+        );
+        for wrong in [
+            json!(null),
+            json!(true),
+            json!(1),
+            json!("Other"),
+            json!([]),
+            json!({}),
+            json!({"Plain": 1, "Number": 2}),
+        ] {
+            assert!(from_value::<Kind>(wrong.clone()).is_err(), "{wrong}");
+        }
     }
 }

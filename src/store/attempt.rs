@@ -17,7 +17,7 @@ const NAMED: usize = 5;
 /// # Errors
 /// What the index refuses.
 pub fn attempt_of(store: &Store, record: &RunRecord) -> Result<Option<AttemptRecord>, StoreError> {
-    let bytes = serde_json::to_vec(record)
+    let bytes = serde_json::to_vec_pretty(record)
         .map_err(|e| StoreError::Database { path: store.layout.index(), reason: e.to_string() })?;
     let Ok(entry) = Entry::of_json(&bytes, Path::new("")) else { return Ok(None) };
     if entry.unit.key().is_empty() {

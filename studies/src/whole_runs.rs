@@ -4,8 +4,8 @@
 
 use crate::study::{Asked, Case, Row, Study};
 use rayon::prelude::*;
+use sagnac_fft::{real_forward, real_inverse};
 
-use realfft::RealFftPlanner;
 use sagnac::acceptance::{Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::config::procedure::limits::LimitSpec;
@@ -222,8 +222,7 @@ fn flicker(b: f64, samples: usize, tau0_s: f64, seed: u64) -> (Vec<f64>, f64) {
     let mut all = Simulator::new(&model, &Setup::for_record(seed, tau0_s, long as u64)).take(long);
     let from = (LONGER / 2) * samples;
     let record = all[from..from + samples].to_vec();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, back) = (planner.plan_fft_forward(long), planner.plan_fft_inverse(long));
+    let (forward, back) = (real_forward(long), real_inverse(long));
     let mut spectrum = forward.make_output_vec();
     forward.process(&mut all, &mut spectrum).expect("a transform");
     // Bin k stands at k/(LONGER·T).

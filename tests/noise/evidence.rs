@@ -1,12 +1,12 @@
 //! Spectral evidence from whole records, long records, records with gaps, records with lines.
 
-use realfft::RealFftPlanner;
 use sagnac::noise::data::{BlockSeries, WelchSpectrum};
 use sagnac::noise::evidence::{Evidence, Mask};
 use sagnac::noise::identification::Identification;
 use sagnac::noise::identification::{self, Options};
 use sagnac::noise::model::{NoiseModel, TERMS};
 use sagnac::noise::simulate::{Setup, Simulator};
+use sagnac_fft::real_forward;
 
 /// Block means of a record in which NaN marks what is missing.
 fn blocks(samples: &[f64], block_len: usize) -> BlockSeries {
@@ -21,7 +21,7 @@ fn blocks(samples: &[f64], block_len: usize) -> BlockSeries {
 
 /// Averaged periodogram as the contract of `WelchSpectrum` states it.
 fn welch(samples: &[f64], segment_len: usize) -> WelchSpectrum {
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(segment_len);
+    let plan = real_forward(segment_len);
     let window: Vec<f64> = (0..segment_len)
         .map(|i| 0.5 - 0.5 * (2.0 * std::f64::consts::PI * i as f64 / segment_len as f64).cos())
         .collect();

@@ -1,8 +1,7 @@
 //! Cosine modes of a record, and Gaussian series of a given spectrum.
 
 use super::draw::Draw;
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
+use sagnac_fft::{Complex, real_forward, real_inverse};
 use std::f64::consts::PI;
 
 /// Orthonormal DCT-II: the modes 0 … n − 1 of `x`.
@@ -10,7 +9,7 @@ pub fn cosine_modes(x: &[f64]) -> Vec<f64> {
     let n = x.len();
     let mut folded: Vec<f64> = x.iter().step_by(2).copied().collect();
     folded.extend(x.iter().skip(1).step_by(2).rev());
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+    let plan = real_forward(n);
     let mut spectrum = plan.make_output_vec();
     plan.process(&mut folded, &mut spectrum).expect("lengths agree");
     let scale = (2.0 / n as f64).sqrt();
@@ -33,7 +32,7 @@ pub fn mode_frequency(k: usize, n: usize, rate_hz: f64) -> f64 {
 /// series at least four times as long, its mean over the long period zero.
 pub fn gaussian(draw: &mut Draw, n: usize, rate_hz: f64, density: impl Fn(f64) -> f64) -> Vec<f64> {
     let length = (4 * n).next_power_of_two();
-    let plan = RealFftPlanner::<f64>::new().plan_fft_inverse(length);
+    let plan = real_inverse(length);
     let mut spectrum = plan.make_input_vec();
     let half = length / 2;
     for (k, value) in spectrum.iter_mut().enumerate().skip(1) {

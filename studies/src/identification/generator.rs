@@ -6,9 +6,8 @@ use super::mixes::Mix;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
 use sagnac::noise::composite::{Bandwidth, Composite, Damped};
+use sagnac_fft::{Complex, real_forward, real_inverse};
 use std::f64::consts::PI;
 
 /// Steps a sample is cut into where a filter acts before sampling.
@@ -92,7 +91,7 @@ impl Embedding {
         }
         let mut circle: Vec<f64> =
             covariance.iter().chain(covariance[1..length].iter().rev()).copied().collect();
-        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(2 * length);
+        let plan = real_forward(2 * length);
         let mut spectrum = plan.make_output_vec();
         plan.process(&mut circle, &mut spectrum).expect("lengths of the plan");
         let largest = spectrum.iter().skip(1).map(|v| v.re).fold(0.0, f64::max);
@@ -113,7 +112,7 @@ impl Embedding {
     }
 
     fn draw(&self, rng: &mut Xoshiro256PlusPlus) -> Vec<f64> {
-        let plan = RealFftPlanner::<f64>::new().plan_fft_inverse(2 * self.length);
+        let plan = real_inverse(2 * self.length);
         let mut normal = || -> f64 { StandardNormal.sample(rng) };
         let mut spectrum: Vec<Complex<f64>> = self
             .roots

@@ -1,7 +1,6 @@
 //! A recording as cosine modes (DCT-II): nearly independent, each of the variance of the density at its frequency.
 
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
+use sagnac_fft::{Complex, real_forward, real_inverse};
 use std::f64::consts::PI;
 
 /// Cosine modes of a series.
@@ -30,7 +29,7 @@ fn cosine_transform(series: &[f64]) -> Vec<f64> {
     let mut folded: Vec<f64> = series.iter().step_by(2).copied().collect();
     folded.extend(series.iter().skip(1).step_by(2).rev());
     let mut spectrum = vec![Complex::new(0.0, 0.0); n / 2 + 1];
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+    let plan = real_forward(n);
     // The lengths fit by construction, so the transform cannot fail; were it to, every mode would be zero.
     if plan.process(&mut folded, &mut spectrum).is_err() {
         return vec![0.0; n];
@@ -63,7 +62,7 @@ pub fn series_of(value: &[f64]) -> Vec<f64> {
         spectrum[n / 2].im = 0.0;
     }
     let mut folded = vec![0.0; n];
-    let plan = RealFftPlanner::<f64>::new().plan_fft_inverse(n);
+    let plan = real_inverse(n);
     if plan.process(&mut spectrum, &mut folded).is_err() {
         return vec![0.0; n];
     }

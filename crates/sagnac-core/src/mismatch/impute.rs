@@ -10,6 +10,7 @@ use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sagnac_fft::real_forward;
 
 /// Steps of the conjugate gradients.
 const STEPS: usize = 40;
@@ -83,7 +84,7 @@ fn solved(values: &mut [f64], missing: &[usize], inverse: &[f64]) -> Option<()> 
     let mut even: Vec<f64> = inverse.to_vec();
     even.push(0.0);
     even.extend(inverse.iter().skip(1).rev());
-    let plan = realfft::RealFftPlanner::<f64>::new().plan_fft_forward(2 * n);
+    let plan = real_forward(2 * n);
     let mut sums = plan.make_output_vec();
     plan.process(&mut even, &mut sums).ok()?;
     let g = |l: usize| sums.get(l.min(2 * n - l)).map_or(0.0, |s| s.re / (2 * n) as f64);

@@ -4,8 +4,7 @@
 
 use super::data::WelchSpectrum;
 use super::welch::hann;
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
+use sagnac_fft::{Complex, real_forward, real_inverse};
 
 /// Autocorrelation at lags 0, 1, 2, ...
 #[derive(Debug, Clone, PartialEq)]
@@ -78,8 +77,7 @@ pub(crate) fn lagged_products(
     length: usize,
     max_lag: usize,
 ) -> Option<Vec<f64>> {
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, inverse) = (planner.plan_fft_forward(length), planner.plan_fft_inverse(length));
+    let (forward, inverse) = (real_forward(length), real_inverse(length));
     let (mut time, mut frequency) = (forward.make_input_vec(), forward.make_output_vec());
     time.iter_mut().zip(values).for_each(|(t, v)| *t = v);
     forward.process(&mut time, &mut frequency).ok()?;
@@ -101,7 +99,7 @@ pub fn of_spectrum(spectrum: &WelchSpectrum, max_lag: usize) -> Option<Autocorre
     let max_lag = max_lag.min(length / 8);
     // The circular transform of the periodogram folds far lags onto near ones; a Hann window leaves next to nothing
     // there.
-    let inverse = RealFftPlanner::<f64>::new().plan_fft_inverse(length);
+    let inverse = real_inverse(length);
     let mut frequency: Vec<Complex<f64>> = spectrum.density.iter().map(|p| Complex::new(*p, 0.0)).collect();
     let mut time = inverse.make_output_vec();
     inverse.process(&mut frequency, &mut time).ok()?;

@@ -7,7 +7,7 @@
 use super::data::BlockSeries;
 use super::lines::{Sinusoid, SpectralLine};
 use crate::numeric::optimize::golden_section_maximum;
-use realfft::RealFftPlanner;
+use sagnac_fft::real_forward;
 use std::f64::consts::PI;
 
 /// Highest frequency that block means follow, in cycles a block.
@@ -127,7 +127,7 @@ impl Means {
     /// Frequency of the largest power within `reach_hz` of one, Hz.
     fn peak_near(&self, frequency_hz: f64, reach_hz: f64) -> Option<f64> {
         let size = (2 * self.values.len()).next_power_of_two();
-        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(size);
+        let plan = real_forward(size);
         let mut input = plan.make_input_vec();
         input.iter_mut().zip(&self.values).for_each(|(i, v)| *i = *v);
         let mut spectrum = plan.make_output_vec();

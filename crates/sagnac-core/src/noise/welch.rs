@@ -4,8 +4,7 @@
 
 use super::data::WelchSpectrum;
 use super::part::{Head, MergeError};
-use realfft::num_complex::Complex;
-use realfft::{RealFftPlanner, RealToComplex};
+use sagnac_fft::{Complex, RealToComplex, real_forward};
 use std::sync::Arc;
 
 /// Longest segment, samples.
@@ -238,7 +237,7 @@ pub(crate) fn hann(length: usize) -> Vec<f64> {
 impl Engine {
     fn new(length: usize) -> Self {
         let window = hann(length);
-        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(length);
+        let plan = real_forward(length);
         Engine {
             power_of_window: window.iter().map(|w| w * w).sum(),
             window,

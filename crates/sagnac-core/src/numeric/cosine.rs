@@ -3,7 +3,7 @@
 //! Not by `rustdct`: it differs in the last digit of about half of the coefficients (by 6·10⁻¹⁵ at most, of values of
 //! order 1), from which every result follows, and its gain of time is below what a run shows.
 
-use realfft::{ComplexToReal, RealFftPlanner, RealToComplex};
+use sagnac_fft::{ComplexToReal, RealToComplex, real_forward, real_inverse};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Lengths whose plans are kept. All threads share them: the tables of a long record are large.
@@ -27,12 +27,11 @@ fn plan(n: usize) -> Plan {
         plans.push(found.clone());
         return found;
     }
-    let mut planner = RealFftPlanner::<f64>::new();
     let angle = std::f64::consts::PI / (2.0 * n as f64);
     let made = Plan {
         n,
-        forward: planner.plan_fft_forward(n),
-        inverse: planner.plan_fft_inverse(n),
+        forward: real_forward(n),
+        inverse: real_inverse(n),
         turns: Arc::new((0..=n / 2).map(|k| (angle * k as f64).sin_cos()).collect()),
     };
     if plans.len() == MAX_PLANS {

@@ -5,7 +5,7 @@ use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
-use realfft::RealFftPlanner;
+use sagnac_fft::real_forward;
 
 pub struct DriftingLine;
 
@@ -73,7 +73,7 @@ impl MeanModel for DriftingLine {
         }
         let rates = rates(n);
         let padded = n.next_power_of_two();
-        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
+        let plan = real_forward(padded);
         let (mut even, mut odd) = (plan.make_input_vec(), plan.make_input_vec());
         let (mut with_cos, mut with_sin) = (plan.make_output_vec(), plan.make_output_vec());
         let mut turns = [(0.0, 0.0); BLOCK];

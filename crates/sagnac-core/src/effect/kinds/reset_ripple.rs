@@ -8,8 +8,7 @@ use crate::effect::{
 use crate::numeric::optimize::parabolic_peak;
 use crate::numeric::range::{Bounds, ends};
 use rayon::prelude::*;
-use realfft::num_complex::Complex;
-use rustfft::{Fft, FftPlanner};
+use sagnac_fft::{Complex, Fft, complex_forward};
 use std::f64::consts::PI;
 use std::sync::Arc;
 
@@ -134,7 +133,7 @@ impl Octave {
         }
         // Twice the range, so that periods between the cycles of the range are seen too.
         let size = quick_size((2 * (cells as usize + 1)).max(8));
-        let plan = FftPlanner::<f64>::new().plan_fft_forward(size);
+        let plan = complex_forward(size);
         Some(Octave { period, samples, low, range: high - low, dt_s, plan })
     }
 

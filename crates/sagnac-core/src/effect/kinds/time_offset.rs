@@ -8,7 +8,7 @@ use crate::effect::{
 };
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::range::Bounds;
-use realfft::RealFftPlanner;
+use sagnac_fft::{real_forward, real_inverse};
 
 pub struct TimeOffset;
 
@@ -22,8 +22,7 @@ describe! {
 /// Σ a(i) b(i − L) for every L from 0 up and from −1 down, by Fourier transforms.
 fn correlation(a: &[f64], b: &[f64]) -> Vec<f64> {
     let size = (2 * a.len().max(b.len())).next_power_of_two();
-    let mut planner = RealFftPlanner::<f64>::new();
-    let (forward, back) = (planner.plan_fft_forward(size), planner.plan_fft_inverse(size));
+    let (forward, back) = (real_forward(size), real_inverse(size));
     let transform = |x: &[f64]| {
         let mut input = x.to_vec();
         input.resize(size, 0.0);

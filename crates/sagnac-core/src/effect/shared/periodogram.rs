@@ -1,7 +1,7 @@
 //! What a sinusoid of each frequency would gain.
 
 use crate::effect::{Drivers, SearchContext};
-use realfft::RealFftPlanner;
+use sagnac_fft::real_forward;
 
 /// Gains of log-likelihood, nats, of sinusoids at equidistant frequencies from 0.
 pub(in crate::effect) struct LineGains {
@@ -18,7 +18,7 @@ impl LineGains {
         let padded = (2 * n).next_power_of_two();
         let mut input = context.score.to_vec();
         input.resize(padded, 0.0);
-        let plan = RealFftPlanner::<f64>::new().plan_fft_forward(padded);
+        let plan = real_forward(padded);
         let mut spectrum = plan.make_output_vec();
         if n < 2 || plan.process(&mut input, &mut spectrum).is_err() {
             return LineGains { gains: vec![], step_hz: 1.0 };

@@ -20,6 +20,7 @@ use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two
 use crate::numeric::sums::cumulated;
 use departure::{ln_at_least, windows};
 use rand::{RngExt as _, SeedableRng as _};
+use sagnac_fft::real_forward;
 use statrs::distribution::{DiscreteCDF, Poisson};
 
 /// Seed of the draws that take values off a grid: a report is a function of recording and claim alone.
@@ -110,7 +111,7 @@ fn periodogram(white: &White) -> Option<Vec<f64>> {
     let n = white.series.len();
     let mut padded = white.series.clone();
     padded.resize(2 * n, 0.0);
-    let plan = realfft::RealFftPlanner::<f64>::new().plan_fft_forward(2 * n);
+    let plan = real_forward(2 * n);
     let mut spectrum = plan.make_output_vec();
     plan.process(&mut padded, &mut spectrum).ok()?;
     Some(spectrum.iter().take(n).map(|v| v.norm_sqr() / n as f64).collect())

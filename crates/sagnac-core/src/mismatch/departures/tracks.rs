@@ -9,7 +9,7 @@ use crate::effect::{Domain, Place};
 use crate::estimate::ln_chi_square_tail;
 use crate::mismatch::spectral_data::SpectralData;
 use rayon::prelude::*;
-use realfft::RealFftPlanner;
+use sagnac_fft::real_forward;
 
 /// Numbers of segments that the record is cut into.
 const SEGMENTS: [usize; 2] = [16, 64];
@@ -118,7 +118,7 @@ fn parts(segments: usize) -> Vec<(usize, usize)> {
 
 /// Powers of the segments, one row each, exponential of mean 1 in white noise.
 fn powers(series: &[f64], segments: usize, length: usize) -> Option<Vec<f64>> {
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(2 * length);
+    let plan = real_forward(2 * length);
     let (mut padded, mut spectrum) = (plan.make_input_vec(), plan.make_output_vec());
     let mut out = Vec::with_capacity(segments * length);
     for segment in series.chunks_exact(length).take(segments) {

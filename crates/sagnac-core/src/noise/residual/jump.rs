@@ -8,7 +8,7 @@
 use super::view::{Departure, Judged, View};
 use crate::estimate::normal_probability;
 use crate::numeric::cosine::inverse_dct2;
-use realfft::RealFftPlanner;
+use sagnac_fft::real_forward;
 use std::f64::consts::PI;
 
 /// Means at either end of the record where no jump is looked for: there it is one of few values, which other views judge.
@@ -45,7 +45,7 @@ pub(super) fn largest(modes: &[f64], powers: &[f64]) -> Option<Jump> {
         })
         .collect();
     let whole: f64 = share.iter().sum();
-    let plan = RealFftPlanner::<f64>::new().plan_fft_forward(n);
+    let plan = real_forward(n);
     let (mut input, mut turned) = (share, plan.make_output_vec());
     plan.process(&mut input, &mut turned).ok()?;
     let information = |i: usize| whole - turned.get(i.min(n - i)).map_or(0.0, |c| c.re);

@@ -11,8 +11,7 @@ use super::spectrum::ModelSpectrum;
 use super::view::{Departure, Judged, View};
 use super::whiten::Whitened;
 use crate::noise::model::{Bin, Spectral};
-use realfft::RealFftPlanner;
-use realfft::num_complex::Complex;
+use sagnac_fft::{Complex, real_inverse};
 
 /// Lags that are looked at, at most.
 const LAGS: usize = 120;
@@ -126,7 +125,7 @@ pub(super) fn of_samples(
     for r in ratios.iter_mut().filter(|r| r.re != 0.0) {
         r.re = r.re / mean - 1.0;
     }
-    let inverse = RealFftPlanner::<f64>::new().plan_fft_inverse(welch.segment_len);
+    let inverse = real_inverse(welch.segment_len);
     let mut time = inverse.make_output_vec();
     if inverse.process(&mut ratios, &mut time).is_err() {
         return None;
