@@ -69,7 +69,7 @@ impl<'de> Deserializer<'de> for NullNumbers {
                 let entries = map.into_iter().map(|(name, value)| (name, NullNumbers(value)));
                 visitor.visit_enum(MapAccessDeserializer::new(MapDeserializer::new(entries)))
             }
-            other => Err(Error::invalid_type(unexpected(&other), &"a name, or an object with one name")),
+            other => Err(Error::invalid_type(unexpected(&other), &"enum")),
         }
     }
 

@@ -241,7 +241,7 @@ fn temperature(facts: &ComparedFacts<'_>) -> ConditionRecord {
     };
     let note = Note::new(key)
         .with("channel", found.what.channel.clone())
-        .with("difference", Arg::decimals(difference, 2))
+        .with("difference", Arg::figures(difference, 2))
         .with("chance", chance(found));
     known(record(id, status, &[("difference", difference)], required, note), Some(Evidence::Recorded))
 }
