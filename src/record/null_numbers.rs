@@ -65,7 +65,7 @@ impl<'de> Deserializer<'de> for NullNumbers {
     ) -> Result<V::Value, Error> {
         match self.0 {
             Value::String(name) => visitor.visit_enum(name.into_deserializer()),
-            Value::Object(map) => {
+            Value::Object(map) if map.len() == 1 => {
                 let entries = map.into_iter().map(|(name, value)| (name, NullNumbers(value)));
                 visitor.visit_enum(MapAccessDeserializer::new(MapDeserializer::new(entries)))
             }
