@@ -14,6 +14,7 @@ catalogue! {
     temp_linear::TempLinear,
     temp_polynomial::TempPolynomial,
     temp_rate::TempRate,
+    temp_rate_delayed::TempRateDelayed,
     thermal_lag::ThermalLag,
     temp_hysteresis::TempHysteresis,
     temp_response::TempResponse,

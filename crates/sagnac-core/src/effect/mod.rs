@@ -34,7 +34,7 @@ pub use kinds::{EFFECTS, find, parameter};
 pub use mean::{MeanModel, Nuisance, Regressors, Resolution, SearchContext, Starts};
 pub use model::{
     Background, Detection, Detector, FlatResidual, JumpDetector, Jumps, Knot, Law, Level, LevelDetector,
-    LevelLaw, OutlierDetector, Outliers, Reported, Rounding, RowDetector, Rows, RowsFound, Samples,
+    LevelLaw, OutlierDetector, Outliers, Pulses, Reported, Rounding, RowDetector, Rows, RowsFound, Samples,
 };
 pub use model::{Effect, Family, Later, Model, StatedByCourse, UNKNOWN, plausible, stateable};
 pub use param::{Param, Value, Values, list, number, text};

@@ -444,6 +444,17 @@ pub struct Jumps {
     /// False for jumps every few samples, which are no other than a short correlated process, and for even ones, which are a
     /// periodic course.
     pub resolved: bool,
+    /// For a level that is left much sooner than the other, which is no telegraph: its visits.
+    pub pulses: Option<Pulses>,
+}
+
+/// Pulses of no kind that recur.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pulses {
+    /// How many.
+    pub count: usize,
+    /// How long each is on average, s.
+    pub each_s: f64,
 }
 
 /// Finds a course of jumps.

@@ -100,9 +100,11 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
         }
     };
     let added = contribution::correction(best, spectra);
+    // No claim can state a course of no kind.
     let stated = found
         .named
         .into_iter()
+        .filter(|n| n.shape.is_none())
         .map(|n| Stated { effect: n.stated_as, values: stateable(n.stated_as, n.estimated.stated) });
     let levelled = found.level.is_some();
     let augmented = augmented(problem, claim, best, stated.collect(), levelled, added.as_deref());
@@ -264,16 +266,22 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
     let own = chosen.effect.reported_kind();
     let fitted: Vec<&str> =
         chosen.equivalents.iter().map(|e| e.effect.reported_kind()).filter(|kind| *kind != own).collect();
+    let law = chosen.law.as_ref().map(|law| law.effect.reported_kind());
     let driver =
         ambiguous_oscillation(chosen.effect, &estimated.reported, problem.drivers.length_s(), options);
-    let equivalents = chosen
+    let mut equivalents = chosen
         .beside
         .into_iter()
         .chain(fitted.iter().copied())
         .chain(driver.filter(|driver| !fitted.contains(driver)))
-        .filter(|_| chosen.effect.in_format() || chosen.law.is_some())
-        .take(MOST_EQUIVALENTS)
-        .collect();
+        .filter(|kind| chosen.effect.in_format() || law.is_some_and(|law| law != *kind))
+        .fold(vec![], |mut all: Vec<&str>, kind| {
+            if !all.contains(&kind) {
+                all.push(kind);
+            }
+            all
+        });
+    equivalents.truncate(MOST_EQUIVALENTS);
     let mut effect = chosen.effect;
     if let Some(law) = &chosen.law {
         effect = law.effect;
@@ -290,6 +298,7 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
         p_value: chosen.p_value,
         improvement: None,
         local_gain: 0.0,
+        shape: None,
     }
 }
 
@@ -327,7 +336,7 @@ fn figures(tried: &Tried, held: &HeldOut, rows: usize, local_gain: f64) -> FitFi
 
 fn of_samples(named: &Named) -> Candidate {
     Candidate {
-        kind: named.effect.kind().to_owned(),
+        kind: if named.shape.is_some() { UNKNOWN } else { named.effect.kind() }.to_owned(),
         delta_bic: named.delta_bic,
         log_likelihood_gain: named.local_gain,
         p_value: named.p_value,
@@ -344,17 +353,18 @@ fn candidate(fitted: &Fitted) -> Candidate {
 }
 
 fn finding(named: &Named) -> Finding {
-    let own = !named.effect.in_format();
-    let kind = named.effect.reported_kind();
+    let own = !named.effect.in_format() || named.shape.is_some();
+    let kind = if own { UNKNOWN } else { named.effect.reported_kind() };
     let text = |name: &str| named.estimated.texts.get(name).cloned();
     Finding {
         kind: kind.to_owned(),
-        effect: (kind != named.effect.kind()).then(|| named.effect.kind().to_owned()),
+        effect: (kind != named.effect.kind() && named.shape.is_none())
+            .then(|| named.effect.kind().to_owned()),
         column: text("column"),
         column2: text("column2"),
         law: text("law"),
         formula: named.estimated.formula.clone(),
-        shape: None,
+        shape: named.shape.clone(),
         equivalents: named.equivalents.iter().map(|e| (*e).to_owned()).collect(),
         probabilities: named.names.iter().map(|n| (n.kind.to_owned(), n.probability)).collect(),
         // Of a course of no kind, what is known of its parts is no parameter of the format.

@@ -1,6 +1,7 @@
 //! Courses of jumps, weighed against what else was chosen and against processes that have their spectrum.
 
 use super::departures::White;
+use super::finding::ShapeRecord;
 use super::hypothesis::{kept, part_modes};
 use super::named::{Found, Named, worth};
 use super::noise_fit::{self, Noise};
@@ -11,7 +12,8 @@ use super::select::{self, Selection, Slot};
 use super::terms::SpectrumIn;
 use super::tried::Tried;
 use crate::effect::{
-    Background, Detector, EFFECTS, Effect, JumpDetector, Jumps, Model, SpectralContext, Spectrum, SpectrumAct,
+    Background, Detector, EFFECTS, Effect, JumpDetector, Jumps, Model, Pulses, SpectralContext, Spectrum,
+    SpectrumAct,
 };
 
 /// Gain by exponentially correlated noise, which has the spectrum of independent jumps, below which there are no jumps
@@ -182,6 +184,17 @@ pub(super) fn take_jumps(
     }
 }
 
+/// What pulses look like, for a report.
+fn pulses_shape(pulses: &Pulses, jumps: &Jumps) -> ShapeRecord {
+    let square = jumps.course.iter().map(|c| c * c).sum::<f64>() / jumps.course.len().max(1) as f64;
+    ShapeRecord {
+        form: "pulses".to_owned(),
+        count: Some(pulses.count),
+        each_s: Some(pulses.each_s),
+        rms_deg_h: Some(square.sqrt()),
+    }
+}
+
 fn take(
     effect: &'static dyn Effect,
     weighed: Weighed,
@@ -193,7 +206,7 @@ fn take(
 ) {
     let Weighed { jumps, delta_bic, told, rival, instead } = weighed;
     if !told || delta_bic < rival {
-        if delta_bic > rival - select::ENOUGH {
+        if delta_bic > rival - select::ENOUGH && jumps.pulses.is_none() {
             let replaced = selection.chosen.iter_mut().find(|c| Some(c.effect.kind()) == instead);
             replaced.into_iter().for_each(|c| c.beside = Some(effect.kind()));
         }
@@ -205,7 +218,8 @@ fn take(
         base = with_free_level(&base, problem);
     }
     let equivalents = instead.filter(|_| delta_bic < rival + select::ENOUGH).into_iter().collect();
-    let named = Named { equivalents, ..Named::detected(effect, &jumps.detection, delta_bic) };
+    let shape = jumps.pulses.map(|pulses| pulses_shape(&pulses, &jumps));
+    let named = Named { equivalents, shape, ..Named::detected(effect, &jumps.detection, delta_bic) };
     found.gained_in_fit += base.fit.log_likelihood - start.fit.log_likelihood;
     found.named.push(named);
     found.take(jumps.course);

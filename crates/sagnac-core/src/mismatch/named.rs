@@ -1,7 +1,7 @@
 //! Effects that were named: by the fit in cosine modes, or by their detectors in single samples.
 
 use super::estimates::Estimated;
-use super::finding::ParameterValue;
+use super::finding::{ParameterValue, ShapeRecord};
 use super::improvement::Improvement;
 use super::posterior::Probable;
 use super::select::ENOUGH;
@@ -32,6 +32,8 @@ pub struct Named {
     pub improvement: Option<Improvement>,
     /// Gain of log-likelihood that the fit in cosine modes does not hold.
     pub local_gain: f64,
+    /// What a course looks like that was found and is of no kind.
+    pub shape: Option<ShapeRecord>,
 }
 
 impl Named {
@@ -61,6 +63,7 @@ impl Named {
             p_value: found.p_value,
             improvement: None,
             local_gain: found.gain,
+            shape: None,
         }
     }
 

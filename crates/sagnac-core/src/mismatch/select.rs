@@ -277,7 +277,7 @@ fn names(
     rows: usize,
 ) -> Vec<Probable> {
     if !laws.is_empty() {
-        return probabilities(laws.iter().map(|c| (c.effect.kind(), worth_of_law(c))));
+        return probabilities(laws.iter().map(|c| (c.effect.reported_kind(), worth_of_law(c))));
     }
     let own = 0.5 * (rank_without - best.rank(rows));
     let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind());

@@ -132,6 +132,7 @@ pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem, options: &Opti
         p_value: pair.iter().map(|n| n.p_value).fold(1.0, f64::min),
         improvement: None,
         local_gain: pair.iter().map(|n| n.local_gain).sum(),
+        shape: None,
     };
     named[first] = whole;
     named.remove(second);
@@ -191,6 +192,7 @@ mod tests {
             p_value: 1e-9,
             improvement: None,
             local_gain: 0.0,
+            shape: None,
         }
     }
 

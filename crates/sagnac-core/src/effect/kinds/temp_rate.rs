@@ -9,8 +9,11 @@ use crate::numeric::range::Bounds;
 
 pub struct TempRate;
 
-static PARAMS: [Param; 1] =
-    [Param::reported("coefficient_deg_h_per_degC_per_min", "deg/h/(°C/min)", -1e6, 1e6).signed()];
+/// Bias for a rate of change of temperature.
+pub(super) const COEFFICIENT: Param =
+    Param::reported("coefficient_deg_h_per_degC_per_min", "deg/h/(°C/min)", -1e6, 1e6).signed();
+
+static PARAMS: [Param; 1] = [COEFFICIENT];
 
 describe! {
     TempRate, "temp_rate", Mean in TemperatureRate, needs [Temperature],

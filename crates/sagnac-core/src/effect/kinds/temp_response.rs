@@ -25,7 +25,14 @@ describe! {
             false
         }
         fn named_by_law(&self) -> &'static [&'static str] {
-            &["temp_polynomial", "temp_rate", "thermal_lag", "temp_hysteresis", "temp_linear"]
+            &[
+                "temp_polynomial",
+                "temp_rate",
+                "temp_rate_delayed",
+                "thermal_lag",
+                "temp_hysteresis",
+                "temp_linear",
+            ]
         }
     }
 }

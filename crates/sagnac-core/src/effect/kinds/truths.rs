@@ -88,6 +88,7 @@ pub fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "temp_linear" => (drivers(), vec![0.023]),
         "temp_polynomial" => (drivers(), vec![25.0, 15.0]),
         "temp_rate" => (drivers(), vec![0.02]),
+        "temp_rate_delayed" => (drivers(), vec![0.02, 170.0]),
         "thermal_lag" => (drivers(), vec![130.0]),
         "temp_hysteresis" => (drivers(), vec![0.05, 2.0, 0.0, 1.0]),
         "warmup_exponential" => (drivers(), vec![0.2, 210.0]),

@@ -141,7 +141,7 @@ impl ResponseLaw {
         match (self, term) {
             (ResponseLaw::Linear, Term::Curve { order }) => *order == 1,
             (ResponseLaw::Curve, Term::Curve { order }) => *order > 1,
-            (ResponseLaw::Rate, Term::Rate)
+            (ResponseLaw::Rate, Term::Rate | Term::Delay { .. })
             | (ResponseLaw::Lag, Term::Delay { .. })
             | (ResponseLaw::Hysteresis, Term::Play { .. }) => true,
             _ => false,
@@ -237,7 +237,8 @@ fn leading_law(dictionary: &Dictionary) -> ResponseLaw {
         let allowed = |t: &Term| match (law, t) {
             (ResponseLaw::Linear, Term::Curve { order }) => *order == 1,
             (ResponseLaw::Curve, Term::Curve { .. }) => true,
-            (ResponseLaw::Rate, Term::Rate) => true,
+            // The delayed column less the column is the rate of the delayed one.
+            (ResponseLaw::Rate, Term::Rate | Term::Delay { .. }) => true,
             // A delayed column is the column and what the delay changes of it; a loop has a slope.
             (ResponseLaw::Lag, Term::Delay { .. }) => true,
             (ResponseLaw::Lag | ResponseLaw::Hysteresis, Term::Curve { order }) => *order == 1,

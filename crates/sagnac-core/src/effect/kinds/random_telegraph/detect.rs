@@ -5,7 +5,7 @@
 //! what the chain gains beyond that tells two levels from it.
 
 use super::chain::{Chain, Deviations};
-use super::dwell::{slope, spread};
+use super::dwell::{Visits, slope, spread, visits};
 use super::path::Paths;
 use crate::effect::{Background, FlatResidual, averages};
 use crate::numeric::cosine::{dct2, inverse_dct2};
@@ -33,6 +33,8 @@ const SLOPE: f64 = 4.5;
 /// Slow noise that is estimated beside them leaves some.
 const SPREAD: f64 = 2.0;
 const LN_SPREAD: f64 = -14.0;
+/// Probability of times at the two levels, if both were left at one rate, below which they are pulses.
+const UNEVEN: f64 = 1e-4;
 /// Averages in the shortest period of a drift.
 const SLOWEST: usize = 64;
 
@@ -53,6 +55,8 @@ pub(super) struct Telegraph {
     pub dwell_ci95: [f64; 2],
     /// True when the jumps come as regularly as of a periodic course.
     pub regular: bool,
+    /// For a level that is left much sooner than the other: its visits.
+    pub pulses: Option<Visits>,
     /// Gain of log-likelihood over all paths.
     pub gain: f64,
     /// Gain of the best single process in its place: a Markov process, or flicker or random walk set free.
@@ -274,7 +278,7 @@ pub(super) fn telegraph(background: &Background<'_>, rival_gain: &dyn Fn() -> f6
         }
         m /= 4;
     }
-    let best = best.filter(|b| b.gain > 0.0 && ground.is_level(b))?;
+    let best = best.filter(|b| b.gain > 0.0 && (pulses(&b.path).is_some() || ground.is_level(b)))?;
     let rival_gain = rival_gain();
     // A likelihood ratio against one fixed law exceeds e^g with a probability below e^−g; each of the three numbers is
     // fitted, ½ ln M nats.
@@ -334,6 +338,7 @@ impl Ground<'_> {
             mean_dwell_s,
             dwell_ci95: [mean_dwell_s / factor, mean_dwell_s * factor],
             regular: regular(&best.path),
+            pulses: pulses(&best.path),
             gain: best.gain,
             rival_gain,
             parameters: 3,
@@ -341,6 +346,11 @@ impl Ground<'_> {
             p_value: 1.0,
         }
     }
+}
+
+/// The visits to a level that is left much sooner than the other: pulses, which need not be of one height.
+fn pulses(path: &[bool]) -> Option<Visits> {
+    visits(path).filter(|v| v.p_value < UNEVEN)
 }
 
 /// Whether the times at both levels are more even than those of independent jumps, whose deviation is their mean.

@@ -2,6 +2,7 @@
 //! next. Pulses that rise and die away, and pulses of different heights, are not.
 
 use crate::estimate::ln_chi_square_tail;
+use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 use std::ops::Range;
 
 /// Dwells of a path that have a beginning and an end within the record, with their level.
@@ -69,6 +70,35 @@ pub(super) fn spread(path: &[bool], left: &[f64], white: f64) -> Spread {
     Spread { ratio: square / free, ln_p: ln_chi_square_tail(square, free) }
 }
 
+/// Pulses: visits to the rarer level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Visits {
+    /// How many.
+    pub count: usize,
+    /// Samples of each, on average.
+    pub length: f64,
+    /// Two-sided probability of times at the two levels as unlike as these, if both were left at one rate: the ratio of their
+    /// means follows a law of F.
+    pub p_value: f64,
+}
+
+/// The visits to the rarer level of a path; `None` for a path that does not return.
+pub(super) fn visits(path: &[bool]) -> Option<Visits> {
+    let raised = path.iter().filter(|p| **p).count();
+    let rare = 2 * raised <= path.len();
+    let begins = |level: bool| (1..path.len()).filter(|i| path[*i] == level && path[i - 1] != level).count();
+    let first = |level: bool| usize::from(path.first() == Some(&level));
+    let [rarer, other] = [rare, !rare].map(|level| begins(level) + first(level));
+    let time = if rare { raised } else { path.len() - raised } as f64;
+    if rarer == 0 || other == 0 || time <= 0.0 {
+        return None;
+    }
+    let length = time / rarer as f64;
+    let ratio = length * other as f64 / (path.len() as f64 - time);
+    let law = FisherSnedecor::new(2.0 * rarer as f64, 2.0 * other as f64).ok()?;
+    Some(Visits { count: rarer, length, p_value: (2.0 * law.cdf(ratio)).min(1.0) })
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -105,6 +135,19 @@ mod tests {
         let other = spread(&path, &raised(&|k| if k.is_multiple_of(2) { 1.0 } else { 0.9 }), 0.01);
         assert!((other.ratio - 5.0 * 20.0 / 19.0).abs() < 0.6 && other.ln_p < -20.0, "{other:?}");
         assert_eq!(spread(&path[..120], &[0.0; 120], 1.0).ln_p, 0.0);
+    }
+
+    #[test]
+    fn rare_short_visits_are_told_from_levels_that_are_left_at_one_rate() {
+        let even = visits(&path()).unwrap();
+        assert!((even.count, even.length) == (20, 20.0) && even.p_value > 0.1, "{even:?}");
+        // Ten visits of 10 samples in 1000: nine times as long at the other level.
+        let rare: Vec<bool> = (0..1000).map(|i| i % 100 >= 90).collect();
+        let found = visits(&rare).unwrap();
+        assert!((found.count, found.length) == (10, 10.0) && found.p_value < 1e-4, "{found:?}");
+        let opposite: Vec<bool> = rare.iter().map(|p| !p).collect();
+        assert_eq!(visits(&opposite), Some(found));
+        assert!(visits(&[true; 10]).is_none() && visits(&[]).is_none());
     }
 
     #[test]

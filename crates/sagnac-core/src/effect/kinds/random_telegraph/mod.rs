@@ -7,7 +7,7 @@ mod path;
 
 use super::markov_long::MarkovLong;
 use crate::effect::{
-    Background, Detection, Detector, Domain, Drivers, Effect, JumpDetector, Jumps, Param, Place, Reported,
+    Background, Detection, Detector, Domain, Drivers, Effect, JumpDetector, Jumps, Param, Place, Pulses, Reported,
     Samples, Value, Values, list, number,
 };
 use rand::{RngExt, SeedableRng};
@@ -137,8 +137,9 @@ impl JumpDetector for RandomTelegraph {
             p_value: found.p_value,
         };
         let resolved = found.mean_dwell_s >= FEWEST_AT_A_LEVEL * drivers.dt_s && !found.regular;
-        let detect::Telegraph { course, chance, rival_gain, .. } = found;
-        Some(Jumps { course, detection, chance, rival_gain, resolved })
+        let detect::Telegraph { course, chance, rival_gain, pulses, .. } = found;
+        let pulses = pulses.map(|v| Pulses { count: v.count, each_s: v.length * drivers.dt_s });
+        Some(Jumps { course, detection, chance, rival_gain, resolved, pulses })
     }
 
     fn agrees(&self, stated: &Values, found: &Detection) -> bool {

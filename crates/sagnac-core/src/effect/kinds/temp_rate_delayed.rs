@@ -1,0 +1,108 @@
+//! Bias proportional to the rate of change of a temperature behind a delay: that of the coil, of which the thermometer on the
+//! housing is ahead. It is reported as bias proportional to the rate of change of temperature.
+
+use super::temp_rate::COEFFICIENT;
+use crate::effect::shared::decay::decay;
+use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::search::{best_of, log_grid};
+use crate::effect::shared::thermal::{delayed, smooth};
+use crate::effect::{
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+};
+use crate::numeric::range::Bounds;
+
+pub struct TempRateDelayed;
+
+static PARAMS: [Param; 2] = [COEFFICIENT, Param::inner("time_constant_s", "s", 1e-6, 1e6)];
+
+describe! {
+    TempRateDelayed, "temp_rate_delayed", Mean in TemperatureRate, needs [Temperature],
+    confusers ["temp_rate", "thermal_lag", "temp_hysteresis"],
+    with {
+        fn reported_kind(&self) -> &'static str {
+            "temp_rate"
+        }
+    }
+}
+
+/// Rate of change of the delayed temperature, °C/min: the difference from the present one over the time constant.
+fn rate(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+    let t = smooth(drivers)?;
+    if !(time_constant_s > 0.0 && time_constant_s.is_finite()) {
+        return None;
+    }
+    let late = delayed(t, time_constant_s, drivers.dt_s);
+    Some(late.iter().zip(t).map(|(d, t)| 60.0 * (t - d) / time_constant_s).collect())
+}
+
+impl MeanModel for TempRateDelayed {
+    fn applies(&self, drivers: &Drivers) -> bool {
+        varies(drivers.temperature.as_deref())
+    }
+
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
+        let Bounds { low, high } = self.bounds(drivers)[0];
+        let grid = log_grid(low, high, 24);
+        let points = best_of(self, grid.into_iter().map(|t| vec![t]), 2, drivers, context);
+        Starts { points, trials: (high / low).ln().max(1.0) }
+    }
+
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
+        let low = drivers.dt_s;
+        vec![Bounds::new(low, (0.25 * drivers.length_s()).max(4.0 * low))]
+    }
+
+    /// The state at the beginning is not known: what is left of it decays beside the effect.
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let Some(time) = nonlinear_parameters.first().filter(|t| **t > 0.0) else {
+            return Regressors::default();
+        };
+        Regressors {
+            columns: rate(*time, drivers).into_iter().collect(),
+            nuisance: vec![decay(*time, drivers)],
+            ..Regressors::default()
+        }
+    }
+
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+        let first = |of: &[f64]| of.first().copied().unwrap_or(f64::NAN);
+        vec![first(coefficients), first(nonlinear_parameters)]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let coefficient = number(values, PARAMS[0].name)?;
+        let rate = rate(number(values, PARAMS[1].name)?, drivers)?;
+        Some(rate.into_iter().map(|r| coefficient * r).collect())
+    }
+
+    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        let time = number(values, PARAMS[1].name).filter(|t| *t > 0.0);
+        time.map(|t| decay(t, drivers)).into_iter().collect()
+    }
+
+    fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let rate = nonlinear_parameters.first().and_then(|t| rate(*t, drivers));
+        rate.map_or_else(Vec::new, |r| reach(Domain::TemperatureRate, &r, &r))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn behind_a_ramp_the_rate_rises_to_that_of_the_ramp() {
+        // 0.02 °C/s are 1.2 °C/min: after one time constant 1 − 1/e of it.
+        let ramp: Vec<f64> = (0..1000).map(|i| 0.02 * f64::from(i)).collect();
+        let drivers = Drivers { dt_s: 1.0, samples: 1000, temperature: Some(ramp), ..Drivers::default() };
+        let rate = |time: f64| super::rate(time, &drivers);
+        let got = rate(40.0).unwrap();
+        assert!(got[0] == 0.0 && (got[999] - 1.2).abs() < 1e-9, "{}", got[999]);
+        assert!((got[40] - 1.2 * (1.0 - (-1f64).exp())).abs() < 1e-9, "{}", got[40]);
+        assert!(rate(0.0).is_none() && rate(f64::INFINITY).is_none());
+        // Stated, it is the coefficient times the same.
+        let stated = crate::effect::sizing::numbers([(PARAMS[0].name, -3.0), (PARAMS[1].name, 40.0)]);
+        let course = TempRateDelayed.course(&stated, &drivers).unwrap();
+        assert!((course[999] + 3.6).abs() < 1e-9 && TempRateDelayed.course(&Values::new(), &drivers).is_none());
+    }
+}
