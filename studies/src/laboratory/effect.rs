@@ -201,7 +201,7 @@ impl Effect {
         let mut parameters = facts.parameters;
         let adds = !matches!(self.shape, Shape::Spread(_));
         if adds {
-            parameters.insert("rms_deg_h".to_owned(), spread_of(&contribution));
+            parameters.entry("rms_deg_h".to_owned()).or_insert_with(|| spread_of(&contribution));
         }
         let modes = oracle.modes(&contribution);
         let possible = match (&self.shape, self.latent) {

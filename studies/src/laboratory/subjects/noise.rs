@@ -1,7 +1,7 @@
 //! Levels and processes of noise.
 
 use crate::laboratory::bench::Bench;
-use crate::laboratory::effect::{Effect, Facts, Law, OfSize, Shape, range_of};
+use crate::laboratory::effect::{Effect, Facts, Law, OfSize, Shape, range_of, spread_of};
 use crate::laboratory::environment::people;
 use crate::laboratory::motion::Programme;
 use crate::laboratory::noise::Levels;
@@ -36,7 +36,11 @@ fn level(kind: &'static str, sign: f64, part: usize, name: &'static str) -> Effe
         let to_white = [f64::INFINITY, b * b / (TAU * 3600.0 * n * n), k / (TAU * 3600.0 * n)][part];
         let top = (4.0 * to_white).max(10.0 / bench.duration_s()).min(bench.rate_hz / 2.0);
         let band = [if part == 0 { 0.01 * top } else { 0.0 }, top];
-        Facts::default().at("frequency", band[0], band[1]).with(name, [n, b, k][part])
+        let facts = Facts::default().at("frequency", band[0], band[1]).with(name, [n, b, k][part]);
+        // The raised noise is the claimed one and noise of its own beside it: variances add. Less noise adds none.
+        let raised = factor(size).powi(2) - 1.0;
+        let of = [&bench.parts.white, &bench.parts.flicker, &bench.parts.walk][part];
+        if raised > 0.0 { facts.with("rms_deg_h", raised.sqrt() * spread_of(of)) } else { facts }
     })
 }
 

@@ -91,8 +91,8 @@ impl MeanModel for ColumnDriver {
         let Some(m) = meant(nonlinear_parameters, drivers) else { return vec![f64::NAN; 3] };
         let [center, half] = response::stated_range(&m.driver.smooth);
         // A single term of a linear law or of a rate is a coefficient a unit of the column, or a unit of it an hour.
-        let single = m.mask.count_ones() == 1 && matches!(m.law, ResponseLaw::Linear | ResponseLaw::Rate);
-        let coefficient = coefficients.first().filter(|_| single).map_or(f64::NAN, |c| c / half);
+        let per_unit = response::per_unit(m.mask, m.law).map(|scale| scale / half);
+        let coefficient = coefficients.first().zip(per_unit).map_or(f64::NAN, |(c, scale)| c * scale);
         vec![coefficient, center, half]
     }
 

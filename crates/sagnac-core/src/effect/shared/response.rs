@@ -270,6 +270,17 @@ fn leading_law(dictionary: &Dictionary) -> ResponseLaw {
 /// The response of one term, the curve of first order.
 pub(in crate::effect) const FIRST_ORDER: u32 = 1;
 
+/// What the coefficient of a response of a single term is multiplied by to be that of a linear law or of a rate, per hour, of
+/// the scaled column; `None` for a response of another form.
+pub(in crate::effect) fn per_unit(mask: u32, law: ResponseLaw) -> Option<f64> {
+    match (law, &terms(mask)[..]) {
+        (ResponseLaw::Linear, [Term::Curve { order: 1 }]) | (ResponseLaw::Rate, [Term::Rate]) => Some(1.0),
+        // The delayed column trails behind by the time constant times its rate.
+        (ResponseLaw::Rate, [Term::Delay { time_constant_s }]) => Some(-time_constant_s / 3600.0),
+        _ => None,
+    }
+}
+
 /// The columns of a response.
 pub(in crate::effect) fn regressors(mask: u32, values: &[f64], drivers: &Drivers) -> Regressors {
     let scaled = scaled(values, Scale::of(values));
@@ -403,6 +414,23 @@ mod tests {
         let state = play(&x, 0.15);
         assert_eq!(found(&made(&|i| 1.2 * state[i]), &values).unwrap().law, ResponseLaw::Hysteresis);
         assert!(found(&vec![0.0; n], &values).is_none(), "noise follows nothing");
+    }
+
+    #[test]
+    fn the_coefficient_of_a_single_term_is_that_of_the_value_or_of_its_rate() {
+        let mask_of = |wanted: Term| 1 << Term::all().position(|t| t == wanted).unwrap();
+        let (first, second) = (Term::Curve { order: 1 }, Term::Curve { order: 2 });
+        assert_eq!(per_unit(mask_of(first), ResponseLaw::Linear), Some(1.0));
+        assert_eq!(per_unit(mask_of(Term::Rate), ResponseLaw::Rate), Some(1.0));
+        assert_eq!(per_unit(mask_of(second), ResponseLaw::Curve), None);
+        assert_eq!(per_unit(mask_of(first) | mask_of(second), ResponseLaw::Linear), None);
+        // Behind a long ramp of 2 an hour, the term of 150 s comes to −2·150/3600.
+        let delay = Term::Delay { time_constant_s: 150.0 };
+        let ramp: Vec<f64> = (0..1000).map(|i| 2.0 * f64::from(i) * 10.0 / 3600.0).collect();
+        let trailing = delay.course(&ramp, &drivers(1000))[999];
+        let scale = per_unit(mask_of(delay), ResponseLaw::Rate).unwrap();
+        assert!((scale * 2.0 - trailing).abs() < 1e-9, "{trailing}");
+        assert_eq!(per_unit(mask_of(delay), ResponseLaw::Lag), None);
     }
 
     #[test]

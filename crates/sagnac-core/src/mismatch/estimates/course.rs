@@ -108,11 +108,16 @@ fn propagate(
     functions: impl Fn(&[f64], &[f64]) -> Vec<f64>,
 ) -> Vec<f64> {
     let (d, p) = (nonlinear_parameters.len(), nonlinear_parameters.len() + coefficients.len());
+    let count = functions(nonlinear_parameters, coefficients).len();
     let mut slopes: Vec<Vec<f64>> = vec![];
     for i in 0..p {
         let deviation = covariance[(i, i)].max(0.0).sqrt();
-        let value = if i < d { nonlinear_parameters[i] } else { coefficients[i - d] };
-        let step = if deviation > 0.0 { 0.05 * deviation } else { 1e-6 * value.abs().max(1e-9) };
+        if deviation == 0.0 {
+            // What is known is not moved: a whole number less a little is another one.
+            slopes.push(vec![0.0; count]);
+            continue;
+        }
+        let step = 0.05 * deviation;
         let moved = |sign: f64| {
             let (mut s, mut c) = (nonlinear_parameters.to_vec(), coefficients.to_vec());
             if i < d {
@@ -125,16 +130,15 @@ fn propagate(
         let (up, down) = (moved(1.0), moved(-1.0));
         slopes.push(up.iter().zip(&down).map(|(a, b)| (a - b) / (2.0 * step)).collect());
     }
-    let count = slopes.first().map_or_else(|| functions(nonlinear_parameters, coefficients).len(), Vec::len);
     (0..count)
         .map(|k| {
-            let mut sum = 0.0;
+            let mut sum = 0.0f64;
             for i in 0..p {
                 for j in 0..p {
                     sum += slopes[i][k] * covariance[(i, j)] * slopes[j][k];
                 }
             }
-            sum.max(0.0).sqrt()
+            if sum < 0.0 { 0.0 } else { sum.sqrt() }
         })
         .collect()
 }
@@ -154,6 +158,18 @@ mod tests {
         // With a correlation of −1 the sum is known to the difference.
         let opposed = DMatrix::from_row_slice(2, 2, &[0.01, -0.02, -0.02, 0.04]);
         assert!((propagate(&[3.0], &[4.0], &opposed, both)[1] - 0.1).abs() < 1e-9);
+    }
+
+    #[test]
+    fn a_whole_number_leaves_the_deviation_to_the_coefficient() {
+        // The column of that number is counted in units of 4; another number is no column.
+        let covariance = DMatrix::from_row_slice(2, 2, &[0.0, 0.0, 0.0, 0.04]);
+        let of_column = |a: &[f64], b: &[f64]| vec![if a[0] as usize == 3 { b[0] / 4.0 } else { f64::NAN }];
+        let deviations = propagate(&[3.0], &[4.0], &covariance, of_column);
+        assert!((deviations[0] - 0.05).abs() < 1e-9, "{deviations:?}");
+        // What cannot be told has no deviation.
+        let none = propagate(&[2.0], &[4.0], &covariance, of_column);
+        assert!(none[0].is_nan(), "{none:?}");
     }
 
     #[test]
