@@ -72,12 +72,12 @@ pub fn explain(
         let moved = moved_again(&moved, &start, &problem);
         start = samples::take_level(&problem, start, &moved, &mut found, options);
     }
-    let mut selection = select::select(&start, &problem.spectra, options);
+    let mut selection = select::select(&start, &problem, options);
     if problem.impute_edges(&selection.best, &selection.best) {
         base = problem.refitted(&base);
         held_base = Halves::new(&problem).judge(&base);
         start = problem.refitted(&start);
-        selection = select::select(&start, &problem.spectra, options);
+        selection = select::select(&start, &problem, options);
     }
     take_jumps(&mut problem, &start, &mut selection, &mut found, options);
     progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });

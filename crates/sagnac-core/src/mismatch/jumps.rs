@@ -225,5 +225,5 @@ fn take(
     found.take(jumps.course);
     // What was tried on the claim alone is what the jumps stood against.
     let first = std::mem::take(&mut selection.first);
-    *selection = Selection { first, ..select::select(&base, &problem.spectra, options) };
+    *selection = Selection { first, ..select::select(&base, problem, options) };
 }

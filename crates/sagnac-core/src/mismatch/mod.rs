@@ -51,6 +51,7 @@ pub mod noticeable_record;
 pub mod options;
 pub mod outcome;
 mod posterior;
+mod prediction;
 pub mod problem;
 pub mod quantization_grid;
 pub mod regular;

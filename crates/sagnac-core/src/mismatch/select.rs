@@ -1,12 +1,15 @@
 //! The fewest effects that make the recording an ordinary draw: a beam of hypotheses grown by ΔBIC behind gates, then
 //! pruned, then asked what else would have served as well.
 
-use super::candidates::all;
+use super::candidates;
+use super::heldout::Halves;
 use super::hypothesis::{Hypothesis, fit};
 use super::noise_fit::{Noise, base_index};
 use super::nonlinear_search::LocalSearch;
 use super::options::Options;
 use super::posterior::{Probable, name_of, probabilities};
+use super::prediction;
+use super::problem::Problem;
 use super::terms::CourseIn;
 use super::terms::SpectrumIn;
 use super::tried::{Candidate, SpectralDataSet, Tried};
@@ -152,11 +155,30 @@ fn set(tried: &Tried) -> Vec<&'static str> {
     kinds
 }
 
+/// What candidates are found among and judged by.
+struct Search<'a> {
+    spectra: &'a SpectralDataSet,
+    halves: Halves,
+    options: &'a Options,
+}
+
+impl Search<'_> {
+    /// Every addition to a hypothesis, the best first.
+    fn candidates(&self, before: &Tried) -> Vec<Candidate> {
+        let mut found = candidates::all(before, self.spectra, self.options);
+        let (rows, family) = (self.spectra.rows, family(&found));
+        prediction::weigh(&mut found, &self.halves, rows, |c| passes(c, family, self.options.alpha));
+        found
+    }
+}
+
 /// Grows a hypothesis on `base`, which is the claim with what was found in single samples before.
-pub fn select(base: &Tried, spectra: &SpectralDataSet, options: &Options) -> Selection {
+pub fn select(base: &Tried, problem: &Problem, options: &Options) -> Selection {
     let (alpha, most) = (options.alpha, options.max_effects);
+    let spectra = &problem.spectra;
+    let search = Search { spectra, halves: Halves::new(problem), options };
     let rows = spectra.rows;
-    let first = all(base, spectra, options);
+    let first = search.candidates(base);
     let family = family(&first);
     let mut best = base.clone();
     let mut beam: Vec<(Tried, Vec<Candidate>)> = vec![(base.clone(), first.clone())];
@@ -188,18 +210,18 @@ pub fn select(base: &Tried, spectra: &SpectralDataSet, options: &Options) -> Sel
         beam = next
             .into_iter()
             .map(|t| {
-                let candidates = all(&t, spectra, options);
+                let candidates = search.candidates(&t);
                 (t, candidates)
             })
             .collect();
     }
     best = pruned(best, spectra, rows);
-    let mut chosen = self::chosen(&best, base, &first, spectra, options);
+    let mut chosen = self::chosen(&best, base, &first, &search);
     for _ in 0..EXCHANGES {
         let better = chosen.iter().filter_map(|c| c.better.as_ref());
         let Some(better) = better.min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows))) else { break };
         best = pruned(better.clone(), spectra, rows);
-        chosen = self::chosen(&best, base, &first, spectra, options);
+        chosen = self::chosen(&best, base, &first, &search);
     }
     Selection { best, chosen, first }
 }
@@ -285,13 +307,8 @@ fn names(
     probabilities([(effect.reported_kind(), own)].into_iter().chain(others))
 }
 
-fn chosen(
-    best: &Tried,
-    base: &Tried,
-    first: &[Candidate],
-    spectra: &SpectralDataSet,
-    options: &Options,
-) -> Vec<Chosen> {
+fn chosen(best: &Tried, base: &Tried, first: &[Candidate], search: &Search<'_>) -> Vec<Chosen> {
+    let (spectra, options) = (search.spectra, search.options);
     let family = family(first);
     let rows = spectra.rows;
     let all_slots = slots(&best.hypothesis);
@@ -300,7 +317,7 @@ fn chosen(
         .into_iter()
         .map(|(slot, effect)| {
             let without = if single { base.clone() } else { without(best, slot, spectra) };
-            let rivals = if single { first.to_vec() } else { all(&without, spectra, options) };
+            let rivals = if single { first.to_vec() } else { search.candidates(&without) };
             let own = rivals.iter().find(|c| c.effect.kind() == effect.kind());
             let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
             let modes = modes_of_process(slot, best, spectra);

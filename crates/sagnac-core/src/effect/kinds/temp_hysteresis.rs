@@ -11,13 +11,14 @@ use crate::numeric::range::{Bounds, ends};
 
 pub struct TempHysteresis;
 
-static PARAMS: [Param; 4] = [
-    Param::reported("loop_width_deg_h", "deg/h", -1e6, 1e6),
-    Param::inner("play_degC", "°C", 1e-6, 300.0),
-    Param::inner("first_state", "", -1.0, 1.0),
-    // 1: higher while heating; −1: higher while cooling. The width of a loop has no sign.
-    Param::inner("sense", "", -1.0, 1.0),
-];
+/// Distance of the branches.
+pub(super) const WIDTH: Param = Param::reported("loop_width_deg_h", "deg/h", -1e6, 1e6);
+/// Half of what the temperature turns by before the state turns.
+pub(super) const PLAY: Param = Param::inner("play_degC", "°C", 1e-6, 300.0);
+/// 1: higher while heating; −1: higher while cooling. The width of a loop has no sign.
+pub(super) const SENSE: Param = Param::inner("sense", "", -1.0, 1.0);
+
+static PARAMS: [Param; 4] = [WIDTH, PLAY, Param::inner("first_state", "", -1.0, 1.0), SENSE];
 
 describe! {
     TempHysteresis, "temp_hysteresis", Mean in Temperature, needs [Temperature],
@@ -25,8 +26,7 @@ describe! {
 }
 
 /// Half the play's state, −1/2 on a cooling branch to 1/2 on a heating one: multiplied by the width of the loop.
-fn column(play: f64, first: f64, drivers: &Drivers) -> Option<Vec<f64>> {
-    let t = smooth(drivers)?;
+pub(super) fn state(t: &[f64], play: f64, first: f64) -> Option<Vec<f64>> {
     if !(play > 0.0 && first.is_finite()) {
         return None;
     }
@@ -38,17 +38,20 @@ fn column(play: f64, first: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     Some(t.iter().map(follow).collect())
 }
 
+fn column(play: f64, first: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+    state(smooth(drivers)?, play, first)
+}
+
+/// Whether a temperature turns by enough for both branches to be seen.
+pub(super) fn turns(t: &[f64]) -> bool {
+    let branches = state(t, 0.05 * ends(t).width(), 0.0).unwrap_or_default();
+    branches.iter().any(|b| *b > 0.49) && branches.iter().any(|b| *b < -0.49)
+}
+
 impl MeanModel for TempHysteresis {
     /// A temperature that never turns has no second branch.
     fn applies(&self, drivers: &Drivers) -> bool {
-        let Some(t) = smooth(drivers) else { return false };
-        if !varies(Some(t)) {
-            return false;
-        }
-        let Bounds { low, high } = ends(t);
-        let play = 0.05 * (high - low);
-        let branches = column(play, 0.0, drivers).unwrap_or_default();
-        branches.iter().any(|b| *b > 0.49) && branches.iter().any(|b| *b < -0.49)
+        smooth(drivers).is_some_and(|t| varies(Some(t)) && turns(t))
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {

@@ -91,6 +91,7 @@ pub fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "temp_rate_delayed" => (drivers(), vec![0.02, 170.0]),
         "thermal_lag" => (drivers(), vec![130.0]),
         "temp_hysteresis" => (drivers(), vec![0.05, 2.0, 0.0, 1.0]),
+        "temp_hysteresis_delayed" => (drivers(), vec![0.05, 2.0, 1.0, 60.0]),
         "warmup_exponential" => (drivers(), vec![0.2, 210.0]),
         "rate_ramp" => (drivers(), vec![0.1]),
         "diurnal" => (days(), vec![0.02, 86_400.0, 40.0]),

@@ -1,0 +1,52 @@
+//! Recorded columns that predict, before processes that cannot.
+//!
+//! A raised process fits anything slow and predicts nothing; a course that follows a recorded column predicts stretches of the
+//! record that it was not fitted to. Where a process explains more by some nats and the column predicts more of the stretches
+//! held out, the column is the likelier cause by what it predicts.
+
+use super::heldout::Halves;
+use super::tried::Candidate;
+use crate::effect::{Domain, Effect, Model};
+
+/// Part of the gain of the process from which a course is compared with it.
+const COMPARED: f64 = 0.4;
+/// Courses that are compared.
+const MOST: usize = 2;
+/// What a course has to predict beyond the process, nats: less is said by the choice of its terms, which saw the whole record.
+const LEAST: f64 = 4.0;
+
+/// Whether an effect is a process that fits anything slow.
+fn is_process(effect: &dyn Effect) -> bool {
+    matches!(effect.model(), Model::Spectrum(spectrum) if spectrum.has_course())
+}
+
+/// Whether an effect follows what was recorded beside the rate.
+fn follows_column(effect: &dyn Effect) -> bool {
+    let recorded = !effect.needs().is_empty() || effect.domain() == Domain::Driver;
+    recorded && matches!(effect.model(), Model::Mean(_))
+}
+
+/// Raises the odds of courses of recorded columns over a leading process, and puts the candidates in order again. `passes` says
+/// which additions may be made.
+pub(super) fn weigh(
+    found: &mut [Candidate],
+    halves: &Halves,
+    rows: usize,
+    passes: impl Fn(&Candidate) -> bool,
+) {
+    let Some(leader) = found.first().filter(|c| is_process(c.effect)) else { return };
+    let least = COMPARED * leader.gain;
+    let compared = |c: &Candidate| c.gain >= least && follows_column(c.effect) && passes(c);
+    let courses: Vec<usize> = (1..found.len()).filter(|i| compared(&found[*i])).take(MOST).collect();
+    if courses.is_empty() {
+        return;
+    }
+    let of_process = halves.judge(&leader.tried).log_likelihood;
+    for i in courses {
+        let more = halves.judge(&found[i].tried).log_likelihood - of_process;
+        if more >= LEAST {
+            found[i].tried.odds += more;
+        }
+    }
+    found.sort_by(|a, b| a.tried.rank(rows).total_cmp(&b.tried.rank(rows)));
+}
