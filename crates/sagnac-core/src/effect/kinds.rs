@@ -17,7 +17,7 @@ catalogue! {
     temp_rate_delayed::TempRateDelayed,
     thermal_lag::ThermalLag,
     temp_hysteresis::TempHysteresis,
-    temp_hysteresis_delayed::TempHysteresisDelayed,
+    temp_hysteresis_loops::TempHysteresisLoops,
     temp_response::TempResponse,
     warmup_exponential::WarmupExponential,
     rate_ramp::RateRamp,

@@ -205,7 +205,7 @@ mod tests {
         let mut hypothesis = Hypothesis { noise, courses };
         let kept = hypothesis.clone();
         let fit = fit(&mut hypothesis, &spectra.full);
-        Tried { hypothesis: kept, fit, parameters, odds: 0.0 }
+        Tried { hypothesis: kept, fit, parameters, odds: vec![] }
     }
 
     /// A Markov process of known size against flicker: as many records of the length found, drawn and fitted anew with

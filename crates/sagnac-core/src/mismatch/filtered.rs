@@ -90,5 +90,5 @@ fn judged(problem: &Problem, base: &Tried, part: SpectrumIn) -> Judged {
     }
     let modes = super::hypothesis::residual(&spectral, &hypothesis, &fit.mean);
     let powers = spectral.powers(&fit.densities);
-    Judged { tried: Tried { hypothesis, fit, parameters, odds: base.odds }, modes, powers }
+    Judged { tried: Tried { hypothesis, fit, parameters, odds: base.odds.clone() }, modes, powers }
 }

@@ -10,9 +10,10 @@
 //! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `tried`, `problem` |
 //! | tests that name no physics | `departures` |
 //! | every effect tried as an addition | `nonlinear_search`, `candidates`, `filtered` |
+//! | what is predicted of blocks that are held out | `heldout`, `prediction` |
 //! | the fewest effects that explain the recording, and how probable their names are | `select`, `posterior` |
 //! | effects on single samples, by their detectors | `flat`, `samples`, `jumps` |
-//! | parameters with intervals, what effects add, what they improve | `estimates`, `contribution`, `heldout`, `improvement` |
+//! | parameters with intervals, what effects add, what they improve | `estimates`, `contribution`, `improvement` |
 //! | what became of each column | `columns` |
 //! | sizes of effects that would have been noticed | `noticeable_record`, `noticeable` |
 //! | causes, equivalents, the augmented claim, figures | `single_cause`, `unnamed`, `experiment`, `alternatives`, `augmented`, `draw`, `figures`, `assemble` |

@@ -45,7 +45,9 @@ pub(super) fn weigh(
     for i in courses {
         let more = halves.judge(&found[i].tried).log_likelihood - of_process;
         if more >= LEAST {
-            found[i].tried.odds += more;
+            if let Some((_, odds)) = found[i].tried.odds.last_mut() {
+                *odds += more;
+            }
         }
     }
     found.sort_by(|a, b| a.tried.rank(rows).total_cmp(&b.tried.rank(rows)));

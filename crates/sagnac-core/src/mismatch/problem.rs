@@ -220,7 +220,7 @@ impl Problem {
         noise.spectra.extend(stated);
         let mut hypothesis = Hypothesis { noise, courses: vec![] };
         let fit = fit(&mut hypothesis, &self.spectra.full);
-        Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
+        Tried { hypothesis, fit, parameters: 0, odds: vec![] }
     }
 }
 

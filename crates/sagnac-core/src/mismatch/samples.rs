@@ -223,7 +223,7 @@ pub fn with_free_level(base: &Tried, problem: &Problem) -> Tried {
     let mut hypothesis = base.hypothesis.clone();
     hypothesis.noise.freed[0] = true;
     let fit = fit(&mut hypothesis, &problem.spectra.full);
-    Tried { hypothesis, fit, parameters: base.parameters + 1, odds: base.odds }
+    Tried { hypothesis, fit, parameters: base.parameters + 1, odds: base.odds.clone() }
 }
 
 #[cfg(test)]

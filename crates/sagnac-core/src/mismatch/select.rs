@@ -84,6 +84,10 @@ fn slots(hypothesis: &Hypothesis) -> Vec<(Slot, &'static dyn Effect)> {
 /// The hypothesis without one effect, fitted.
 fn without(tried: &Tried, slot: Slot, spectra: &SpectralDataSet) -> Tried {
     let mut hypothesis = tried.hypothesis.clone();
+    let effect = match slot {
+        Slot::Mean(i) => hypothesis.courses[i].effect,
+        Slot::Spectrum(i) => hypothesis.noise.spectra[i].effect,
+    };
     let removed = match slot {
         Slot::Mean(i) => {
             let course = hypothesis.courses.remove(i);
@@ -95,7 +99,12 @@ fn without(tried: &Tried, slot: Slot, spectra: &SpectralDataSet) -> Tried {
         }
     };
     let fit = fit(&mut hypothesis, &spectra.full);
-    Tried { hypothesis, fit, parameters: tried.parameters.saturating_sub(removed), odds: tried.odds }
+    Tried {
+        hypothesis,
+        fit,
+        parameters: tried.parameters.saturating_sub(removed),
+        odds: tried.odds_without(effect),
+    }
 }
 
 fn course_parameters(course: &CourseIn, spectra: &SpectralDataSet) -> usize {

@@ -45,14 +45,28 @@ pub struct Tried {
     pub fit: Fit,
     /// Parameters that it has beyond the claim.
     pub parameters: usize,
-    /// Logarithm of the odds of its effects against kinds with the same course.
-    pub odds: f64,
+    /// Logarithm of the odds of each of its effects, by kind: what speaks for it against others that explain as much.
+    pub odds: Vec<(&'static str, f64)>,
 }
 
 impl Tried {
     /// −2 ln L + parameters · ln rows.
     pub fn bic(&self, rows: usize) -> f64 {
         -2.0 * self.fit.log_likelihood + self.parameters as f64 * (rows as f64).ln()
+    }
+
+    /// The odds with those of one more effect.
+    pub fn odds_with(&self, effect: &dyn Effect, odds: f64) -> Vec<(&'static str, f64)> {
+        self.odds.iter().copied().chain([(effect.kind(), odds)]).collect()
+    }
+
+    /// The odds without those of one effect.
+    pub fn odds_without(&self, effect: &dyn Effect) -> Vec<(&'static str, f64)> {
+        let mut odds = self.odds.clone();
+        if let Some(at) = odds.iter().position(|(kind, _)| *kind == effect.kind()) {
+            odds.remove(at);
+        }
+        odds
     }
 
     /// Modes of what the hypothesis leaves of the full-rate data.
@@ -67,7 +81,7 @@ impl Tried {
 
     /// What hypotheses are ordered by: BIC, and between equals what else speaks for their kinds.
     pub fn rank(&self, rows: usize) -> f64 {
-        self.bic(rows) - 2.0 * self.odds
+        self.bic(rows) - 2.0 * self.odds.iter().map(|(_, odds)| odds).sum::<f64>()
     }
 }
 
@@ -119,6 +133,22 @@ pub(super) fn own_odds(effect: &dyn Effect) -> f64 {
     if effect.in_format() { 0.0 } else { -3.0 }
 }
 
+/// What BIC charges parameters more than they are worth, nats: a parameter is worth half the logarithm of the modes that tell of
+/// it, and not of all rows.
+pub(super) fn overcharged(parameters: usize, modes: f64, rows: usize) -> f64 {
+    /// Modes below which a parameter is no cheaper.
+    const FEWEST: f64 = 55.0;
+    parameters as f64 * 0.5 * (rows as f64 / modes.max(FEWEST)).ln().max(0.0)
+}
+
+/// How many modes tell of what each tells so much of: their number where all tell as much.
+pub(super) fn telling(informations: impl Iterator<Item = f64>) -> f64 {
+    let (sum, squares) = informations
+        .filter(|i| i.is_finite())
+        .fold((0.0, 0.0), |(sum, squares), i| (sum + i, squares + i * i));
+    if squares > 0.0 { sum * sum / squares } else { 0.0 }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -144,7 +174,21 @@ mod tests {
         let mut fit = fit(&mut hypothesis, &spectral);
         fit.log_likelihood = log_likelihood;
         assert!(matches!(&fit.mean, LeastSquares { coefficients, .. } if coefficients.is_empty()));
-        Tried { hypothesis, fit, parameters, odds }
+        Tried { hypothesis, fit, parameters, odds: vec![("line", odds)] }
+    }
+
+    #[test]
+    fn a_parameter_that_few_modes_tell_of_is_charged_for_those() {
+        // A hundred equal modes of 10 000 rows: ½ ln 100 less for each of three.
+        let of = |modes: f64| overcharged(3, modes, 10_000);
+        assert!((of(100.0) - 1.5 * 100f64.ln()).abs() < 1e-9, "{}", of(100.0));
+        assert_eq!(of(10_000.0), 0.0);
+        assert_eq!((of(1.0), of(0.0)), (of(55.0), of(55.0)));
+        let modes = |count: usize| telling((0..1000).map(|k| if k < count { 2.0 } else { 0.0 }));
+        assert_eq!((modes(100), modes(0)), (100.0, 0.0));
+        // One that tells ten times as much as ninety others: (10 + 90)²/(100 + 90).
+        let uneven = telling(std::iter::once(10.0).chain(std::iter::repeat_n(1.0, 90)));
+        assert!((uneven - 10_000.0 / 190.0).abs() < 1e-9, "{uneven}");
     }
 
     #[test]

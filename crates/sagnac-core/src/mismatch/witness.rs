@@ -56,7 +56,7 @@ fn free(claim: &Claim) -> Claim {
 fn fitted(noise: Noise, spectral: &SpectralData) -> Tried {
     let mut hypothesis = Hypothesis { noise, courses: vec![] };
     let fit = fit(&mut hypothesis, spectral);
-    Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
+    Tried { hypothesis, fit, parameters: 0, odds: vec![] }
 }
 
 /// The noise of a claim with every process of it free.

@@ -14,9 +14,9 @@ pub struct TempHysteresis;
 /// Distance of the branches.
 pub(super) const WIDTH: Param = Param::reported("loop_width_deg_h", "deg/h", -1e6, 1e6);
 /// Half of what the temperature turns by before the state turns.
-pub(super) const PLAY: Param = Param::inner("play_degC", "°C", 1e-6, 300.0);
+const PLAY: Param = Param::inner("play_degC", "°C", 1e-6, 300.0);
 /// 1: higher while heating; −1: higher while cooling. The width of a loop has no sign.
-pub(super) const SENSE: Param = Param::inner("sense", "", -1.0, 1.0);
+const SENSE: Param = Param::inner("sense", "", -1.0, 1.0);
 
 static PARAMS: [Param; 4] = [WIDTH, PLAY, Param::inner("first_state", "", -1.0, 1.0), SENSE];
 

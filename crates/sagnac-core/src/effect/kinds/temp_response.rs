@@ -31,7 +31,7 @@ describe! {
                 "temp_rate_delayed",
                 "thermal_lag",
                 "temp_hysteresis",
-                "temp_hysteresis_delayed",
+                "temp_hysteresis_loops",
                 "temp_linear",
             ]
         }

@@ -91,7 +91,7 @@ pub fn truth(kind: &str) -> (Drivers, Vec<f64>) {
         "temp_rate_delayed" => (drivers(), vec![0.02, 170.0]),
         "thermal_lag" => (drivers(), vec![130.0]),
         "temp_hysteresis" => (drivers(), vec![0.05, 2.0, 0.0, 1.0]),
-        "temp_hysteresis_delayed" => (drivers(), vec![0.05, 2.0, 1.0, 60.0]),
+        "temp_hysteresis_loops" => (drivers(), vec![0.06, 25.0, 15.0]),
         "warmup_exponential" => (drivers(), vec![0.2, 210.0]),
         "rate_ramp" => (drivers(), vec![0.1]),
         "diurnal" => (days(), vec![0.02, 86_400.0, 40.0]),
@@ -136,6 +136,7 @@ pub fn values(effect: &dyn Effect, numbers: &[f64], lists: Vec<(&'static str, Ve
 pub fn true_values(effect: &dyn Effect, numbers: &[f64]) -> Values {
     let lists = match effect.kind() {
         "temp_polynomial" => vec![("coefficients_deg_h", vec![0.01, 0.05, -0.03])],
+        "temp_hysteresis_loops" => vec![("coefficients_deg_h", vec![0.01, 0.02, 0.01, 0.01, 0.02])],
         "sf_unrecorded" => vec![("coefficients_ppm", vec![2.0, -3.0])],
         "column_law" => vec![
             ("centers", vec![1010.0, 25.0]),

@@ -14,7 +14,7 @@ use crate::numeric::cosine::dct2;
 use crate::numeric::special;
 
 /// Highest order of the curve.
-const ORDERS: usize = 6;
+const ORDERS: usize = 10;
 /// Time constants of the delays, s: from what a housing does in a minute to what a day does.
 const DELAYS_S: [f64; 8] = [60.0, 150.0, 375.0, 940.0, 2350.0, 5900.0, 14_700.0, 36_700.0];
 /// Widths of the play, in halves of the column's range.
@@ -22,7 +22,7 @@ const PLAYS: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
 /// Terms in all.
 pub(in crate::effect) const TERMS: usize = ORDERS + 1 + DELAYS_S.len() + PLAYS.len();
 /// Terms that a response has at most.
-const MAX_TERMS: usize = 6;
+const MAX_TERMS: usize = 8;
 /// Gain of log-likelihood that each term must bring: half the logarithm of some sixty modes that tell of a slow course, and
 /// what the best of several terms gains by chance.
 const PRICE: f64 = 4.0;
@@ -438,7 +438,7 @@ mod tests {
         let values = swing(500);
         let drivers = drivers(500);
         // First order, rate, the delay of 940 s, the second play.
-        let mask = 0b1_0000_0100_0100_0001;
+        let mask = 0b1_0000_0100_0100_0000_0001;
         let coefficients = [0.5, -0.2, 0.3, 1.5];
         let [center, half] = stated_range(&values);
         let mut stated: Values = stated_lists(mask, &coefficients)

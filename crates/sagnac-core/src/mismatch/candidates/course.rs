@@ -6,7 +6,9 @@ use crate::mismatch::noise_fit::Noise;
 use crate::mismatch::nonlinear_search::LocalSearch;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::CourseIn;
-use crate::mismatch::tried::{Candidate, Looked, SpectralDataSet, Tried, own_odds, rated};
+use crate::mismatch::tried::{
+    Candidate, Looked, SpectralDataSet, Tried, overcharged, own_odds, rated, telling,
+};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::least_squares::{Normal, subtract};
 use std::borrow::Cow;
@@ -146,6 +148,16 @@ fn with_course(
     hypothesis
 }
 
+/// How much each mode tells of a fitted course: its square over the variance of the mode.
+fn informations(course: &dyn MeanModel, inside: &CourseIn, ground: &Ground<'_>) -> Vec<f64> {
+    let parts = PartModes::of_shape(course, &inside.nonlinear_parameters, ground.spectral);
+    let mut modes = parts.offset.map_or_else(|| vec![0.0; ground.powers.len()], |fixed| fixed.to_vec());
+    for (column, c) in parts.columns.iter().zip(&inside.coefficients) {
+        subtract(&mut modes, column, -c);
+    }
+    modes.iter().zip(&ground.powers).map(|(z, p)| z * z / p).collect()
+}
+
 /// The best addition of a course, over its shapes.
 pub(super) fn try_course(
     effect: &'static dyn Effect,
@@ -201,11 +213,14 @@ pub(super) fn try_course(
         let parameters = || course.parameters(&inside.nonlinear_parameters, &inside.coefficients, drivers);
         inside.coefficients.len() != parts.columns.len() || plausible(effect, &parameters())
     });
+    let relief = hypothesis.courses.last().map_or(0.0, |inside| {
+        overcharged(added, telling(informations(course, inside, ground).into_iter()), spectra.rows)
+    });
     let tried = Tried {
         hypothesis,
         fit: fitted,
         parameters: before.parameters + added,
-        odds: before.odds + (course.odds(&shape, drivers) + own_odds(effect)),
+        odds: before.odds_with(effect, course.odds(&shape, drivers) + own_odds(effect) + relief),
     };
     let looked = Looked { numbers, trials: starts.trials };
     allowed.then(|| rated(effect, tried, before, looked, spectra.rows))

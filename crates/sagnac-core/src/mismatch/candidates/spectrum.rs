@@ -5,7 +5,7 @@ use crate::mismatch::hypothesis::fit;
 use crate::mismatch::noise_fit::{self, Noise, base_index};
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::SpectrumIn;
-use crate::mismatch::tried::{Candidate, Looked, SpectralDataSet, Tried, own_odds, rated};
+use crate::mismatch::tried::{Candidate, Looked, SpectralDataSet, Tried, overcharged, own_odds, rated};
 
 /// The best addition of a process, a filter or a coefficient set free.
 pub(super) fn try_spectrum(
@@ -109,8 +109,15 @@ fn finish_spectrum(
     let mut hypothesis = before.hypothesis.clone();
     hypothesis.noise = noise;
     let fit = fit(&mut hypothesis, &spectra.full);
-    let odds = before.odds + own_odds(effect);
-    let looked = Looked { numbers: parameters - before.parameters, trials };
+    let numbers = parameters - before.parameters;
+    // Each mode tells by its share of the power that is new.
+    let densities = fit.densities.iter().zip(&before.fit.densities);
+    let shares = densities
+        .zip(&spectra.full.bins)
+        .map(|((s, old), bin)| ((s - old) / s.max(*old)).powi(2) * spectra.full.weight(bin));
+    let relief = overcharged(numbers, shares.sum(), spectra.rows);
+    let odds = before.odds_with(effect, own_odds(effect) + relief);
+    let looked = Looked { numbers, trials };
     let candidate = rated(effect, Tried { hypothesis, fit, parameters, odds }, before, looked, spectra.rows);
     (candidate.gain > 0.5).then_some(candidate)
 }

@@ -47,7 +47,7 @@ fn white(spectra: &SpectralDataSet) -> Tried {
     };
     let mut hypothesis = Hypothesis { noise, courses: vec![] };
     let fit = fit(&mut hypothesis, &spectra.full);
-    Tried { hypothesis, fit, parameters: 0, odds: 0.0 }
+    Tried { hypothesis, fit, parameters: 0, odds: vec![] }
 }
 
 fn of_course(kind: &str, spectra: &SpectralDataSet) -> Result<Vec<NoticeableSize>, WhyNot> {
