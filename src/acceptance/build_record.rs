@@ -93,6 +93,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         unit_under_test: request.unit.clone(),
         session: session(request),
         attempt: None,
+        siblings: None,
         recording: vec![],
         verdict: Verdict::None,
         summary: vec![],

@@ -8,6 +8,7 @@
 //! | `figures` | plots as data |
 //! | `lot` | a lot from the records of its units |
 //! | `phases`, `explained` | several procedures as one test; a recording against the model of its family |
+//! | `datasheet`, `history`, `siblings` | what results of many units tell: of their population, over time, of one beside the others |
 //! | `compare`, `inspect` | results side by side; what a file holds and which tests it can support |
 
 pub mod analysis;
@@ -28,6 +29,7 @@ mod pipeline;
 pub mod power;
 mod reading;
 mod request;
+pub mod siblings;
 mod sinks;
 mod test_kind;
 mod verdict;

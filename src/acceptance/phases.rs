@@ -66,6 +66,7 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         unit_under_test: unit,
         session,
         attempt: None,
+        siblings: None,
         recording: phases.iter().flat_map(|p| p.recording.clone()).collect(),
         verdict: if errors.is_empty() { worst } else { Verdict::Error },
         summary,

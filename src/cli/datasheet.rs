@@ -149,7 +149,10 @@ fn result_file(path: &Path) -> PathBuf {
 }
 
 /// The unit of a result.
-fn tested(file: &Path) -> Result<TestedUnit, Note> {
+///
+/// # Errors
+/// A file that cannot be read, is no result, or names no unit.
+pub(super) fn tested(file: &Path) -> Result<TestedUnit, Note> {
     let bytes = read::bytes(file).map_err(|e| e.note(file))?;
     let input: SheetInput = read::of_format(&bytes, RESULT_FORMAT).map_err(|e| e.note(file))?;
     let path = file.display().to_string();

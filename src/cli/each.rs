@@ -278,7 +278,7 @@ impl Work<'_> {
     fn unit(&self, i: usize) -> Option<Result<(LotUnit, Option<Problems>), String>> {
         let (member, inputs) = (self.members.get(i)?, self.inputs.get(i)?);
         let (mut results, problems) = self.test.run(member, &mut Progress::silent(self.lang));
-        if let Err(why) = self.keeper.number(&mut results.outcome.record) {
+        if let Err(why) = self.keeper.place_among_others(&mut results.outcome.record) {
             return Some(Err(why));
         }
         let unit = lot::unit(member, &results.outcome.record);

@@ -90,7 +90,7 @@ pub fn settle(
         Some(note) => {
             let lang = printer.lang;
             let mut results = evaluated.results;
-            keeper.number(&mut results.outcome.record)?;
+            keeper.place_among_others(&mut results.outcome.record)?;
             let results = Results::Run(Box::new(results));
             let place = write(&results, folder, EXPORTERS, renderer, lang)?;
             let report = Note::new("cli.report_says_so").with("place", place.display().to_string());
@@ -153,7 +153,7 @@ pub fn finish(
     let code = exit::code(results.outcome.record.verdict);
     let lang = printer.lang;
     progress.stage("progress.writing");
-    keeper.number(&mut results.outcome.record)?;
+    keeper.place_among_others(&mut results.outcome.record)?;
     let view = view(&results, lang);
     let place = write(&Results::Run(Box::new(results)), folder, EXPORTERS, renderer, lang)?;
     drop(progress);

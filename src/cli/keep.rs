@@ -1,11 +1,17 @@
 //! The store that a run is kept in.
 
+use super::datasheet::tested;
 use super::place;
 use super::printer::Printer;
+use crate::acceptance::datasheet::{TestedUnit, select};
+use crate::acceptance::siblings::{MOST_SIBLINGS, siblings};
 use crate::config::user;
+use crate::estimate::Verdict;
 use crate::i18n::{Lang, Localize, Note};
-use crate::record::RunRecord;
-use crate::store::{Store, StoreError, attempt_of};
+use crate::ingest::serial;
+use crate::output::Kind;
+use crate::record::{RunRecord, SheetInput, SiblingsRecord};
+use crate::store::{Filter, Store, StoreError, attempt_of};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -81,15 +87,46 @@ impl Keeper {
         place::error(&error.note(), self.lang)
     }
 
-    /// Writes into a record which attempt at the test it is.
+    /// Writes into a record which attempt at the test it is, and how unlike the other units of its lot the unit is.
     ///
     /// # Errors
     /// The diagnostic, in words.
-    pub fn number(&self, record: &mut RunRecord) -> Result<(), String> {
+    pub fn place_among_others(&self, record: &mut RunRecord) -> Result<(), String> {
         if let Some(store) = self.open()? {
             record.attempt = attempt_of(&store, record).map_err(|e| self.say(&e))?;
+            record.siblings = self.siblings(&store, record)?;
         }
         Ok(())
+    }
+
+    /// The unit of a record beside the other units of its lot that were tested by the same procedure.
+    fn siblings(&self, store: &Store, record: &RunRecord) -> Result<Option<SiblingsRecord>, String> {
+        let own = serde_json::to_value(record).and_then(serde_json::from_value::<SheetInput>);
+        let Some(own) = own.ok().filter(|own| own.verdict != Verdict::Error) else { return Ok(None) };
+        let unit = &own.unit_under_test;
+        let (Some(model), Some(lot), Some(procedure)) =
+            (unit.model.as_ref().or(unit.family.as_ref()), &unit.lot, &own.procedure)
+        else {
+            return Ok(None);
+        };
+        let filter = Filter {
+            model: Some(model.clone()),
+            lots: vec![lot.clone()],
+            procedure: Some(procedure.id.clone()),
+            ..Filter::default()
+        };
+        let found = store.addresses(&filter).map_err(|e| self.say(&e))?;
+        let file = |address: &String| store.layout().result(address).join(Kind::Result.record_file());
+        // The latest ones, retests of a unit among them: those that cannot be read are named by `store verify`.
+        let results = found.addresses.iter().rev().take(2 * MOST_SIBLINGS).rev();
+        let results = results.filter_map(|a| tested(&file(a)).ok()).collect();
+        let Ok(selected) = select(results) else { return Ok(None) };
+        let key = serial::plain(unit.serial.as_deref().unwrap_or_default());
+        let mut others: Vec<TestedUnit> = selected.units;
+        others.retain(|u| serial::plain(&u.serial) != key);
+        let surplus = others.len().saturating_sub(MOST_SIBLINGS);
+        others.drain(..surplus);
+        Ok(siblings(&own, model, lot, &others))
     }
 
     /// Keeps a result folder that is in its place, and says where.

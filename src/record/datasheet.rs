@@ -58,7 +58,7 @@ pub struct SheetProcedure {
 /// A condition with what the results tell of it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SheetCondition {
-    /// Id: `duration_s`, `warm_up_s`.
+    /// Id: `duration_s`, `warm_up_s`, `temperature_degC`, `sample_rate_hz`. Its unit stands in it.
     pub id: String,
     /// Smallest of all units.
     pub from: f64,
@@ -104,6 +104,9 @@ pub struct SheetQuantity {
     pub lots: usize,
     /// Units of which the quantity is only bounded.
     pub bounded: usize,
+    /// How it was read in every result, as in their `method`; absent where results differ or do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub reading: Option<String>,
     /// Scale of the spread.
     pub scale: SheetScale,
     /// Median of the true values; absent where it cannot be told.
@@ -356,6 +359,31 @@ pub struct SheetInput {
     /// Points of the Allan family.
     #[serde(default)]
     pub deviations: Vec<DeviationRecord>,
+    /// Conditions of the test.
+    #[serde(default)]
+    pub conditions: Vec<InputCondition>,
+    /// The files that were read.
+    #[serde(default)]
+    pub recording: Vec<InputRecording>,
+}
+
+/// A condition of a result.
+#[derive(Debug, Clone, Deserialize)]
+pub struct InputCondition {
+    /// Id.
+    #[serde(default)]
+    pub id: String,
+    /// What was found, by name.
+    #[serde(default)]
+    pub observed: serde_json::Map<String, serde_json::Value>,
+}
+
+/// A file of a result.
+#[derive(Debug, Clone, Deserialize)]
+pub struct InputRecording {
+    /// Sample interval, s.
+    #[serde(default)]
+    pub sample_interval_s: Option<f64>,
 }
 
 /// The unit of a result.
@@ -412,6 +440,9 @@ pub struct InputMeasurand {
     /// Where the likelihood is largest where it is only bounded.
     #[serde(default)]
     pub most_likely: Option<f64>,
+    /// How it was obtained.
+    #[serde(default)]
+    pub method: Option<String>,
     /// The limit that it was judged by.
     #[serde(default)]
     pub limit: Option<InputLimit>,

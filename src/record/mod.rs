@@ -23,6 +23,7 @@ mod null_numbers;
 mod origin;
 mod phase;
 pub mod read;
+mod siblings;
 mod table_step;
 
 pub use attempt::{AttemptRecord, EarlierAttempt};
@@ -53,6 +54,7 @@ pub use lot::{LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, SerialSourc
 pub use message::Message;
 pub use origin::{ColumnRecord, LimitsFile, ProcedureRecord, Program, RecordingFile, Session, UnitUnderTest};
 pub use phase::PhaseRecord;
+pub use siblings::{SiblingQuantity, SiblingsRecord};
 pub use table_step::TableStepRecord;
 
 use crate::estimate::{Interval, Judgement, LowerLimit, Rule, UpperLimit, Verdict};
@@ -94,6 +96,9 @@ pub struct RunRecord {
     /// Which test of the unit this is, where a store knows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub attempt: Option<AttemptRecord>,
+    /// The unit beside the others of its lot, where a store has enough of them.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub siblings: Option<SiblingsRecord>,
     /// The files that were read.
     pub recording: Vec<RecordingFile>,
     /// Worst verdict of all rows and conditions.

@@ -23,6 +23,7 @@ pub mod pages;
 pub mod planned;
 pub mod rate_table;
 pub mod results;
+pub mod sibling_alarms;
 pub mod single_samples;
 pub mod study;
 pub mod thermal;
@@ -70,4 +71,5 @@ pub static STUDIES: &[&Study] = &[
     &noticeable::STUDY,
     &joint::STUDY,
     &lot_bounds::STUDY,
+    &sibling_alarms::STUDY,
 ];

@@ -172,3 +172,58 @@ fn a_correction_supersedes_and_both_stay() {
     let next = run(dir.path(), "pass", &limits(), "c", &["--store", "store"]);
     assert!(next.out.contains("1: superseded; 2: pass"), "{}", next.out);
 }
+
+/// A unit of the lot whose coefficient of random walk is `factor` of one that was measured, more or less by its number.
+fn a_sibling(number: usize, measured: &Value, factor: f64) -> Value {
+    let mut result = a_result(&format!("SN-2{number:03}"), "L7", "2026-03-01T10:00:00Z", 0.5);
+    let scatter = (0.05 * ((number * 7) % 11) as f64 - 0.25).exp();
+    let value = measured.as_f64().unwrap() * factor * scatter;
+    let id = "angle_random_walk";
+    let more = serde_json::json!({"id": id, "channel": "rate", "unit": "deg/sqrt(h)", "value": value,
+        "interval": {"low": 0.9 * value, "high": 1.1 * value, "coverage": 0.95}, "verdict": "none"});
+    result["measurands"].as_array_mut().unwrap().push(more);
+    result
+}
+
+#[test]
+fn a_unit_that_passes_and_is_unlike_its_lot_is_named() {
+    let dir = with_store();
+    std::fs::copy(sample("pass"), dir.path().join("unit.csv")).unwrap();
+    std::fs::write(dir.path().join("units.csv"), "serial,model,lot\nSN-1,A-1,L7\n").unwrap();
+    let tested = |out: &str, store: &str| {
+        let (procedure, limits) = (procedure(), limits());
+        let args = ["run", &procedure, "unit.csv", "--limits", &limits, "--serial", "SN-1"];
+        let more = ["--unit-data", "units.csv", "--store", store, "--out", out];
+        let said = sagnac(dir.path(), &[&args[..], &more[..]].concat());
+        assert_eq!(said.code, 0, "{said:?}");
+        (said, result(&dir.path().join(out)))
+    };
+    let (alone, record) = tested("alone", "store");
+    assert!(record.get("siblings").is_none(), "{}", record["siblings"]);
+    assert!(!alone.out.contains("Unlike"), "{}", alone.out);
+    let measured = record["measurands"].as_array().unwrap().iter();
+    let measured = measured.clone().find(|m| m["id"] == "angle_random_walk").unwrap()["value"].clone();
+    for (store_name, factor) in [("like", 1.0), ("unlike", 0.2)] {
+        store(dir.path(), &["init", store_name]);
+        for i in 0..20 {
+            write_result(dir.path(), &format!("{store_name}-{i}"), &a_sibling(i, &measured, factor));
+        }
+        let folders: Vec<String> = (0..20).map(|i| format!("{store_name}-{i}")).collect();
+        let mut args = vec!["import", store_name];
+        args.extend(folders.iter().map(String::as_str));
+        store(dir.path(), &args);
+    }
+    let (like, record) = tested("as-they", "like");
+    assert_eq!((&record["siblings"]["units"], &record["siblings"]["unlike"]), (&20.into(), &false.into()));
+    assert!(!like.out.contains("Unlike"), "{}", like.out);
+    let (other, record) = tested("other", "unlike");
+    assert_eq!(record["siblings"]["unlike"], true, "{}", record["siblings"]);
+    assert_eq!(record["siblings"]["quantities"][0]["id"], "angle_random_walk");
+    assert_eq!(record["verdict"], "pass");
+    for part in ["Unlike the other units of lot L7", "standard deviations of the others"] {
+        assert!(other.out.split_whitespace().collect::<Vec<_>>().join(" ").contains(part), "{}", other.out);
+        for page in ["other/report.html", "other/report.md"] {
+            assert!(std::fs::read_to_string(dir.path().join(page)).unwrap().contains(part), "{page}: {part}");
+        }
+    }
+}

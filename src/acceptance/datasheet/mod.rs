@@ -60,25 +60,37 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
     }
 }
 
-/// What the results tell of the conditions: how much was evaluated, and what of the start was left out.
+/// What the results tell of the conditions: temperature, how much was evaluated, what of the start was left out, sample rate.
 fn conditions(units: &[TestedUnit]) -> Vec<SheetCondition> {
-    let windows = || units.iter().filter_map(|u| u.input.window.as_ref());
-    let of = |id: &str, values: Vec<f64>| {
-        let (from, to) =
-            values.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), v| (a.min(*v), b.max(*v)));
+    let windows = || units.iter().filter_map(|u| u.input.window.as_ref()).map(|w| vec![w]);
+    // The values of each unit that tells any.
+    let of = |id: &str, values: Vec<Vec<f64>>| {
+        let told = values.iter().filter(|v| !v.is_empty()).count();
+        let all = || values.iter().flatten().copied();
+        let (from, to) = (all().fold(f64::INFINITY, f64::min), all().fold(f64::NEG_INFINITY, f64::max));
         (from.is_finite() && to.is_finite()).then(|| SheetCondition {
             id: id.to_owned(),
             from,
             to,
-            units: values.len(),
+            units: told,
         })
+    };
+    let temperatures = |u: &TestedUnit| -> Vec<f64> {
+        let met = u.input.conditions.iter().filter(|c| c.id == "temperature");
+        met.flat_map(|c| ["min", "max"].map(|end| c.observed.get(end)?.as_f64())).flatten().collect()
+    };
+    let rates = |u: &TestedUnit| -> Vec<f64> {
+        let intervals = u.input.recording.iter().filter_map(|r| r.sample_interval_s);
+        intervals.filter(|i| *i > 0.0).map(|i| 1.0 / i).collect()
     };
     let warm_up = |w: &crate::recording::window::Window| {
         w.excluded.iter().filter(|e| e.reason == "warm_up").map(|e| e.to_s - e.from_s).sum::<f64>()
     };
     [
-        of("duration_s", windows().map(|w| w.usable_s).collect()),
-        of("warm_up_s", windows().map(warm_up).collect()),
+        of("temperature_degC", units.iter().map(temperatures).collect()),
+        of("duration_s", windows().map(|w| w.iter().map(|w| w.usable_s).collect()).collect()),
+        of("warm_up_s", windows().map(|w| w.into_iter().map(warm_up).collect()).collect()),
+        of("sample_rate_hz", units.iter().map(rates).collect()),
     ]
     .into_iter()
     .flatten()

@@ -136,6 +136,7 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
         units: rows.len(),
         lots: count,
         bounded,
+        reading: reading(&rows),
         scale,
         typical: population.as_ref().map(|p| {
             let Central { value, low, high } = p.typical(COVERAGE);
@@ -157,6 +158,12 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
         values: rows.iter().map(value).collect(),
         notes: notes.into_iter().map(Message::from).collect(),
     })
+}
+
+/// How the quantity was read, where all results say the same.
+fn reading(rows: &[Row<'_>]) -> Option<String> {
+    let first = rows.first()?.told.method.as_ref()?;
+    rows.iter().all(|r| r.told.method.as_ref() == Some(first)).then(|| first.clone())
 }
 
 /// The scale on which the units scatter: the logarithm of what is never negative.

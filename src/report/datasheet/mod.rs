@@ -155,7 +155,12 @@ fn identity(sheet: &DataSheet, words: Translator, generator: &str) -> Vec<Field>
 }
 
 fn condition(c: &SheetCondition, words: Translator) -> Field {
-    let (from, to) = (duration(c.from, words.lang), duration(c.to, words.lang));
+    let printed = |v: f64| match c.id.as_str() {
+        "temperature_degC" => words.quantity(&limit_digits(v, 4, words.lang), "degC"),
+        "sample_rate_hz" => words.quantity(&limit_digits(v, 4, words.lang), "Hz"),
+        _ => duration(v, words.lang),
+    };
+    let (from, to) = (printed(c.from), printed(c.to));
     let span = if from == to { from } else { words.with("datasheet.span", &[("from", &from), ("to", &to)]) };
     Field { label: words.name("datasheet.condition", &c.id), value: span }
 }

@@ -36,6 +36,8 @@ pub struct QuantityView {
     pub bounds: Vec<BoundView>,
     /// How all bounds were obtained, in words; empty where they were obtained in several ways.
     pub method: String,
+    /// How the quantity was read, in words; empty where results differ or do not say.
+    pub reading: String,
     /// Largest value.
     pub largest: String,
     /// Serial number of the unit that has it.
@@ -106,6 +108,7 @@ impl QuantityView {
                 }
                 _ => String::new(),
             },
+            reading: q.reading.as_ref().map_or_else(String::new, |how| words.name("how", how)),
             largest: q.largest.as_ref().map_or_else(String::new, |l| show(l.value)),
             largest_of: q.largest.as_ref().map_or_else(String::new, |l| l.serial.clone()),
             limit: limit_text(q, words),

@@ -29,7 +29,8 @@ pub struct View {
     pub summary: Vec<String>,
     /// Errors, first of all when there are any.
     pub errors: Vec<String>,
-    /// Which attempt at the test this is, and what came of those before; empty for the first.
+    /// Which attempt at the test this is and what came of those before, and that the unit is unlike the others of its lot; empty
+    /// for a first attempt of a unit that is not.
     pub attempt: Vec<String>,
     /// Unit, procedure, session.
     pub identity: Vec<Field>,
@@ -171,9 +172,11 @@ impl View {
     }
 }
 
-/// What must be known of earlier attempts.
+/// What must be known of earlier attempts, and of the unit beside the others of its lot.
 fn attempt(record: &RunRecord, words: Translator) -> Vec<String> {
-    record.attempt.iter().flat_map(|a| &a.summary).map(|m| words.say(m)).collect()
+    let earlier = record.attempt.iter().flat_map(|a| &a.summary);
+    let others = record.siblings.iter().flat_map(|s| &s.summary);
+    earlier.chain(others).map(|m| words.say(m)).collect()
 }
 
 /// Files of a recording that are named on the first page.

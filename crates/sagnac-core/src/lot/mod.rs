@@ -11,6 +11,7 @@
 //! | [`capability`] | Cp and Cpk with lower bounds |
 //! | [`share`] | a counted share with its interval |
 //! | [`station`] | groups of values against each other |
+//! | [`siblings`] | whether a unit is unlike the others in several quantities together |
 //! | [`drift`] | drift of one unit over tests that share a part of their uncertainty |
 //! | [`population`] | median, spreads and bounds from values of known uncertainty in sub-lots, some only bounded |
 //!
@@ -28,5 +29,6 @@ mod restricted;
 pub mod risk;
 mod sampler;
 pub mod share;
+pub mod siblings;
 pub mod station;
 pub mod tolerance;
