@@ -46,86 +46,87 @@ pub fn unlike(unit: &[f64], siblings: &[Vec<f64>]) -> Option<Unlike> {
     if p == 0 || n < LEAST_SIBLINGS.max(SIBLINGS_A_QUANTITY * p) || siblings.iter().any(|s| s.len() != p) {
         return None;
     }
-    let core = Core::of(siblings)?;
-    let distance2 = core.distance2(unit);
-    if !distance2.is_finite() {
-        return None;
-    }
-    let deviations = (0..p).map(|j| (unit[j] - core.mean[j]) / core.covariance[(j, j)].sqrt()).collect();
+    let core = Core::of(&columns(siblings))?;
+    let distance2 = core.distance2(unit).filter(|d| d.is_finite())?;
+    let deviations = (0..p).map(|j| (unit[j] - core.mean[j]) / core.deviations[j]).collect();
     Some(Unlike { distance2, p_value: chance(distance2, n, p), deviations })
 }
 
 /// Whether units differ in each of their quantities by more than follows from the others.
 pub fn are_independent(units: &[Vec<f64>]) -> bool {
-    units.first().is_some_and(|u| units.iter().all(|v| v.len() == u.len())) && Core::of(units).is_some()
+    units.first().is_some_and(|u| units.iter().all(|v| v.len() == u.len()))
+        && Core::of(&columns(units)).is_some()
 }
 
 /// The siblings that lie closest together.
 struct Core {
     mean: DVector<f64>,
-    covariance: DMatrix<f64>,
-    inverse: DMatrix<f64>,
+    /// Standard deviation of each quantity.
+    deviations: DVector<f64>,
+    /// Lower triangular root of the covariance.
+    root: DMatrix<f64>,
 }
 
 impl Core {
-    /// Mean and covariance of all, then of those that are nearest to them, until the same are nearest.
-    fn of(siblings: &[Vec<f64>]) -> Option<Core> {
-        let kept = ((CORE * siblings.len() as f64).ceil() as usize).min(siblings.len());
-        let mut chosen: Vec<usize> = (0..siblings.len()).collect();
+    /// Mean and covariance of all, then of those that are nearest to them, until the same are nearest. One sibling a column.
+    fn of(siblings: &DMatrix<f64>) -> Option<Core> {
+        let count = siblings.ncols();
+        let kept = ((CORE * count as f64).ceil() as usize).min(count);
+        let mut chosen: Vec<usize> = (0..count).collect();
         for _ in 0..STEPS {
-            let core = Core::over(siblings, &chosen)?;
-            let mut order: Vec<(f64, usize)> =
-                siblings.iter().enumerate().map(|(i, s)| (core.distance2(s), i)).collect();
-            order.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let mut nearest: Vec<usize> = order.into_iter().take(kept).map(|(_, i)| i).collect();
-            nearest.sort_unstable();
-            if nearest == chosen {
+            let distances2 = Core::over(siblings, &chosen)?.distances2(siblings.clone())?;
+            let mut order: Vec<usize> = (0..count).collect();
+            order.sort_by(|a, b| distances2[*a].total_cmp(&distances2[*b]));
+            order.truncate(kept);
+            order.sort_unstable();
+            if order == chosen {
                 break;
             }
-            chosen = nearest;
+            chosen = order;
         }
         Core::over(siblings, &chosen)
     }
 
-    fn over(siblings: &[Vec<f64>], chosen: &[usize]) -> Option<Core> {
-        let (n, p) = (chosen.len() as f64, siblings.first()?.len());
-        let mut mean = DVector::zeros(p);
-        for i in chosen {
-            mean += DVector::from_column_slice(&siblings[*i]);
-        }
-        mean /= n;
-        let mut covariance = DMatrix::zeros(p, p);
-        for i in chosen {
-            let d = DVector::from_column_slice(&siblings[*i]) - &mean;
-            covariance.ger(1.0 / (n - 1.0), &d, &d, 1.0);
-        }
-        // What each quantity has of its own beside those before it, as a share of its variance.
-        let roots = DVector::from_fn(p, |j, _| covariance[(j, j)].sqrt());
-        let correlation =
-            DMatrix::from_fn(p, p, |i, j| covariance[(i, j)] / (roots[i] * roots[j]).max(f64::MIN_POSITIVE));
-        let own = correlation.cholesky()?;
-        if own.l_dirty().diagonal().iter().any(|l| l * l < OWN) {
-            return None;
-        }
-        let inverse = covariance.clone().cholesky()?.inverse();
-        Some(Core { mean, covariance, inverse })
+    fn over(siblings: &DMatrix<f64>, chosen: &[usize]) -> Option<Core> {
+        let mut values = siblings.select_columns(chosen);
+        let mean = values.column_mean();
+        values.column_iter_mut().for_each(|mut column| column -= &mean);
+        let covariance = &values * values.transpose() / (chosen.len() as f64 - 1.0);
+        let deviations = covariance.diagonal().map(f64::sqrt);
+        let root = covariance.cholesky()?.unpack();
+        // What each quantity has of its own beside those before it.
+        let own = root.diagonal().zip_map(&deviations, |own, all| (own / all).powi(2));
+        own.iter().all(|share| *share >= OWN).then_some(Core { mean, deviations, root })
     }
 
-    fn distance2(&self, values: &[f64]) -> f64 {
-        let d = DVector::from_column_slice(values) - &self.mean;
-        d.dot(&(&self.inverse * &d))
+    /// Squares of the distances of some units, one a column.
+    fn distances2(&self, mut units: DMatrix<f64>) -> Option<Vec<f64>> {
+        units.column_iter_mut().for_each(|mut column| column -= &self.mean);
+        self.root.solve_lower_triangular_mut(&mut units).then_some(())?;
+        Some(units.column_iter().map(|column| column.norm_squared()).collect())
     }
+
+    fn distance2(&self, unit: &[f64]) -> Option<f64> {
+        self.distances2(DMatrix::from_column_slice(unit.len(), 1, unit))?.pop()
+    }
+}
+
+/// One sibling a column.
+fn columns(siblings: &[Vec<f64>]) -> DMatrix<f64> {
+    let quantities = siblings.first().map_or(0, Vec::len);
+    DMatrix::from_fn(quantities, siblings.len(), |j, i| siblings[i][j])
 }
 
 /// Probability of such a distance for a unit and `n` siblings of one normal population in `p` quantities.
 fn chance(distance2: f64, n: usize, p: usize) -> f64 {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
-    let mut one = || -> Vec<f64> { (0..p).map(|_| StandardNormal.sample(&mut rng)).collect() };
     let mut as_far = 0;
     for drawn in 1..=DRAWS {
-        let siblings: Vec<Vec<f64>> = (0..n).map(|_| one()).collect();
-        let unit = one();
-        if Core::of(&siblings).is_some_and(|core| core.distance2(&unit) >= distance2) {
+        let mut normal = |_, _| -> f64 { StandardNormal.sample(&mut rng) };
+        let siblings = DMatrix::from_fn(p, n, &mut normal);
+        let unit: Vec<f64> = (0..p).map(|j| normal(j, 0)).collect();
+        let found = Core::of(&siblings).and_then(|core| core.distance2(&unit));
+        if found.is_some_and(|d| d >= distance2) {
             as_far += 1;
         }
         if as_far == ENOUGH {

@@ -285,7 +285,12 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
     let mut effect = chosen.effect;
     if let Some(law) = &chosen.law {
         effect = law.effect;
-        (estimated.reported, places) = by_law(law, chosen, estimated.reported, problem);
+        let whole = best.fit.log_likelihood - chosen.without.fit.log_likelihood;
+        let of_whole = estimated.reported.remove("rms_deg_h").filter(|_| law.gain >= MAINLY * whole);
+        (estimated.reported, places) = by_law(law, chosen, problem);
+        // What one of several laws adds by itself is not told by the response, which is all of them.
+        estimated.reported.remove("rms_deg_h");
+        estimated.reported.extend(of_whole.map(|rms| ("rms_deg_h".to_owned(), rms)));
     }
     Named {
         effect,
@@ -302,20 +307,21 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
     }
 }
 
+/// Part of what a response gains that one law must gain alone for the response to be that law.
+const MAINLY: f64 = 0.85;
+
 /// Parameters and places of a response as its leading law has them. The rest of the response is no noise that the claim knows,
 /// so flicker and random walk are free to stand for it while the intervals are found.
 fn by_law(
     law: &Fitted,
     chosen: &Chosen,
-    response: BTreeMap<String, ParameterValue>,
     problem: &Problem,
 ) -> (BTreeMap<String, ParameterValue>, Vec<Place>) {
     let mut free = law.tried.clone();
     free.hypothesis.noise.freed = [free.hypothesis.noise.freed[0], true, true];
     let free = problem.refitted(&free);
     let slot = Slot::Mean(free.hypothesis.courses.len().saturating_sub(1));
-    let mut reported = estimates::of(law.effect, slot, &free, &problem.spectra).reported;
-    reported.extend(response.into_iter().filter(|(name, _)| name == "rms_deg_h"));
+    let reported = estimates::of(law.effect, slot, &free, &problem.spectra).reported;
     (reported, places(law.effect, slot, &free, chosen, problem))
 }
 
