@@ -13,14 +13,12 @@ use crate::i18n::{Lang, Note};
 use crate::ingest::each_of;
 use crate::lot::tolerance::Promise;
 use crate::output::Kind;
-use crate::record::{RESULT_FORMAT, SheetInput, read};
 use crate::report::datasheet::SheetView;
 use crate::report::export::EXPORTERS;
 use crate::report::{Results, terminal};
 use crate::store::Filter;
 use chrono::{SecondsFormat, Utc};
 use clap::Args;
-use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -74,7 +72,7 @@ pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
     let (files, mut broken) = args.files(lang)?;
     let mut read_units = vec![];
     for file in &files {
-        match tested(file) {
+        match TestedUnit::read(file) {
             Ok(unit) => read_units.push(unit),
             Err(note) => {
                 place::eprint_diagnostic(&place::warning(&note, lang));
@@ -146,20 +144,4 @@ impl DatasheetArgs {
 /// The result that a path stands for.
 fn result_file(path: &Path) -> PathBuf {
     if path.is_dir() { path.join(Kind::Result.record_file()) } else { path.to_owned() }
-}
-
-/// The unit of a result.
-///
-/// # Errors
-/// A file that cannot be read, is no result, or names no unit.
-pub(super) fn tested(file: &Path) -> Result<TestedUnit, Note> {
-    let bytes = read::bytes(file).map_err(|e| e.note(file))?;
-    let input: SheetInput = read::of_format(&bytes, RESULT_FORMAT).map_err(|e| e.note(file))?;
-    let path = file.display().to_string();
-    let serial = input.unit_under_test.serial.as_deref().map(str::trim).unwrap_or_default().to_owned();
-    if serial.is_empty() {
-        return Err(Note::new("datasheet.refused.no_serial").with("path", path));
-    }
-    let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
-    Ok(TestedUnit { serial, path, sha256, input })
 }

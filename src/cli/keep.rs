@@ -1,6 +1,5 @@
 //! The store that a run is kept in.
 
-use super::datasheet::tested;
 use super::place;
 use super::printer::Printer;
 use crate::acceptance::datasheet::{TestedUnit, select};
@@ -119,7 +118,7 @@ impl Keeper {
         let file = |address: &String| store.layout().result(address).join(Kind::Result.record_file());
         // The latest ones, retests of a unit among them: those that cannot be read are named by `store verify`.
         let results = found.addresses.iter().rev().take(2 * MOST_SIBLINGS).rev();
-        let results = results.filter_map(|a| tested(&file(a)).ok()).collect();
+        let results = results.filter_map(|a| TestedUnit::read(&file(a)).ok()).collect();
         let Ok(selected) = select(results) else { return Ok(None) };
         let key = serial::plain(unit.serial.as_deref().unwrap_or_default());
         let mut others: Vec<TestedUnit> = selected.units;

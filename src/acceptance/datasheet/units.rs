@@ -2,8 +2,10 @@
 
 use crate::estimate::Verdict;
 use crate::i18n::{Arg, Note};
-use crate::record::{SheetInput, SheetProcedure};
+use crate::record::{RESULT_FORMAT, SheetInput, SheetProcedure, read};
+use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
+use std::path::Path;
 
 /// Serial numbers that a note names.
 const NAMED: usize = 5;
@@ -22,6 +24,22 @@ pub struct TestedUnit {
 }
 
 impl TestedUnit {
+    /// The unit of a result file.
+    ///
+    /// # Errors
+    /// A file that cannot be read, is no result, or names no unit.
+    pub fn read(file: &Path) -> Result<TestedUnit, Note> {
+        let bytes = read::bytes(file).map_err(|e| e.note(file))?;
+        let input: SheetInput = read::of_format(&bytes, RESULT_FORMAT).map_err(|e| e.note(file))?;
+        let path = file.display().to_string();
+        let serial = input.unit_under_test.serial.as_deref().map(str::trim).unwrap_or_default().to_owned();
+        if serial.is_empty() {
+            return Err(Note::new("datasheet.refused.no_serial").with("path", path));
+        }
+        let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
+        Ok(TestedUnit { serial, path, sha256, input })
+    }
+
     /// Name of the lot; empty where none is named.
     pub fn lot_name(&self) -> &str {
         self.input.unit_under_test.lot.as_deref().unwrap_or_default()
