@@ -84,5 +84,5 @@ fn a_disturbance_that_a_recorded_ramp_folds_is_one_comb_with_its_column() {
     );
     let fundamental = first["parameters"]["fundamental_hz"]["value"].as_f64().unwrap();
     assert!((fundamental - 1.0 / 40.0).abs() < 0.001, "{first}");
-    assert!(first["probabilities"]["comb"].as_f64().unwrap() > 0.9, "{first}");
+    assert!(first["probabilities"]["comb"].as_f64().unwrap() > 0.5, "{first}");
 }

@@ -20,6 +20,8 @@ pub const LEAST_SIBLINGS: usize = 8;
 const CORE: f64 = 0.75;
 /// Share of the variance of a quantity that the others leave open, at least: below, it follows from them.
 const OWN: f64 = 1e-3;
+/// Standard deviation over the mean up to which values are the same.
+const ROUNDING: f64 = 1e-12;
 /// Concentration steps at most.
 const STEPS: usize = 20;
 /// Draws that are as far at which drawing ends, and draws at most.
@@ -93,6 +95,10 @@ impl Core {
         values.column_iter_mut().for_each(|mut column| column -= &mean);
         let covariance = &values * values.transpose() / (chosen.len() as f64 - 1.0);
         let deviations = covariance.diagonal().map(f64::sqrt);
+        // What is the same in all differs by its rounding.
+        if deviations.iter().zip(mean.iter()).any(|(deviation, mean)| *deviation <= ROUNDING * mean.abs()) {
+            return None;
+        }
         let root = covariance.cholesky()?.unpack();
         // What each quantity has of its own beside those before it.
         let own = root.diagonal().zip_map(&deviations, |own, all| (own / all).powi(2));

@@ -278,7 +278,7 @@ pub(super) fn telegraph(background: &Background<'_>, rival_gain: &dyn Fn() -> f6
         }
         m /= 4;
     }
-    let best = best.filter(|b| b.gain > 0.0 && (pulses(&b.path).is_some() || ground.is_level(b)))?;
+    let best = best.filter(|b| b.gain > 0.0 && ground.is_level(b))?;
     let rival_gain = rival_gain();
     // A likelihood ratio against one fixed law exceeds e^g with a probability below e^−g; each of the three numbers is
     // fitted, ½ ln M nats.
@@ -348,7 +348,7 @@ impl Ground<'_> {
     }
 }
 
-/// The visits to a level that is left much sooner than the other: pulses, which need not be of one height.
+/// The visits to a level that is left much sooner than the other: pulses.
 fn pulses(path: &[bool]) -> Option<Visits> {
     visits(path).filter(|v| v.p_value < UNEVEN)
 }
