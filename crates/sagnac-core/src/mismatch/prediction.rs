@@ -44,10 +44,10 @@ pub(super) fn weigh(
     let of_process = halves.judge(&leader.tried).log_likelihood;
     for i in courses {
         let more = halves.judge(&found[i].tried).log_likelihood - of_process;
-        if more >= LEAST {
-            if let Some((_, odds)) = found[i].tried.odds.last_mut() {
-                *odds += more;
-            }
+        if more >= LEAST
+            && let Some((_, odds)) = found[i].tried.odds.last_mut()
+        {
+            *odds += more;
         }
     }
     found.sort_by(|a, b| a.tried.rank(rows).total_cmp(&b.tried.rank(rows)));
