@@ -26,7 +26,7 @@ describe! {
 }
 
 /// Half the play's state, −1/2 on a cooling branch to 1/2 on a heating one: multiplied by the width of the loop.
-pub(super) fn state(t: &[f64], play: f64, first: f64) -> Option<Vec<f64>> {
+fn state(t: &[f64], play: f64, first: f64) -> Option<Vec<f64>> {
     if !(play > 0.0 && first.is_finite()) {
         return None;
     }

@@ -1,9 +1,10 @@
 //! A bias that depends on the direction from which a temperature was reached, as a sum of loops of several widths: large turns
 //! of the temperature and small ones leave their own. It is reported as temperature hysteresis.
 
-use super::temp_hysteresis::{WIDTH, state, turns};
+use super::temp_hysteresis::{WIDTH, turns};
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::response::{PLAYS, play};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, number,
@@ -15,8 +16,6 @@ pub struct TempHysteresisLoops;
 static PARAMS: [Param; 3] =
     [WIDTH, Param::inner("middle_degC", "°C", -300.0, 1000.0), Param::inner("half_range_degC", "°C", 1e-6, 1000.0)];
 
-/// Half of what the temperature turns by before a state turns, in halves of its range.
-const PLAYS: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
 /// Parts of the range of the temperature in which its branches are compared, and points of the record at which.
 const BINS: usize = 24;
 const STEPS: usize = 2000;
@@ -39,7 +38,7 @@ describe! {
 /// The temperature in units of half its range, and the state of each play.
 fn columns(t: &[f64], middle: f64, half: f64) -> Vec<Vec<f64>> {
     let scaled: Vec<f64> = t.iter().map(|t| (t - middle) / half).collect();
-    let states = PLAYS.iter().filter_map(|play| state(&scaled, *play, 0.0)).collect::<Vec<_>>();
+    let states: Vec<Vec<f64>> = PLAYS.iter().map(|width| play(&scaled, *width)).collect();
     std::iter::once(scaled).chain(states).collect()
 }
 

@@ -18,7 +18,7 @@ const ORDERS: usize = 10;
 /// Time constants of the delays, s: from what a housing does in a minute to what a day does.
 const DELAYS_S: [f64; 8] = [60.0, 150.0, 375.0, 940.0, 2350.0, 5900.0, 14_700.0, 36_700.0];
 /// Widths of the play, in halves of the column's range.
-const PLAYS: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
+pub(in crate::effect) const PLAYS: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
 /// Terms in all.
 pub(in crate::effect) const TERMS: usize = ORDERS + 1 + DELAYS_S.len() + PLAYS.len();
 /// Terms that a response has at most.
@@ -352,7 +352,7 @@ pub(super) fn rate_per_hour(scaled: &[f64], dt_s: f64) -> Vec<f64> {
 }
 
 /// State of a play operator that begins in its middle.
-fn play(scaled: &[f64], width: f64) -> Vec<f64> {
+pub(in crate::effect) fn play(scaled: &[f64], width: f64) -> Vec<f64> {
     let mut at = scaled.first().copied().unwrap_or(0.0);
     let follow = |x: &f64| {
         at = at.max(x - width).min(x + width);
