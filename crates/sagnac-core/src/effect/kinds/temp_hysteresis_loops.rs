@@ -13,8 +13,11 @@ use crate::numeric::range::{Bounds, ends};
 
 pub struct TempHysteresisLoops;
 
-static PARAMS: [Param; 3] =
-    [WIDTH, Param::inner("middle_degC", "°C", -300.0, 1000.0), Param::inner("half_range_degC", "°C", 1e-6, 1000.0)];
+static PARAMS: [Param; 3] = [
+    WIDTH,
+    Param::inner("middle_degC", "°C", -300.0, 1000.0),
+    Param::inner("half_range_degC", "°C", 1e-6, 1000.0),
+];
 
 /// Parts of the range of the temperature in which its branches are compared, and points of the record at which.
 const BINS: usize = 24;
@@ -131,9 +134,11 @@ mod tests {
     fn branches_are_apart_by_the_sum_of_the_states_where_all_have_turned() {
         let swing = |i: usize| 20.0 - 10.0 * (4.0 * std::f64::consts::PI * i as f64 / 2000.0).cos();
         let t: Vec<f64> = (0..2000).map(swing).collect();
-        let drivers = Drivers { dt_s: 1.0, samples: 2000, temperature: Some(t.clone()), ..Drivers::default() };
+        let drivers =
+            Drivers { dt_s: 1.0, samples: 2000, temperature: Some(t.clone()), ..Drivers::default() };
         let coefficients = [0.3, 0.1, 0.2, 0.0, 0.0];
-        let mut stated: Values = crate::effect::sizing::numbers([(PARAMS[1].name, 20.0), (PARAMS[2].name, 10.0)]);
+        let mut stated: Values =
+            crate::effect::sizing::numbers([(PARAMS[1].name, 20.0), (PARAMS[2].name, 10.0)]);
         stated.insert(COEFFICIENTS.to_owned(), crate::effect::Value::List(coefficients.to_vec()));
         let course = TempHysteresisLoops.course(&stated, &drivers).unwrap();
         // The middle of a heating and of the next cooling.

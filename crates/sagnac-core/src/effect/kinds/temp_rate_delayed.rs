@@ -103,6 +103,8 @@ mod tests {
         // Stated, it is the coefficient times the same.
         let stated = crate::effect::sizing::numbers([(PARAMS[0].name, -3.0), (PARAMS[1].name, 40.0)]);
         let course = TempRateDelayed.course(&stated, &drivers).unwrap();
-        assert!((course[999] + 3.6).abs() < 1e-9 && TempRateDelayed.course(&Values::new(), &drivers).is_none());
+        assert!(
+            (course[999] + 3.6).abs() < 1e-9 && TempRateDelayed.course(&Values::new(), &drivers).is_none()
+        );
     }
 }

@@ -7,8 +7,8 @@ mod path;
 
 use super::markov_long::MarkovLong;
 use crate::effect::{
-    Background, Detection, Detector, Domain, Drivers, Effect, JumpDetector, Jumps, Param, Place, Pulses, Reported,
-    Samples, Value, Values, list, number,
+    Background, Detection, Detector, Domain, Drivers, Effect, JumpDetector, Jumps, Param, Place, Pulses,
+    Reported, Samples, Value, Values, list, number,
 };
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
