@@ -5,7 +5,7 @@ use crate::mismatch::joint::record::JointExplanation;
 use crate::output::Listed;
 use crate::plan::Plan;
 use crate::record::explanation::Explanation;
-use crate::record::{DataSheet, LotRecord, RunRecord};
+use crate::record::{DataSheet, HistoryRecord, LotRecord, RunRecord};
 use clap::{Args, ValueEnum};
 
 #[derive(Debug, Args)]
@@ -44,6 +44,8 @@ pub enum SchemaKind {
     Sheet,
     /// datasheet.json
     Datasheet,
+    /// What `sagnac history --format json` writes
+    History,
 }
 
 pub fn main(args: &SchemaArgs) -> Result<u8, String> {
@@ -63,6 +65,9 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Lot => serde_json::to_value(schemars::schema_for!(Listed<LotRecord>)).unwrap_or_default(),
         SchemaKind::Datasheet => {
             serde_json::to_value(schemars::schema_for!(Listed<DataSheet>)).unwrap_or_default()
+        }
+        SchemaKind::History => {
+            serde_json::to_value(schemars::schema_for!(HistoryRecord)).unwrap_or_default()
         }
         SchemaKind::Explain => {
             serde_json::to_value(schemars::schema_for!(Listed<Explanation>)).unwrap_or_default()

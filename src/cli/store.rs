@@ -170,6 +170,7 @@ fn import(store: &Path, folders: &[PathBuf], recordings: &[PathBuf], lang: Lang)
         place::eprint_diagnostic(&place::warning(note, lang));
     }
     let (mut new, mut known, mut refused) = (0_usize, 0_usize, 0_usize);
+    let mut incomplete: Vec<(PathBuf, Vec<String>)> = vec![];
     for named in folders {
         let results = result_folders(named).map_err(say)?;
         if results.is_empty() {
@@ -188,15 +189,19 @@ fn import(store: &Path, folders: &[PathBuf], recordings: &[PathBuf], lang: Lang)
                 Err(e) => return Err(say(e)),
             };
             if !added.missing.is_empty() {
-                let note = Note::new("store.files_missing").with("path", place::shown(&folder));
-                let note = note.with("n", added.missing.len()).with("names", added.missing.join(", "));
-                place::eprint_diagnostic(&place::warning(&note, lang));
+                incomplete.push((folder, added.missing));
             }
             *if added.new { &mut new } else { &mut known } += 1;
         }
     }
     let note = Note::new("store.imported").with("new", new).with("known", known).with("refused", refused);
     done(&note, lang)?;
+    if let Some((folder, names)) = incomplete.first() {
+        let files: usize = incomplete.iter().map(|(_, names)| names.len()).sum();
+        let note = Note::new("store.files_missing").with("results", incomplete.len()).with("files", files);
+        let note = note.with("path", place::shown(folder)).with("names", names.join(", "));
+        place::eprint_diagnostic(&place::warning(&note, lang));
+    }
     if !recordings.is_empty() {
         let RecordingSearch { found, in_place, missing } =
             opened.find_recordings(recordings, &now()).map_err(say)?;

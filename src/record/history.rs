@@ -4,13 +4,14 @@
 
 use super::{Message, Program};
 use crate::estimate::{Interval, Verdict};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Version of the format of a history.
 pub const HISTORY_FORMAT: &str = "history/1";
 
 /// The history of some results.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryRecord {
     /// Always `history/1`.
     pub format: String,
@@ -39,7 +40,7 @@ pub struct HistoryRecord {
 }
 
 /// What was asked for; what is absent did not matter.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct HistoryAsked {
     /// Serial number.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -65,7 +66,7 @@ pub struct HistoryAsked {
 }
 
 /// How many results there are.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct HistoryCounts {
     /// All results.
     pub results: usize,
@@ -84,7 +85,7 @@ pub struct HistoryCounts {
 }
 
 /// A counted share with its 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryShare {
     /// How many there were.
     pub count: usize,
@@ -97,7 +98,7 @@ pub struct HistoryShare {
 }
 
 /// The yield of a procedure.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryYield {
     /// Id of the procedure.
     pub procedure: String,
@@ -108,7 +109,7 @@ pub struct HistoryYield {
 }
 
 /// What kept units from passing.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryReason {
     /// `measurand`, `condition`, `fault` or `error`.
     pub kind: String,
@@ -121,7 +122,7 @@ pub struct HistoryReason {
 }
 
 /// The verdicts of a month.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct HistoryMonth {
     /// Month, such as `2026-03`.
     pub month: String,
@@ -132,7 +133,7 @@ pub struct HistoryMonth {
 }
 
 /// What a chart is of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum HistoryChartOf {
     /// The first valid test of each unit.
@@ -155,7 +156,7 @@ impl HistoryChartOf {
 }
 
 /// A quantity over time.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryChart {
     /// What it is of.
     pub of: HistoryChartOf,
@@ -181,7 +182,7 @@ pub struct HistoryChart {
 }
 
 /// What tells one quantity from another.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
 pub struct HistoryQuantity {
     /// Id of the procedure.
     pub procedure: String,
@@ -197,7 +198,7 @@ pub struct HistoryQuantity {
 }
 
 /// Limits of a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryLimit {
     /// Lower limit.
     pub min: Option<f64>,
@@ -206,7 +207,7 @@ pub struct HistoryLimit {
 }
 
 /// A value in time.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryPoint {
     /// Address of the result.
     pub result: String,
@@ -223,7 +224,7 @@ pub struct HistoryPoint {
 }
 
 /// Control limits.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryControl {
     /// Mean of the values.
     pub center: f64,
@@ -240,7 +241,7 @@ pub struct HistoryControl {
 }
 
 /// Control limits at a value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryControlPoint {
     /// Distance between the limits and the center; it holds the uncertainty of the value.
     pub reach: f64,
@@ -257,7 +258,7 @@ pub struct HistoryControlPoint {
 }
 
 /// Capability of a process.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryCapability {
     /// Units.
     pub units: usize,
@@ -276,7 +277,7 @@ pub struct HistoryCapability {
 }
 
 /// Drift of a unit over its tests.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryDrift {
     /// The quantity.
     #[serde(flatten)]
@@ -302,7 +303,7 @@ pub struct HistoryDrift {
 }
 
 /// A station against the others.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryStation {
     /// The quantity.
     #[serde(flatten)]
@@ -322,7 +323,7 @@ pub struct HistoryStation {
 }
 
 /// A result.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct HistoryResult {
     /// Address.
     pub address: String,

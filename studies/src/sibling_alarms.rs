@@ -22,8 +22,10 @@ const ALARM: f64 = 0.01;
 /// Error of a value in spreads between units, and share of the common cause in the variance between units.
 const ERROR: f64 = 0.5;
 const COMMON: f64 = 0.4;
-/// How far a moved unit is, in spreads of the values.
+/// How far a moved unit is, in spreads of the values; and how many units are drawn for each that is moved: an unlike unit takes
+/// all the lots that the program simulates, a like one few.
 const MOVED: f64 = 4.0;
+const MOVED_PER_UNIT: u64 = 20;
 
 #[derive(Debug, Clone, Copy)]
 struct Design {
@@ -52,8 +54,10 @@ fn cases() -> Vec<Case> {
 
 impl Design {
     fn rows(self, records: u64, first: u64) -> Vec<Row> {
+        let moved_units = records.div_ceil(MOVED_PER_UNIT);
         let alarms = |moved: bool| {
-            let seeds = (first..first + records).into_par_iter();
+            let of = if moved { moved_units } else { records };
+            let seeds = (first..first + of).into_par_iter();
             seeds.filter(|seed| self.alarm(*seed, moved)).count() as u64
         };
         // What is promised is promised for normal units.
@@ -75,7 +79,7 @@ impl Design {
                 "called unlike",
                 Asked::Nothing,
                 alarms(true),
-                records,
+                moved_units,
             ),
         ]
     }
