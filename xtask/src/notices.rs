@@ -10,6 +10,7 @@ const FILE: &str = "THIRD-PARTY.md";
 const HEAD: &str = "# Third-party notices
 
 The program contains the packages below. Written by `cargo xtask notices`.
+A build with the feature `pdf` also contains the fonts in `crates/sagnac-pdf/fonts`, under the SIL Open Font License 1.1 (`OFL.txt` there).
 
 | package | version | licence | source |
 |---|---|---|---|
