@@ -7,19 +7,23 @@
 //! inputs, and only files that the earlier one lists are ever removed.
 
 mod addressed;
+mod checksums;
 mod csv;
 mod earlier;
 mod error;
 mod file;
 mod kind;
+mod parquet;
 mod part;
 mod partial;
 
 pub use addressed::AddressedFolder;
+pub use checksums::{CHECKSUMS_FILE, checksums, read_checksums, sha256};
 pub use csv::quoted;
 pub use error::OutputError;
 pub use file::StagedFile;
-pub use kind::Kind;
+pub use kind::{Kind, LIMITS_FILE, PROCEDURE_FILE};
+pub use parquet::{Column, write_table};
 pub use part::StagedPart;
 pub use partial::abandon_all;
 
@@ -46,7 +50,8 @@ pub struct StagedFolder {
     kind: Kind,
     order: Order,
     replaces: Option<Note>,
-    written: Mutex<BTreeSet<String>>,
+    /// Names of the files that were written, and their hashes.
+    written: Mutex<BTreeMap<String, String>>,
 }
 
 /// What a folder is made from, and whether it may replace a result of other inputs.
@@ -144,11 +149,21 @@ impl StagedFolder {
         let mut file = File::create(&path).map_err(io("output_error.create", &path))?;
         file.write_all(contents).map_err(io("output_error.write", &path))?;
         file.sync_all().map_err(io("output_error.sync", &path))?;
-        self.written.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned());
+        self.written.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned(), sha256(contents));
         Ok(())
     }
 
-    /// Writes the record with the list of everything that the folder holds, puts the folder in its place in one step
+    /// The bytes of the record as [`StagedFolder::publish`] will write it once the files `still` are written too.
+    ///
+    /// # Errors
+    /// [`OutputError::Unwritable`] for a record that is no JSON.
+    pub fn record_with(&self, record: impl Serialize, still: &[&str]) -> Result<Vec<u8>, OutputError> {
+        let written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
+        let names = written.keys().map(String::as_str).chain(still.iter().copied());
+        listed(record, &self.order.inputs, names, self.kind.record_file())
+    }
+
+    /// Writes the record with the list of everything that the folder holds, and the hashes of all of it; puts the folder in its place in one step
     /// and gives its path back.
     ///
     /// # Errors
@@ -156,9 +171,10 @@ impl StagedFolder {
     /// it was taken meanwhile.
     pub fn publish(self, record: impl Serialize) -> Result<PathBuf, OutputError> {
         let marks = self.kind.record_file();
-        let files = self.written.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let json = listed(record, &self.order.inputs, files, marks)?;
+        let json = self.record_with(record, &[])?;
         self.write(marks, &json)?;
+        let hashes = self.written.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        self.write(CHECKSUMS_FILE, checksums(&hashes).as_bytes())?;
         let quiet = partial::quiet();
         let figures = self.staging.path().join("figures");
         if figures.is_dir() {
@@ -206,14 +222,15 @@ fn reserve(target: &Path) -> Result<PathBuf, OutputError> {
     Ok(free)
 }
 
-/// A record with its inputs and the list of the files beside it, `marks` among them, as JSON.
+/// A record with its inputs and the list of the files beside it, itself and their hashes among them, as JSON.
 fn listed(
     record: impl Serialize,
     inputs: &BTreeMap<String, String>,
-    mut files: BTreeSet<String>,
+    written: impl Iterator<Item = impl Into<String>>,
     marks: &str,
 ) -> Result<Vec<u8>, OutputError> {
-    files.insert(marks.to_owned());
+    let own = [marks, CHECKSUMS_FILE].map(str::to_owned);
+    let files: BTreeSet<String> = written.map(Into::into).chain(own).collect();
     let listed = Listed { record, inputs: inputs.clone(), files: files.into_iter().collect() };
     serde_json::to_vec_pretty(&listed).map_err(|e| OutputError::Unwritable(e.to_string()))
 }

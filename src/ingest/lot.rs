@@ -12,8 +12,9 @@ use std::path::{Path, PathBuf};
 const NAMED: usize = 4;
 /// Longest name of a folder, in characters.
 const LONGEST: usize = 80;
-/// Names that the folder of a lot has for other things.
-const RESERVED: [&str; 5] = ["index.html", "index.md", "index.csv", "index.json", "junit.xml"];
+/// Names that the folder of a lot has for other things, in lower case.
+const RESERVED: [&str; 7] =
+    ["index.html", "index.md", "index.pdf", "index.csv", "index.json", "junit.xml", "sha256sums"];
 
 /// A recording that is a unit of its own.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,5 +1,13 @@
 //! What a folder holds.
 
+use super::checksums::CHECKSUMS_FILE;
+
+/// Name of the copy of the procedure in the folder of a result.
+pub const PROCEDURE_FILE: &str = "procedure.toml";
+
+/// Name of the copy of the limits file in the folder of a result.
+pub const LIMITS_FILE: &str = "limits.toml";
+
 /// What a folder holds; one kind never takes the place of another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -73,6 +81,7 @@ impl Kind {
             Kind::Result => {
                 (name.starts_with("sigma_tau") && name.ends_with(".csv"))
                     || matches!(name, "table_steps.csv" | "interval_means.csv")
+                    || matches!(name, PROCEDURE_FILE | LIMITS_FILE)
                     || (name.starts_with("compensation")
                         && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
             }
@@ -89,14 +98,19 @@ impl Kind {
 
     /// True for a name that stands in a folder of this kind.
     pub(super) fn owns(self, name: &str) -> bool {
-        let page = match self {
-            Kind::Result => matches!(name, "report.html" | "report.md" | "explain" | "phases"),
-            Kind::Comparison => matches!(name, "comparison.html" | "comparison.md"),
-            Kind::Explanation | Kind::Plan => matches!(name, "report.html" | "report.md"),
-            Kind::Joint => matches!(name, "report.html" | "report.md" | "recordings"),
-            Kind::Lot => matches!(name, "index.html" | "index.md" | "junit.xml"),
-            Kind::DataSheet => matches!(name, "datasheet.html" | "datasheet.md"),
-        };
-        page || name == "figures" || name == self.record_file() || self.is_table(name)
+        let stem = name.rsplit_once('.').filter(|(_, ending)| matches!(*ending, "html" | "md" | "pdf"));
+        let page = stem.is_some_and(|(stem, _)| stem == self.page_stem())
+            || match self {
+                Kind::Result => {
+                    matches!(name, "explain" | "phases" | "measurands.csv" | "measurands.parquet")
+                        || matches!(name, "junit.xml" | "dcc.xml" | "atml.xml")
+                }
+                Kind::Joint => name == "recordings",
+                Kind::Lot => name == "junit.xml",
+                Kind::Comparison | Kind::Explanation | Kind::Plan | Kind::DataSheet => false,
+            };
+        page || matches!(name, "figures" | "signatures.json" | CHECKSUMS_FILE)
+            || name == self.record_file()
+            || self.is_table(name)
     }
 }

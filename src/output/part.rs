@@ -1,9 +1,10 @@
 //! A result folder inside a folder in the making: it becomes visible together with the whole.
 
+use super::checksums::{CHECKSUMS_FILE, checksums, sha256};
 use super::kind::Kind;
 use super::{OutputError, StagedFolder, listed, sync_folder};
 use serde::Serialize;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 use std::sync::{Mutex, PoisonError};
 
 /// The result folder of one unit in the folder of a lot. Its files are those of a result on its own.
@@ -12,7 +13,7 @@ pub struct StagedPart<'a> {
     whole: &'a StagedFolder,
     folder: String,
     inputs: BTreeMap<String, String>,
-    written: Mutex<BTreeSet<String>>,
+    written: Mutex<BTreeMap<String, String>>,
 }
 
 impl<'a> StagedPart<'a> {
@@ -30,19 +31,30 @@ impl<'a> StagedPart<'a> {
             return Err(OutputError::Unforeseen(name.to_owned()));
         }
         self.whole.put(&format!("{}/{name}", self.folder), contents)?;
-        self.written.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned());
+        self.written.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned(), sha256(contents));
         Ok(())
     }
 
-    /// Writes the record with the list of everything that the folder holds.
+    /// The bytes of the record as [`StagedPart::finish`] will write it once the files `still` are written too.
+    ///
+    /// # Errors
+    /// [`OutputError::Unwritable`] for a record that is no JSON.
+    pub fn record_with(&self, record: impl Serialize, still: &[&str]) -> Result<Vec<u8>, OutputError> {
+        let written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
+        let names = written.keys().map(String::as_str).chain(still.iter().copied());
+        listed(record, &self.inputs, names, Kind::Result.record_file())
+    }
+
+    /// Writes the record with the list of everything that the folder holds, and the hashes of all of it.
     ///
     /// # Errors
     /// As [`StagedFolder::write`].
     pub fn finish(self, record: impl Serialize) -> Result<(), OutputError> {
         let marks = Kind::Result.record_file();
-        let files = self.written.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        let json = listed(record, &self.inputs, files, marks)?;
+        let json = self.record_with(record, &[])?;
         self.write(marks, &json)?;
+        let hashes = self.written.lock().unwrap_or_else(PoisonError::into_inner).clone();
+        self.write(CHECKSUMS_FILE, checksums(&hashes).as_bytes())?;
         let folder = self.whole.staging.path().join(&self.folder);
         let figures = folder.join("figures");
         if figures.is_dir() {

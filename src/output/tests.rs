@@ -49,7 +49,7 @@ fn a_folder_appears_whole_and_replaces_an_earlier_result() {
     assert_eq!(entries(dir.path()), ["result"], "nothing but the result stays");
     fs::create_dir(dir.path().join("empty")).unwrap();
     staged(&dir.path().join("empty")).publish(record(1)).unwrap();
-    assert_eq!(entries(&dir.path().join("empty")), ["figures", "result.json"]);
+    assert_eq!(entries(&dir.path().join("empty")), ["SHA256SUMS", "figures", "result.json"]);
 }
 
 #[test]
@@ -84,7 +84,7 @@ fn runs_that_name_their_own_place_take_the_next_free_one() {
     assert_eq!(places, names.map(|name| dir.path().join(name)));
     assert_eq!(entries(dir.path()), names);
     for place in &places {
-        assert_eq!(entries(place), ["figures", "result.json"]);
+        assert_eq!(entries(place), ["SHA256SUMS", "figures", "result.json"]);
     }
     fs::write(dir.path().join("result_5"), "of the user").unwrap();
     assert_eq!(fresh().publish(record(2)).unwrap(), dir.path().join("result_6"));
@@ -225,7 +225,7 @@ fn a_lot_appears_with_its_units_and_is_replaced_as_a_whole() {
         assert_eq!(target.exists(), n > 1, "a unit that is done waits for the others");
         lot.write("index.html", b"<html/>").unwrap();
         lot.publish(json!({"format": "lot/1", "units": [1]})).unwrap();
-        assert_eq!(entries(&target), ["SN-1", "index.html", "index.json"]);
+        assert_eq!(entries(&target), ["SHA256SUMS", "SN-1", "index.html", "index.json"]);
         assert_eq!((round(&target.join("SN-1")), entries(dir.path()).len()), (n, 1));
     }
     fs::write(target.join("SN-1/notes.txt"), "of the user").unwrap();

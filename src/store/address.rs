@@ -3,25 +3,14 @@
 //! The list is what `sha256sum` prints of the files in the order of their names, so that anyone can check an address:
 //! `find . -type f -printf '%P\n' | LC_ALL=C sort | xargs -d '\n' sha256sum | sha256sum`.
 
-use sha2::{Digest, Sha256};
-use std::collections::BTreeMap;
-use std::fmt::Write;
+pub use crate::output::sha256;
 
-/// SHA-256 of bytes, hexadecimal.
-pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().fold(String::with_capacity(64), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    })
-}
+use crate::output::checksums;
+use std::collections::BTreeMap;
 
 /// The address of files, given as names with the SHA-256 of their contents.
 pub fn address(files: &BTreeMap<String, String>) -> String {
-    let mut list = String::new();
-    for (name, hash) in files {
-        let _ = writeln!(list, "{hash}  {name}");
-    }
-    sha256(list.as_bytes())
+    sha256(checksums(files).as_bytes())
 }
 
 #[cfg(test)]
