@@ -57,8 +57,10 @@ pub mod record;
 pub mod report;
 pub mod selftest;
 pub mod series;
+pub mod signing;
 pub mod simulate;
 pub mod store;
+pub mod verify;
 
 pub use i18n::Lang;
 pub use library::{Error, Explanation, Model, Noise, Procedure, Rate, Recording, RunResult, explain};

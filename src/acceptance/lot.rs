@@ -3,8 +3,8 @@
 use crate::estimate::Verdict;
 use crate::ingest::lot::Member;
 use crate::record::{
-    ConditionStatus, LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, ProcedureRecord, Program,
-    RunRecord, Session, VerdictCounts,
+    LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, ProcedureRecord, Program, RunRecord, Session,
+    VerdictCounts,
 };
 
 /// What a lot has of one of its units.
@@ -21,16 +21,7 @@ pub fn unit(member: &Member, record: &RunRecord) -> LotUnit {
         folder: member.folder.clone(),
         verdict: record.verdict,
         summary: record.summary.clone(),
-        conditions: record
-            .conditions
-            .iter()
-            .map(|c| LotCondition {
-                id: c.id.clone(),
-                phase: c.phase.clone(),
-                status: c.status,
-                message: c.message.clone().filter(|_| c.status != ConditionStatus::Ok),
-            })
-            .collect(),
+        conditions: record.conditions.iter().map(LotCondition::of).collect(),
         measurands: record.measurands.iter().filter(|m| m.limit.is_some()).cloned().collect(),
         errors: record.errors.clone(),
     }

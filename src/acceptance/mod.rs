@@ -32,7 +32,7 @@ mod request;
 pub mod siblings;
 mod sinks;
 mod test_kind;
-mod verdict;
+pub mod verdict;
 
 pub use request::{Outcome, Request, RunError, Table, session};
 

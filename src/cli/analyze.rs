@@ -48,7 +48,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     if !(args.columns.warm_up >= 0.0 && args.columns.warm_up.is_finite()) {
         return Err(say(Note::new("cli.warm_up").with("given", args.columns.warm_up.to_string())));
     }
-    let renderer = args.output.renderer(lang)?;
+    let writer = args.output.writer(lang)?;
     let now = Utc::now();
     let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
@@ -99,7 +99,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         taus,
         exact: args.grid.exact,
     };
-    let code = run_and_finish(&request, folder, &renderer, printer, progress)?;
+    let code = run_and_finish(&request, folder, &writer, printer, progress)?;
     let options = format!("{}{}", args.columns.as_typed(), args.read.as_typed());
     printer.next_step(next_step::init(&args.recording, &options).as_ref());
     Ok(code)

@@ -1,12 +1,13 @@
 //! `sagnac compare`: Russian against Allan figures of any units, or the published tables.
 
 use super::columns::{ColumnArgs, channels, unit_contradictions};
-use super::finish::{with_progress, write};
+use super::finish::with_progress;
 use super::inputs::Inputs;
 use super::options::OutputArgs;
 use super::printer::Printer;
 use super::progress::Progress;
 use super::read::ReadArgs;
+use super::writer::Writer;
 use super::{exit, place};
 use crate::acceptance::compare::published_checks::checked;
 use crate::acceptance::compare::{
@@ -20,9 +21,8 @@ use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
 use crate::record::{RunKind, RunRecord, UnitUnderTest, read};
 use crate::recording::Role;
+use crate::report::Results;
 use crate::report::compare::{CompareView, table};
-use crate::report::export::EXPORTERS;
-use crate::report::{Renderer, Results};
 use chrono::{DateTime, SecondsFormat, Utc};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -57,7 +57,7 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
     if args.published && !args.recording.is_empty() {
         return Err(say("compare.error.published_alone".into()));
     }
-    let renderer = args.output.renderer(lang)?;
+    let writer = args.output.writer(lang)?;
     let printer = Printer::new(&args.output, lang);
     let now = Utc::now();
     let stamp = now.to_rfc3339_opts(SecondsFormat::Secs, true);
@@ -82,7 +82,7 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
         .begin(&out, Kind::Comparison, lang)?;
     if args.published {
         let checked = checked().ok_or_else(|| say("compare.error.tables".into()))?;
-        return finish(Comparison::of_published(checked, stamp), folder, &renderer, printer);
+        return finish(Comparison::of_published(checked, stamp), folder, &writer, printer);
     }
     let limits = match args.limits.as_deref().map(load_limits).transpose() {
         Ok(file) => EffectiveLimits {
@@ -104,7 +104,7 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
     drop(progress);
     name_apart(&mut units);
     mark_repeated(&mut units);
-    finish(Comparison::of_units(units, stamp), folder, &renderer, printer)
+    finish(Comparison::of_units(units, stamp), folder, &writer, printer)
 }
 
 /// The name of a file or folder without its endings.
@@ -231,12 +231,12 @@ fn analysed(
 fn finish(
     comparison: Comparison,
     folder: StagedFolder,
-    renderer: &Renderer,
+    writer: &Writer,
     printer: Printer,
 ) -> Result<u8, String> {
     let lang = printer.lang;
     let table = table(&CompareView::new(&comparison, &[], lang), lang);
-    let folder = write(&Results::of_comparison(comparison), folder, EXPORTERS, renderer, lang)?;
+    let folder = writer.publish(&Results::of_comparison(comparison), folder)?;
     printer.outcome(&folder, Kind::Comparison, |_| visible_lines(&table).into_owned())?;
     Ok(exit::PASS)
 }

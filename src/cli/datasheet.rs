@@ -1,6 +1,5 @@
 //! `sagnac datasheet`: what the results of some units promise of the population that they come from.
 
-use super::finish::write;
 use super::inputs::Inputs;
 use super::keep::StoreArgs;
 use super::options::OutputArgs;
@@ -14,7 +13,6 @@ use crate::ingest::each_of;
 use crate::lot::tolerance::Promise;
 use crate::output::Kind;
 use crate::report::datasheet::SheetView;
-use crate::report::export::EXPORTERS;
 use crate::report::{Results, terminal};
 use crate::store::Filter;
 use chrono::{SecondsFormat, Utc};
@@ -66,7 +64,7 @@ pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
         }
     }
     let rows = args.sheet.as_deref().map(sheet::load).transpose().map_err(|p| p.say(lang))?;
-    let renderer = args.output.renderer(lang)?;
+    let writer = args.output.writer(lang)?;
     let printer = Printer::new(&args.output, lang);
     let now = Utc::now();
     let (files, mut broken) = args.files(lang)?;
@@ -98,7 +96,7 @@ pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
         .begin(&out, Kind::DataSheet, lang)?;
     let view = SheetView::new(&sheet, &[], lang);
     let results = Results::of_datasheet(sheet);
-    let place = write(&results, folder, EXPORTERS, &renderer, lang)?;
+    let place = writer.publish(&results, folder)?;
     printer.outcome(&place, Kind::DataSheet, |t| terminal::datasheet(&view, lang, t))?;
     Ok(exit::PASS)
 }

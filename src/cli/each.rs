@@ -1,7 +1,6 @@
 //! `sagnac run --each`: every recording is a unit of its own.
 
 use super::exit;
-use super::finish::write_files;
 use super::inputs::{Inputs, publish};
 use super::keep::Keeper;
 use super::phased_test::{PhasedTest, belong};
@@ -10,6 +9,7 @@ use super::printer::Printer;
 use super::progress::{Measure, Progress};
 use super::run_args::RunArgs;
 use super::single_test::SingleTest;
+use super::writer::Writer;
 use crate::acceptance::lot;
 use crate::config::diagnostics::Problems;
 use crate::config::manifest::{self, is_manifest};
@@ -22,7 +22,7 @@ use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::{LotUnit, ProcedureRecord, SerialSource, Session};
 use crate::report::export::{EXPORTERS, export};
 use crate::report::lot::{LotUnitView, LotView};
-use crate::report::{Renderer, Results, RunResults, terminal};
+use crate::report::{Results, RunResults, terminal};
 use chrono::{DateTime, SecondsFormat, Utc};
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroUsize;
@@ -140,7 +140,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
 
 fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang) -> Result<u8, String> {
     let error = |note: Note| place::error(&note, lang);
-    let renderer = args.output.renderer(lang)?;
+    let writer = args.output.writer(lang)?;
     let keeper = Keeper::new(&args.store, lang)?;
     let printer = Printer::new(&args.output, lang);
     let mut progress = printer.progress();
@@ -151,7 +151,7 @@ fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang)
     };
     // What is wrong with a template is said before the first unit is tested.
     let none = Results::of_lot(lot::lot(test.procedure(), session.clone(), vec![]));
-    export(&none.whole(lang), EXPORTERS, &renderer).map_err(|e| error(e.note()))?;
+    export(&none.whole(lang), EXPORTERS, &writer.renderer).map_err(|e| error(e.note()))?;
     progress.stage("progress.inputs");
     let pattern = args.each.serial_from.as_deref().map(SerialPattern::parse).transpose().map_err(error)?;
     let members =
@@ -170,7 +170,7 @@ fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang)
         inputs: &inputs,
         folder: &folder,
         keeper: &keeper,
-        renderer: &renderer,
+        writer: &writer,
         lang,
     };
     let jobs =
@@ -181,7 +181,7 @@ fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang)
     let code = exit::code(record.verdict);
     let view = LotView::new(&record, lang);
     let results = Results::of_lot(record);
-    write_files(&results, &|name, contents| folder.write(name, contents), EXPORTERS, &renderer, lang)?;
+    writer.files(&results, &folder)?;
     let place = publish(folder, results.whole(lang).record(), lang)?;
     drop(progress);
     printer.outcome(&place, Kind::Lot, |t| terminal::lot(&view, lang, t))?;
@@ -224,7 +224,7 @@ struct Work<'a> {
     inputs: &'a [BTreeMap<String, String>],
     folder: &'a StagedFolder,
     keeper: &'a Keeper,
-    renderer: &'a Renderer,
+    writer: &'a Writer,
     lang: Lang,
 }
 
@@ -284,13 +284,7 @@ impl Work<'_> {
         let unit = lot::unit(member, &results.outcome.record);
         let results = Results::Run(Box::new(results));
         let part = StagedPart::begin(self.folder, &member.folder, inputs.clone());
-        let written = write_files(
-            &results,
-            &|name, contents| part.write(name, contents),
-            EXPORTERS,
-            self.renderer,
-            self.lang,
-        );
+        let written = self.writer.files(&results, &part);
         Some(written.and_then(|()| {
             part.finish(results.whole(self.lang).record()).map_err(|e| place::error(&e.note(), self.lang))?;
             Ok((unit, problems))

@@ -1,7 +1,6 @@
 //! `sagnac explain`: where, and because of what, a recording differs from its simulation.
 
 use super::explain_args::{ExplainArgs, options, read, shown};
-use super::finish::write;
 use super::inputs::Inputs;
 use super::place::{self, OutputPlace};
 use super::printer::Printer;
@@ -14,7 +13,6 @@ use crate::mismatch;
 use crate::mismatch::finding::MismatchVerdict;
 use crate::output::Kind;
 use crate::report::explain::{Context, ExplainView};
-use crate::report::export::EXPORTERS;
 use crate::report::{ExplanationResults, Results, terminal};
 use chrono::{SecondsFormat, Utc};
 use std::path::{Path, PathBuf};
@@ -38,7 +36,7 @@ fn single(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let simulation: Vec<PathBuf> = args.simulation.clone().into_iter().collect();
     args.join.check(&simulation, "join.help.other", lang)?;
     let options = options(args).map_err(say)?;
-    let renderer = args.output.renderer(lang)?;
+    let writer = args.output.writer(lang)?;
     // What is wrong with the model is said before a long recording is read.
     let stated = args.model.as_deref().map(model::load).transpose().map_err(|p| p.say(lang))?;
     let now = Utc::now();
@@ -102,7 +100,7 @@ fn single(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     };
     let view = ExplainView::new(&outcome.explanation, &[], &context, lang);
     let results = Results::Explanation(Box::new(ExplanationResults::new(&outcome, context)));
-    let folder = write(&results, folder, EXPORTERS, &renderer, lang)?;
+    let folder = writer.publish(&results, folder)?;
     drop(progress);
     printer.outcome(&folder, Kind::Explanation, |t| terminal::explanation(&view, lang, t))?;
     let named = view.effects.iter().find(|e| !e.unknown);

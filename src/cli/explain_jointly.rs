@@ -1,7 +1,6 @@
 //! `sagnac explain A B ...`: what several recordings of one unit share, and what each shows besides.
 
 use super::explain_args::{ExplainArgs, options, read, shown};
-use super::finish::write;
 use super::inputs::Inputs;
 use super::place::{self, OutputPlace};
 use super::printer::Printer;
@@ -14,7 +13,6 @@ use crate::mismatch::finding::MismatchVerdict;
 use crate::mismatch::joint::{JointOutcome, JointProgress, Recording, explain_jointly};
 use crate::output::Kind;
 use crate::report::explain::Context;
-use crate::report::export::EXPORTERS;
 use crate::report::joint::{JointContext, JointFile, JointView};
 use crate::report::{ExplanationResults, JointResults, Results, terminal};
 use chrono::{SecondsFormat, Utc};
@@ -42,7 +40,7 @@ pub fn main(args: &ExplainArgs, files: Vec<PathBuf>, lang: Lang) -> Result<u8, S
         return Err(say("explain.error.several_need_model".into()));
     };
     let options = options(args).map_err(say)?;
-    let renderer = args.output.renderer(lang)?;
+    let writer = args.output.writer(lang)?;
     let claim = model::load(path).map_err(|p| p.say(lang))?;
     let now = Utc::now();
     let out = OutputPlace::new(
@@ -81,7 +79,7 @@ pub fn main(args: &ExplainArgs, files: Vec<PathBuf>, lang: Lang) -> Result<u8, S
     let explained_at = now.to_rfc3339_opts(SecondsFormat::Secs, true);
     let results = results(&outcome, shown(path), explained_at, remarks);
     let view = JointView::new(&results.file, lang);
-    let folder = write(&Results::Joint(Box::new(results)), folder, EXPORTERS, &renderer, lang)?;
+    let folder = writer.publish(&Results::Joint(Box::new(results)), folder)?;
     drop(progress);
     printer.outcome(&folder, Kind::Joint, |t| terminal::joint(&view, lang, t))?;
     let named = view.shared.first().map(|s| next_step::after_effect(&s.kind));

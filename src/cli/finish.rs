@@ -1,19 +1,18 @@
 //! From a request to the folder of its results and the words on the terminal.
 
-use super::inputs;
 use super::keep::Keeper;
 use super::printer::Printer;
 use super::progress::Progress;
+use super::writer::Writer;
 use super::{exit, place};
 use crate::acceptance::{Outcome, Request, RunError, execute, explained, failed};
 use crate::config::diagnostics::Problems;
 use crate::config::model::Claim;
 use crate::i18n::{Lang, Localize, Note};
-use crate::output::{Kind, OutputError, StagedFolder};
+use crate::output::{Kind, StagedFolder};
 use crate::report::explain::Context;
-use crate::report::export::{EXPORTERS, Exporter, export};
 use crate::report::view::{PhasePart, View};
-use crate::report::{ExplanationResults, Renderer, Results, RunResults, terminal};
+use crate::report::{ExplanationResults, Results, RunResults, terminal};
 use chrono::SecondsFormat;
 use std::path::PathBuf;
 
@@ -32,13 +31,13 @@ pub struct Against<'a> {
 pub fn run_and_finish(
     request: &Request<'_>,
     folder: StagedFolder,
-    renderer: &Renderer,
+    writer: &Writer,
     printer: Printer,
     mut progress: Progress,
 ) -> Result<u8, String> {
     let evaluated = evaluate(request, None, &mut progress);
     let keeper = Keeper::none(printer.lang);
-    settle(evaluated, folder, &keeper, renderer, printer, progress)
+    settle(evaluated, folder, &keeper, writer, printer, progress)
 }
 
 /// What came of a request.
@@ -81,18 +80,18 @@ pub fn settle(
     evaluated: Evaluated,
     folder: StagedFolder,
     keeper: &Keeper,
-    renderer: &Renderer,
+    writer: &Writer,
     printer: Printer,
     progress: Progress,
 ) -> Result<u8, String> {
     match evaluated.refused {
-        None => finish(evaluated.results, folder, keeper, renderer, printer, progress),
+        None => finish(evaluated.results, folder, keeper, writer, printer, progress),
         Some(note) => {
             let lang = printer.lang;
             let mut results = evaluated.results;
             keeper.place_among_others(&mut results.outcome.record)?;
             let results = Results::Run(Box::new(results));
-            let place = write(&results, folder, EXPORTERS, renderer, lang)?;
+            let place = writer.publish(&results, folder)?;
             let report = Note::new("cli.report_says_so").with("place", place.display().to_string());
             let why = match &evaluated.problems {
                 Some(problems) => format!("{}\n", problems.say(lang)),
@@ -146,7 +145,7 @@ pub fn finish(
     mut results: RunResults,
     folder: StagedFolder,
     keeper: &Keeper,
-    renderer: &Renderer,
+    writer: &Writer,
     printer: Printer,
     mut progress: Progress,
 ) -> Result<u8, String> {
@@ -155,7 +154,7 @@ pub fn finish(
     progress.stage("progress.writing");
     keeper.place_among_others(&mut results.outcome.record)?;
     let view = view(&results, lang);
-    let place = write(&Results::Run(Box::new(results)), folder, EXPORTERS, renderer, lang)?;
+    let place = writer.publish(&Results::Run(Box::new(results)), folder)?;
     drop(progress);
     printer.outcome(&place, Kind::Result, |terminal| terminal::run(&view, lang, terminal))?;
     keeper.keep(&place, printer)?;
@@ -181,50 +180,4 @@ fn view(results: &RunResults, lang: Lang) -> View {
 /// The outcome of a run that could not be carried out.
 pub fn not_run(request: &Request<'_>, error: &RunError) -> Outcome {
     Outcome { record: failed(request, error), figures: vec![], tables: vec![] }
-}
-
-/// Writes results in some forms and puts their folder in its place. The record is always written: it lists the files.
-///
-/// # Errors
-/// The diagnostic, in words.
-pub fn write(
-    results: &Results,
-    folder: StagedFolder,
-    exporters: &[&dyn Exporter],
-    renderer: &Renderer,
-    lang: Lang,
-) -> Result<PathBuf, String> {
-    write_files(results, &|name, contents| folder.write(name, contents), exporters, renderer, lang)?;
-    inputs::publish(folder, results.whole(lang).record(), lang)
-}
-
-/// Writes a file: its name, which may hold sub-folders, and its contents.
-pub type Put<'a> = &'a dyn Fn(&str, &[u8]) -> Result<(), OutputError>;
-
-/// Writes the files of results in some forms, all but the record of the whole.
-///
-/// # Errors
-/// The diagnostic, in words.
-pub fn write_files(
-    results: &Results,
-    write: Put<'_>,
-    exporters: &[&dyn Exporter],
-    renderer: &Renderer,
-    lang: Lang,
-) -> Result<(), String> {
-    let whole = results.whole(lang);
-    let record_file = whole.kind().record_file();
-    for (name, contents) in export(&whole, exporters, renderer).map_err(|e| place::error(&e.note(), lang))? {
-        if name != record_file {
-            write(&name, &contents).map_err(|e| place::error(&e.note(), lang))?;
-        }
-    }
-    for (below, part) in results.parts(lang) {
-        for (name, contents) in
-            export(&part, exporters, renderer).map_err(|e| place::error(&e.note(), lang))?
-        {
-            write(&format!("{below}/{name}"), &contents).map_err(|e| place::error(&e.note(), lang))?;
-        }
-    }
-    Ok(())
 }

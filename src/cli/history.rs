@@ -1,7 +1,7 @@
 //! `sagnac history`: what the results of a store tell over time.
 
 use super::keep::StoreArgs;
-use super::options::renderer;
+use super::options::{Pages, pdf_pages, renderer};
 use super::printer::{print_styled, terminal as standard_output};
 use super::{exit, place, store};
 use crate::acceptance::history::history;
@@ -11,6 +11,7 @@ use crate::measurand;
 use crate::output::StagedFile;
 use crate::record::{HistoryAsked, HistoryRecord};
 use crate::report::history::{HistoryView, csv};
+use crate::report::pdf::of_history;
 use crate::report::terminal::{self, Terminal};
 use crate::store::{Attempt, Filter};
 use clap::{Args, ValueEnum};
@@ -61,6 +62,9 @@ pub struct HistoryArgs {
     /// Folder of templates that override built-in ones of the same name
     #[arg(long, value_name = "DIR")]
     templates: Option<PathBuf>,
+    /// Pages of the PDF
+    #[arg(long, value_name = "PAGES")]
+    pages: Option<Pages>,
 }
 
 /// Form of the answer.
@@ -74,6 +78,8 @@ pub enum HistoryFormat {
     Json,
     /// A page with figures
     Html,
+    /// The same as PDF
+    Pdf,
 }
 
 pub fn main(args: &HistoryArgs, lang: Lang) -> Result<u8, String> {
@@ -92,10 +98,20 @@ pub fn main(args: &HistoryArgs, lang: Lang) -> Result<u8, String> {
         return Err(say("history.nothing".into()));
     }
     let record = history(&attempts, args.asked(), args.common);
-    let text = rendered(args, &attempts, &record, lang)?;
+    if args.format == HistoryFormat::Pdf && args.out.is_none() {
+        return Err(say("history.pdf_to_file".into()));
+    }
+    let bytes = match pdf_pages(args.format == HistoryFormat::Pdf, args.pages, lang)? {
+        Some(pages) => {
+            let renderer = renderer(args.templates.as_deref(), lang)?;
+            of_history(&record, &json(&record, lang)?, &renderer, pages, lang).map_err(|e| say(e.note()))?
+        }
+        None => rendered(args, &attempts, &record, lang)?.into_bytes(),
+    };
+    let text = String::from_utf8_lossy(&bytes);
     match &args.out {
         Some(out) => {
-            write(out, &text, args.force).map_err(say)?;
+            write(out, &bytes, args.force).map_err(say)?;
             place::print(&format!("{}\n", place::shown(out)));
         }
         None if args.format == HistoryFormat::Table => print_styled(&text),
@@ -138,11 +154,7 @@ fn rendered(
     let say = |note: Note| place::error(&note, lang);
     Ok(match args.format {
         HistoryFormat::Csv => csv(attempts, args.measurand.as_deref()),
-        HistoryFormat::Json => {
-            let json = serde_json::to_string_pretty(record)
-                .map_err(|e| say(Note::new("system.other").with("reason", e.to_string())))?;
-            format!("{json}\n")
-        }
+        HistoryFormat::Json | HistoryFormat::Pdf => json(record, lang)?,
         HistoryFormat::Table => {
             let plain = Terminal { width: FILE_WIDTH, colour: false };
             let target = if args.out.is_some() { plain } else { standard_output() };
@@ -154,9 +166,15 @@ fn rendered(
     })
 }
 
-fn write(out: &Path, text: &str, force: bool) -> Result<(), Note> {
+fn json(record: &HistoryRecord, lang: Lang) -> Result<String, String> {
+    let json = serde_json::to_string_pretty(record)
+        .map_err(|e| place::error(&Note::new("system.other").with("reason", e.to_string()), lang))?;
+    Ok(format!("{json}\n"))
+}
+
+fn write(out: &Path, bytes: &[u8], force: bool) -> Result<(), Note> {
     let staged = StagedFile::begin(out, &[], force).map_err(|e| e.note())?;
-    let written = staged.file().map_err(|e| e.note())?.write_all(text.as_bytes());
+    let written = staged.file().map_err(|e| e.note())?.write_all(bytes);
     written.map_err(|e| staged.refused(e).note())?;
     staged.publish().map_err(|e| e.note())?;
     Ok(())

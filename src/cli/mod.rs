@@ -35,9 +35,12 @@ mod run_args;
 mod run_phases;
 mod schema;
 mod selftest;
+mod sign;
 mod simulate;
 mod single_test;
 mod store;
+mod verify;
+mod writer;
 
 use crate::config::procedure::phases::is_phased;
 use crate::i18n::{Lang, visible};
@@ -126,6 +129,20 @@ enum Verb {
         sagnac simulate model.toml --schedule next/schedule.toml --out simulated.csv"
     )]
     Plan(plan::PlanArgs),
+    /// Find out whether a folder of results is still what was written, and who signed it
+    #[command(after_help = "Exit codes: 0 nothing differs, 1 something differs, 2 could not.\n\n\
+        Examples:\n  sagnac verify reports/SN-0042 --signers allowed_signers\n  \
+        sagnac verify reports/SN-0042 --recording unit-0042.csv.gz")]
+    Verify(verify::VerifyArgs),
+    /// Sign a folder of results
+    #[command(
+        after_help = "Example:\n  sagnac sign reports/SN-0042 --key ~/.ssh/id_ed25519 --role tested --name \"A. Ivanova\""
+    )]
+    Sign(sign::SignArgs),
+    /// Sign a folder of results that another has signed, and let rows pass where there is a reason
+    #[command(after_help = "Examples:\n  sagnac approve reports/SN-0042 --key ~/.ssh/id_ed25519\n  \
+        sagnac approve reports/SN-0042 --key lead.pub --waive bias_instability --reason \"deviation permit 17\"")]
+    Approve(sign::ApproveArgs),
     /// Keep results: immutable, addressed by content, with an index of all attempts at a test
     #[command(after_help = "Exit codes: 0 done, 1 something is wrong in the store, 2 could not.\n\n\
         Examples:\n  sagnac store init /srv/sagnac\n  \
@@ -194,6 +211,9 @@ pub fn main() -> ExitCode {
         Verb::Effects(args) => effects::main(&args, lang),
         Verb::Explain(args) => explain::main(&args, lang),
         Verb::Plan(args) => plan::main(&args, lang),
+        Verb::Verify(args) => verify::main(&args, lang),
+        Verb::Sign(args) => sign::sign(&args, lang),
+        Verb::Approve(args) => sign::approve(&args, lang),
         Verb::Store(args) => store::main(&args, lang),
         Verb::History(args) => history::main(&args, lang),
         Verb::Procedures(args) => procedures::main(&args, lang),

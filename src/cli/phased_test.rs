@@ -6,6 +6,7 @@ use super::place;
 use super::procedures::say_which;
 use super::progress::Progress;
 use super::run_args::RunArgs;
+use super::single_test::kept_texts;
 use crate::acceptance::phases::{Done, combine};
 use crate::acceptance::{Outcome, Request, session};
 use crate::config::manifest::{Manifest, ManifestFile};
@@ -197,10 +198,12 @@ impl<'a> PhasedTest<'a> {
         let label = format!("{}: {}", phase.title.say(lang), Note::new("cli.reading").say(lang));
         let missing = if refused.is_none() { missing_column(phase, &source, progress) } else { None };
         explained.extend(missing.as_ref().map(|_| phase.id.clone()));
-        match refused.or(missing) {
+        let mut outcome = match refused.or(missing) {
             Some(e) => not_run(&request, &e.into()),
             None => with_progress(&request, &label, progress).unwrap_or_else(|e| not_run(&request, &e)),
-        }
+        };
+        outcome.tables.extend(kept_texts(&phase.procedure, phase.limits.as_ref()));
+        outcome
     }
 }
 

@@ -1,6 +1,5 @@
 //! `sagnac plan`: the schedule of the next test, which tells the explanations of a recording apart.
 
-use super::finish::write;
 use super::inputs::Inputs;
 use super::options::OutputArgs;
 use super::place::OutputPlace;
@@ -17,7 +16,6 @@ use crate::output::Kind;
 use crate::plan::record::PlanOutcome;
 use crate::plan::{Limits, plan};
 use crate::record::explanation::Explanation;
-use crate::report::export::EXPORTERS;
 use crate::report::plan::{PlanContext, PlanFile, PlanView};
 use crate::report::{ALTERNATIVES_FILE, Results, StoredResults, terminal};
 use crate::series::{SeriesOptions, load_series};
@@ -60,7 +58,7 @@ pub struct PlanArgs {
 
 pub fn main(args: &PlanArgs, lang: Lang) -> Result<u8, String> {
     let limits = limits(args, lang)?;
-    let renderer = args.output.renderer(lang)?;
+    let writer = args.output.writer(lang)?;
     let claim = load_model(&args.model).map_err(|p| p.say(lang))?.claim;
     let now = Utc::now();
     let printer = Printer::new(&args.output, lang);
@@ -92,7 +90,7 @@ pub fn main(args: &PlanArgs, lang: Lang) -> Result<u8, String> {
     let outcome = plan.outcome;
     let file = PlanFile { plan, context };
     let view = PlanView::new(&file, lang);
-    let folder = write(&Results::of_plan(file), folder, EXPORTERS, &renderer, lang)?;
+    let folder = writer.publish(&Results::of_plan(file), folder)?;
     drop(progress);
     printer.outcome(&folder, Kind::Plan, |t| terminal::plan(&view, lang, t))?;
     if view.steps.is_empty() {

@@ -37,7 +37,7 @@ impl Printer {
 
     /// Prints a part of the outcome while the work goes on, where the outcome is printed as text.
     pub fn line(self, text: impl FnOnce(Terminal) -> String) {
-        if !self.quiet && self.format == PrintFormat::Text {
+        if !self.quiet && self.format != PrintFormat::Json {
             print_styled(&text(terminal()));
         }
     }
@@ -76,7 +76,7 @@ impl Printer {
 impl Printer {
     /// Prints what to do next, unless only the result was asked for.
     pub fn next_step(self, step: Option<&Note>) {
-        if let Some(step) = step.filter(|_| !self.quiet && self.format == PrintFormat::Text) {
+        if let Some(step) = step.filter(|_| !self.quiet && self.format != PrintFormat::Json) {
             place::print(&format!("{}\n", step.say(self.lang)));
         }
     }

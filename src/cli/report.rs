@@ -1,15 +1,19 @@
 //! `sagnac report`: the report of a result anew, without its recording.
 
-use super::finish::{write, write_files};
 use super::inputs::Inputs;
-use super::options::renderer;
+use super::options::{Pages, pdf_pages, renderer};
 use super::progress::{Display, Progress};
+use super::writer::Writer;
 use super::{exit, place};
+use crate::config::laboratory;
 use crate::i18n::{Lang, Note};
 use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::LotUnit;
-use crate::report::export::{EXPORTERS, Exporter};
-use crate::report::{Renderer, Results, StoredResults};
+use crate::report::export::{Dcc, EXPORTERS, FURTHER};
+use crate::report::signatures::{self, SIGNATURES_SHOWN, Signature};
+use crate::report::{Results, StoredResults};
+use crate::signing;
+use crate::verify::{Folder, stated_hashes};
 use chrono::Utc;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
@@ -19,9 +23,15 @@ use std::path::{Component, Path, PathBuf};
 pub struct ReportArgs {
     /// Result: a result.json, explain.json, comparison.json, index.json or plan.json, or the folder that holds one
     result: PathBuf,
-    /// Forms to write, separated by commas; result.json is always written [default: all]
+    /// Forms to write, separated by commas; result.json is always written [default: html, md, csv, json, svg, junit]
     #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = formats())]
     format: Vec<String>,
+    /// Laboratory, customer and persons, for the form dcc (laboratory.toml)
+    #[arg(long, value_name = "FILE")]
+    laboratory: Option<PathBuf>,
+    /// Pages of the PDF
+    #[arg(long, value_name = "PAGES")]
+    pages: Option<Pages>,
     /// Output folder [default: named after the unit and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -33,12 +43,22 @@ pub struct ReportArgs {
     templates: Option<PathBuf>,
 }
 
+/// The form that needs a laboratory, and the one that is made of the others.
+const DCC: &str = "dcc";
+const PDF: &str = "pdf";
+
 fn formats() -> PossibleValuesParser {
-    PossibleValuesParser::new(EXPORTERS.iter().map(|e| e.id()))
+    PossibleValuesParser::new(EXPORTERS.iter().chain(FURTHER).map(|e| e.id()).chain([DCC, PDF]))
 }
 
 pub fn main(args: &ReportArgs, lang: Lang) -> Result<u8, String> {
-    let renderer = renderer(args.templates.as_deref(), lang)?;
+    let asked = |id: &str| args.format.iter().any(|f| f == id);
+    let pdf = pdf_pages(asked(PDF), args.pages, lang)?;
+    let signatures = signatures_of(&args.result);
+    let renderer = renderer(args.templates.as_deref(), lang)?.with_signatures(signatures.clone());
+    let writer = Writer::new(renderer, pdf, lang)?.of_forms(&args.format);
+    let laboratory = args.laboratory.as_deref().map(laboratory::load).transpose().map_err(|p| p.say(lang))?;
+    let writer = if asked(DCC) { writer.with_certificate(Dcc { laboratory }) } else { writer };
     let stored = StoredResults::open(&args.result).map_err(|note| place::error(&note, lang))?;
     let out = place::OutputPlace::new(args.out.as_deref(), "report", stored.results.subject(), Utc::now());
     let folder = Inputs::new(args.force)
@@ -49,24 +69,33 @@ pub fn main(args: &ReportArgs, lang: Lang) -> Result<u8, String> {
     for note in &stored.missing {
         place::eprint_diagnostic(&place::warning(note, lang));
     }
-    let chosen = |e: &&&dyn Exporter| args.format.is_empty() || args.format.iter().any(|f| f == e.id());
-    let exporters: Vec<&dyn Exporter> = EXPORTERS.iter().filter(chosen).copied().collect();
     let mut progress = Progress::new(Display::unless(false), lang);
     progress.stage("progress.writing");
     if let Results::Lot(lot, _) = &stored.results {
         let from = if args.result.is_dir() { Some(args.result.as_path()) } else { args.result.parent() };
         for unit in &lot.units {
-            let written =
-                unit_anew(unit, from.unwrap_or(Path::new("")), &folder, &exporters, &renderer, lang);
+            let written = unit_anew(unit, from.unwrap_or(Path::new("")), &folder, &writer, lang);
             if let Some(note) = written? {
                 progress.beside(|| place::eprint_diagnostic(&place::warning(&note, lang)));
             }
         }
     }
-    let folder = write(&stored.results, folder, &exporters, &renderer, lang)?;
+    if !signatures.is_empty() {
+        let shown = serde_json::to_vec_pretty(&signatures).unwrap_or_default();
+        folder.write(SIGNATURES_SHOWN, &shown).map_err(|e| place::error(&e.note(), lang))?;
+    }
+    let folder = writer.publish(&stored.results, folder)?;
     drop(progress);
     place::print(&format!("{}\n", place::shown(&folder)));
     Ok(exit::PASS)
+}
+
+/// The signatures of the folder that a result is in, as they are found; else those that its pages showed.
+fn signatures_of(result: &Path) -> Vec<Signature> {
+    let Ok(folder) = Folder::at(result) else { return vec![] };
+    let files = signing::files_of(&folder.path, stated_hashes(&folder.path).into_keys());
+    let links = signing::chain(&folder.path, &files);
+    if links.is_empty() { signatures::shown(&folder.path) } else { Signature::of_chain(&links) }
 }
 
 /// Writes the results of a unit of a lot into the folder of the lot; gives why not where they are not there any more.
@@ -74,8 +103,7 @@ fn unit_anew(
     unit: &LotUnit,
     lot: &Path,
     folder: &StagedFolder,
-    exporters: &[&dyn Exporter],
-    renderer: &Renderer,
+    writer: &Writer,
     lang: Lang,
 ) -> Result<Option<Note>, String> {
     // A lot leads to no place outside its folder.
@@ -91,8 +119,7 @@ fn unit_anew(
         Err(note) => return Ok(Some(note)),
     };
     let part = StagedPart::begin(folder, &unit.folder, stored.inputs);
-    let put = |name: &str, contents: &[u8]| part.write(name, contents);
-    write_files(&stored.results, &put, exporters, renderer, lang)?;
+    writer.files(&stored.results, &part)?;
     part.finish(stored.results.whole(lang).record()).map_err(|e| place::error(&e.note(), lang))?;
     Ok(None)
 }

@@ -18,7 +18,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     args.join.check(&args.recording, "join.help.run", lang)?;
     let now = Utc::now();
     let test = SingleTest::load(args, now, lang)?;
-    let renderer = args.output.renderer(lang)?;
+    let writer = args.output.writer(lang)?;
     let keeper = Keeper::new(&args.store, lang)?;
     let printer = Printer::new(&args.output, lang);
     let mut progress = printer.progress();
@@ -48,7 +48,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let lacks = evaluated.problems.is_some() && find(&args.procedure).is_some();
     let own = next_step::init(&args.recording, "").filter(|_| lacks);
     let own = own.map(|step| format!("{}\n", step.say(lang))).unwrap_or_default();
-    let code = settle(evaluated, folder, &keeper, &renderer, printer, progress)
+    let code = settle(evaluated, folder, &keeper, &writer, printer, progress)
         .map_err(|message| format!("{message}{own}"))?;
     let step = next_step::after_fail(&args.recording, &test.procedure.value);
     printer.next_step(step.filter(|_| code == exit::FAIL).as_ref());

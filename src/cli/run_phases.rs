@@ -27,7 +27,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     };
     let manifest = manifest::load(path).map_err(|p| p.say(lang))?;
     belong(&test.phased, &manifest).map_err(error)?;
-    let renderer = args.output.renderer(lang)?;
+    let writer = args.output.writer(lang)?;
     let keeper = Keeper::new(&args.store, lang)?;
     let serial = test.serial(args.serial.as_deref(), &manifest).map_err(error)?;
     let id = &test.phased.identity.id;
@@ -43,5 +43,5 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
             progress.beside(|| place::eprint_diagnostic(&place::error(&note, lang)));
         }
     }
-    finish(results, folder, &keeper, &renderer, printer, progress)
+    finish(results, folder, &keeper, &writer, printer, progress)
 }

@@ -66,9 +66,7 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Datasheet => {
             serde_json::to_value(schemars::schema_for!(Listed<DataSheet>)).unwrap_or_default()
         }
-        SchemaKind::History => {
-            serde_json::to_value(schemars::schema_for!(HistoryRecord)).unwrap_or_default()
-        }
+        SchemaKind::History => serde_json::to_value(schemars::schema_for!(HistoryRecord)).unwrap_or_default(),
         SchemaKind::Explain => {
             serde_json::to_value(schemars::schema_for!(Listed<Explanation>)).unwrap_or_default()
         }

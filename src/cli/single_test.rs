@@ -6,7 +6,7 @@ use super::place;
 use super::procedures::say_which;
 use super::progress::Progress;
 use super::run_args::RunArgs;
-use crate::acceptance::{Request, RunError, explained};
+use crate::acceptance::{Request, RunError, Table, explained};
 use crate::config::manifest::Manifest;
 use crate::config::model::Claim;
 use crate::config::procedure::missing_columns::missing_columns;
@@ -17,9 +17,17 @@ use crate::i18n::Lang;
 use crate::ingest::unit_data::UnitData;
 use crate::ingest::{Recording, RecordingError, Source, open_recording};
 use crate::noise::tau_grid::TauGrid;
+use crate::output::{LIMITS_FILE, PROCEDURE_FILE};
 use crate::record::{RunKind, UnitUnderTest};
 use chrono::{DateTime, Utc};
 use std::path::{Path, PathBuf};
+
+/// The texts that a test was made by, as files of its result.
+pub fn kept_texts(procedure: &Loaded<Procedure>, limits: Option<&Loaded<LimitsFile>>) -> Vec<Table> {
+    let procedure = (PROCEDURE_FILE.to_owned(), procedure.text());
+    let limits = limits.map(|limits| (LIMITS_FILE.to_owned(), limits.text()));
+    std::iter::once(procedure).chain(limits).collect()
+}
 
 /// A procedure of one phase, with its limits and the model that it names.
 pub struct SingleTest<'a> {
@@ -103,8 +111,21 @@ impl<'a> SingleTest<'a> {
         completed(unit, manifest, &self.units)
     }
 
-    /// Runs the test. A recording that could not be opened gives a record that says so.
+    /// Runs the test, and keeps the procedure and the limits with its results. A recording that could not be opened gives a
+    /// record that says so.
     pub fn evaluate(
+        &self,
+        recording: &[PathBuf],
+        opened: Result<Recording, RecordingError>,
+        given: Option<&str>,
+        progress: &mut Progress,
+    ) -> Evaluated {
+        let mut evaluated = self.run(recording, opened, given, progress);
+        evaluated.results.outcome.tables.extend(kept_texts(&self.procedure, self.limits.as_ref()));
+        evaluated
+    }
+
+    fn run(
         &self,
         recording: &[PathBuf],
         opened: Result<Recording, RecordingError>,

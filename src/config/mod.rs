@@ -1,12 +1,13 @@
 //! TOML files whose keys are described once, as data: reading with every problem placed, and the parts of schema and
 //! guide that follow from the description.
 //!
-//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`manifest`], [`layout`] and [`user`] are the files; the others
+//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`manifest`], [`layout`], [`laboratory`] and [`user`] are the files; the others
 //! know none of them.
 
 pub mod alternatives;
 pub(crate) mod contained_files;
 pub mod diagnostics;
+pub mod laboratory;
 pub mod layout;
 mod line_repair;
 pub mod manifest;

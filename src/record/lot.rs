@@ -2,7 +2,10 @@
 //!
 //! It has of each unit what tells its verdict and why; the whole of it is in the `result.json` of the unit's folder.
 
-use super::{ConditionStatus, MeasurandRecord, Message, ProcedureRecord, Program, Session, UnitUnderTest};
+use super::{
+    ConditionRecord, ConditionStatus, MeasurandRecord, Message, ProcedureRecord, Program, Session,
+    UnitUnderTest,
+};
 use crate::estimate::Verdict;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -105,6 +108,18 @@ pub struct LotCondition {
     /// Why it is not plainly met; absent where it is.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub message: Option<Message>,
+}
+
+impl LotCondition {
+    /// A condition of a run, in short.
+    pub fn of(condition: &ConditionRecord) -> LotCondition {
+        LotCondition {
+            id: condition.id.clone(),
+            phase: condition.phase.clone(),
+            status: condition.status,
+            message: condition.message.clone().filter(|_| condition.status != ConditionStatus::Ok),
+        }
+    }
 }
 
 impl VerdictCounts {

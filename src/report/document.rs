@@ -6,7 +6,7 @@ use super::explain::{ExplainFile, ExplainView};
 use super::joint::{JointFile, JointView};
 use super::lot::LotView;
 use super::plan::{PlanFile, PlanView};
-use super::render::{run_context, view_context};
+use super::render::{paper_context, run_context, view_context};
 use super::results::{ExplanationResults, Results};
 use super::view::{PhasePart, View};
 use crate::acceptance::Outcome;
@@ -174,6 +174,14 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// The run that the document is of.
+    pub fn run(&self) -> Option<&'a RunRecord> {
+        match self.record {
+            Record::Run(run) => Some(run),
+            _ => None,
+        }
+    }
+
     /// What the folder of the document holds.
     pub fn kind(&self) -> Kind {
         match self.record {
@@ -200,6 +208,43 @@ impl<'a> Document<'a> {
     /// What templates see: `v`, the view; `locale`, the words of the language; `run`, the record of a run.
     pub fn context(&self) -> &Value {
         &self.context
+    }
+
+    /// What templates see where the page is to be printed: the same, and `paper`.
+    pub fn paper_context(&self) -> Value {
+        paper_context(self.context.clone())
+    }
+
+    /// Title of the page.
+    pub fn title(&self) -> String {
+        let title = self.context.get_attr("v").and_then(|v| v.get_attr("title"));
+        title.ok().filter(|t| !t.is_undefined()).map(|t| t.to_string()).unwrap_or_default()
+    }
+
+    /// What the document is of, for the head of a page: the unit, the case, the procedure or the model.
+    pub fn subject(&self) -> String {
+        match self.record {
+            Record::Run(run) => run.unit_under_test.serial.clone().unwrap_or_default(),
+            Record::Explanation(file) => file.explanation.case.clone(),
+            Record::Comparison(_) => String::new(),
+            Record::Lot(lot) => lot.procedure.id.clone(),
+            Record::Joint(file) => file.explanation.case.clone(),
+            Record::Plan(file) => file.plan.case.clone(),
+            Record::DataSheet(sheet) => sheet.model.clone().unwrap_or_default(),
+        }
+    }
+
+    /// When the record was made, RFC 3339.
+    pub fn made_at(&self) -> &str {
+        match self.record {
+            Record::Run(run) => &run.session.evaluated_at,
+            Record::Explanation(file) => &file.context.explained_at,
+            Record::Comparison(comparison) => &comparison.compared_at,
+            Record::Lot(lot) => &lot.session.evaluated_at,
+            Record::Joint(file) => &file.context.explained_at,
+            Record::Plan(file) => &file.context.planned_at,
+            Record::DataSheet(sheet) => &sheet.made_at,
+        }
     }
 
     /// The record, for a JSON file.

@@ -18,3 +18,11 @@ pub struct FigureFile<'a> {
     /// The figures, in the order of the report.
     pub figures: Cow<'a, [Figure]>,
 }
+
+/// The text of the file for some figures.
+///
+/// # Errors
+/// What keeps them from being written as JSON.
+pub fn text(figures: &[Figure]) -> Result<String, serde_json::Error> {
+    serde_json::to_string(&FigureFile { format: FIGURES_FORMAT.into(), figures: figures.into() })
+}

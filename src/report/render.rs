@@ -2,10 +2,11 @@
 
 use super::number;
 use super::prose::{self, prose};
+use super::signatures::{Signature, SignatureView};
 use super::translator::Translator;
 use super::view::View;
 use crate::figure::Figure;
-use crate::i18n::{Lang, Localize, Note, io_reason, lookup, table};
+use crate::i18n::{Arg, Lang, Localize, Note, io_reason, lookup, table};
 use crate::record::RunRecord;
 use base64::Engine as _;
 use minijinja::value::{Kwargs, Serde, Value};
@@ -22,6 +23,8 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("pointer.js", include_str!("../../templates/pointer.js")),
     ("cover.html", include_str!("../../templates/cover.html")),
     ("limits.html", include_str!("../../templates/limits.html")),
+    ("conditions.md", include_str!("../../templates/conditions.md")),
+    ("signoff.md", include_str!("../../templates/signoff.md")),
     ("conditions.html", include_str!("../../templates/conditions.html")),
     ("files.html", include_str!("../../templates/files.html")),
     ("top.html", include_str!("../../templates/top.html")),
@@ -41,6 +44,7 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("datasheet.html", include_str!("../../templates/datasheet.html")),
     ("datasheet.md", include_str!("../../templates/datasheet.md")),
     ("history.html", include_str!("../../templates/history.html")),
+    ("history.md", include_str!("../../templates/history.md")),
     ("explain.html", include_str!("../../templates/explain.html")),
     ("explain.md", include_str!("../../templates/explain.md")),
     ("joint.html", include_str!("../../templates/joint.html")),
@@ -89,6 +93,14 @@ pub enum ReportError {
     Json(serde_json::Error),
     /// Verdicts cannot be written as XML.
     Xml(String),
+    /// A certificate lacks what it must state.
+    Refused(Vec<Note>),
+    /// A table cannot be written as Parquet.
+    Parquet(String),
+    /// This build makes no PDF.
+    NoPdf,
+    /// A page cannot be typeset.
+    Pdf(String),
 }
 
 impl ReportError {
@@ -113,7 +125,15 @@ impl ReportError {
                 Note::new("template_error.io").with("path", path.as_str()).with("reason", io_reason(source))
             }
             ReportError::Json(e) => Note::new("system.other").with("reason", e.to_string()),
-            ReportError::Xml(reason) => Note::new("system.other").with("reason", reason.as_str()),
+            ReportError::Xml(reason) | ReportError::Parquet(reason) => {
+                Note::new("system.other").with("reason", reason.as_str())
+            }
+            ReportError::Refused(lacking) => {
+                let all = lacking.iter().cloned().map(Arg::from).collect();
+                Note::new("dcc.refused").with("list", Arg::Several(all, "; ".into()))
+            }
+            ReportError::NoPdf => "pdf.none".into(),
+            ReportError::Pdf(reason) => Note::new("pdf.refused").with("reason", reason.as_str()),
         }
     }
 }
@@ -138,6 +158,7 @@ impl std::error::Error for ReportError {
 #[derive(Debug, Clone, Default)]
 pub struct Renderer {
     overrides: BTreeMap<String, String>,
+    signatures: Vec<Signature>,
 }
 
 impl Renderer {
@@ -183,6 +204,21 @@ impl Renderer {
         Ok(renderer)
     }
 
+    /// The signatures that pages show, as JSON; empty where there are none.
+    pub(super) fn signatures_text(&self) -> String {
+        match self.signatures.as_slice() {
+            [] => String::new(),
+            some => serde_json::to_string_pretty(some).unwrap_or_default(),
+        }
+    }
+
+    /// The same templates, which show signatures.
+    #[must_use]
+    pub fn with_signatures(mut self, signatures: Vec<Signature>) -> Renderer {
+        self.signatures = signatures;
+        self
+    }
+
     fn environment(&self, lang: Lang) -> Result<Environment<'_>, ReportError> {
         let mut env = Environment::new();
         env.set_undefined_behavior(UndefinedBehavior::SemiStrict);
@@ -205,6 +241,8 @@ impl Renderer {
             };
             out.write_str(&escaped).map_err(minijinja::Error::from)
         });
+        let signatures: Vec<SignatureView> = self.signatures.iter().map(|s| s.view(lang)).collect();
+        env.add_global("signatures", Value::from(Serde(&signatures)));
         let words = Translator { lang };
         env.add_function("t", move |key: String, args: Kwargs| -> Result<String, minijinja::Error> {
             let mut given: Vec<(String, String)> = vec![];
@@ -281,6 +319,11 @@ pub(super) fn view_context(view: &impl serde::Serialize, lang: Lang) -> Value {
         v => Value::from(Serde(view)),
         locale => Value::from(Serde(table(lang))),
     }
+}
+
+/// What a template sees whose page is to be printed.
+pub(super) fn paper_context(context: Value) -> Value {
+    minijinja::context! { paper => true, ..context }
 }
 
 /// Renders the HTML report: one file that needs no other.

@@ -157,6 +157,17 @@ impl Results {
         }
     }
 
+    /// Version of the program that wrote the results; `None` where their record does not tell it.
+    pub fn program_version(&self) -> Option<&str> {
+        match self {
+            Results::Run(results) => Some(&results.outcome.record.program.version),
+            Results::Comparison(comparison, ..) => Some(&comparison.program.version),
+            Results::Lot(lot, _) => Some(&lot.program.version),
+            Results::DataSheet(sheet, ..) => Some(&sheet.program.version),
+            Results::Explanation(_) | Results::Joint(_) | Results::Plan(..) => None,
+        }
+    }
+
     /// What a folder is named after: the serial number of the unit, or the case that is explained.
     pub fn subject(&self) -> Option<&str> {
         match self {
@@ -222,6 +233,15 @@ impl StoredResults {
             _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),
         };
         Ok(StoredResults { results, inputs: listing.inputs, missing: from.missing })
+    }
+}
+
+impl StoredResults {
+    /// True where the data of figures are missing, or a phase with its own: the page is not the one that was written.
+    pub fn lacks_figures(&self) -> bool {
+        self.missing
+            .iter()
+            .any(|n| matches!(n.id.as_ref(), "result_error.no_figures" | "result_error.no_phase"))
     }
 }
 

@@ -6,7 +6,7 @@ use super::model::{Loaded, Procedure};
 use super::parse;
 use crate::config::contained_files;
 use crate::config::text_file::{self, Wording};
-use sha2::{Digest, Sha256};
+use crate::output::sha256;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -59,7 +59,7 @@ fn loaded<T>(
         (Some(value), warnings) => Ok(Loaded {
             value,
             path: name.to_owned(),
-            sha256: Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect(),
+            sha256: sha256(bytes),
             source: Arc::new(source),
             warnings: warnings.list,
         }),

@@ -8,10 +8,12 @@ use super::unit_facts::UnitFact;
 use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::measurand::Measurand;
+use crate::output::sha256;
 use crate::record::{
     ClauseRecord, ConditionStatus, ExclusionRecord, InstrumentRecord, ProcedureRecord, WaiverRecord,
 };
 use crate::recording::Channel;
+use crate::signing::Role;
 use crate::temperature::{TemperatureTest, WarmUpTest};
 use chrono::NaiveDate;
 use sagnac_ingest::ReadOptions;
@@ -316,12 +318,14 @@ pub struct ReportSpec {
     pub figures: Option<Vec<&'static str>>,
     /// Whether published values stand beside the measured ones.
     pub show_reference: bool,
+    /// Roles that must sign a result, each by a key of its own.
+    pub signatures: Vec<Role>,
 }
 
 impl Default for ReportSpec {
     /// Every figure, and published values.
     fn default() -> ReportSpec {
-        ReportSpec { title: None, figures: None, show_reference: true }
+        ReportSpec { title: None, figures: None, show_reference: true, signatures: vec![] }
     }
 }
 
@@ -339,6 +343,15 @@ pub struct Waiver {
     pub serial: String,
     /// The record that goes into the report of that unit.
     pub record: WaiverRecord,
+}
+
+impl<T> Loaded<T> {
+    /// The text of the file, byte for byte.
+    pub fn text(&self) -> String {
+        let text = &self.source.text;
+        // A byte order mark is no part of the text, and one of the file.
+        if sha256(text.as_bytes()) == self.sha256 { text.clone() } else { format!("\u{feff}{text}") }
+    }
 }
 
 impl Loaded<Procedure> {

@@ -17,6 +17,7 @@ use crate::config::contained_files;
 use crate::config::read_tables::checked;
 use crate::measurand::EARTH_RATE_OPTION;
 use crate::record::{ClauseRecord, ExclusionRecord, WaiverRecord};
+use crate::signing::Role;
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
 use sagnac_ingest::layout::LayoutFile;
 use std::path::{Path, PathBuf};
@@ -350,6 +351,10 @@ fn report(section: Option<&Section>) -> ReportSpec {
         title: section.and_then(|s| s.local_text("title")),
         figures,
         show_reference: section.is_none_or(|s| s.flag("show_reference")),
+        signatures: match section.and_then(|s| s.entry("signatures")) {
+            Some(Entry::Words(words)) => words.iter().filter_map(|w| Role::of(w)).collect(),
+            _ => vec![],
+        },
     }
 }
 

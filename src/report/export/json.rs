@@ -1,7 +1,7 @@
 //! JSON: the record, and the data of the figures beside it.
 
 use super::{ExportedFile, Exporter};
-use crate::report::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
+use crate::report::figure_file::{FIGURES_FILE, text};
 use crate::report::{Document, Renderer, ReportError};
 
 /// The record, such as `result.json`, with every number to the last digit; the data of its figures in
@@ -18,9 +18,7 @@ impl Exporter for Json {
         let mut files = vec![ExportedFile::new(document.kind().record_file(), record)];
         let figures = document.own_figures();
         if !figures.is_empty() {
-            let file = FigureFile { format: FIGURES_FORMAT.into(), figures: figures.into() };
-            files
-                .push(ExportedFile::new(FIGURES_FILE, serde_json::to_vec(&file).map_err(ReportError::Json)?));
+            files.push(ExportedFile::new(FIGURES_FILE, text(figures).map_err(ReportError::Json)?));
         }
         Ok(files)
     }

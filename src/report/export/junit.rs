@@ -3,7 +3,7 @@
 use super::{ExportedFile, Exporter};
 use crate::report::{Document, Renderer, ReportError, lot};
 
-/// The verdicts of a lot as `junit.xml`; of other results nothing.
+/// The verdicts of a lot or of a run as `junit.xml`; of other results nothing.
 pub struct Junit;
 
 impl Exporter for Junit {
@@ -12,8 +12,12 @@ impl Exporter for Junit {
     }
 
     fn files(&self, document: &Document<'_>, _: &Renderer) -> Result<Vec<ExportedFile>, ReportError> {
-        let Some(record) = document.lot() else { return Ok(vec![]) };
-        let text = lot::junit(record).map_err(|e| ReportError::Xml(e.to_string()))?;
+        let text = match (document.lot(), document.run()) {
+            (Some(record), _) => lot::junit(record),
+            (None, Some(run)) if run.procedure.is_some() => lot::junit_of_run(run),
+            _ => return Ok(vec![]),
+        };
+        let text = text.map_err(|e| ReportError::Xml(e.to_string()))?;
         Ok(vec![ExportedFile::new("junit.xml", text)])
     }
 }

@@ -1,26 +1,36 @@
 //! Forms in which results are written, one file each: an [`Exporter`] and its line in [`EXPORTERS`].
 
+mod atml;
 mod csv;
+mod dcc;
 mod exporter;
 mod html;
 mod json;
 mod junit;
 mod markdown;
+mod measurands;
 mod svg;
+mod xml;
 
+pub use atml::Atml;
 pub use csv::Csv;
+pub use dcc::{Dcc, missing};
 pub use exporter::{ExportedFile, Exporter};
 pub use html::Html;
 pub use json::Json;
 pub use junit::Junit;
 pub use markdown::Markdown;
+pub use measurands::Parquet;
 pub use svg::Svg;
 
 use super::{Document, Renderer, ReportError};
 use std::collections::BTreeMap;
 
-/// Every form, in the order of the help.
+/// Every form that is written unasked, in the order of the help.
 pub static EXPORTERS: &[&dyn Exporter] = &[&Html, &Markdown, &Csv, &Json, &Svg, &Junit];
+
+/// Forms that are written where they are asked for by name.
+pub static FURTHER: &[&dyn Exporter] = &[&Parquet, &Atml];
 
 /// The files of a document in some forms: contents by name.
 ///

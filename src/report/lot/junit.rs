@@ -7,7 +7,10 @@
 use super::reasons::{condition_reason, measurand_reason, reasons, several_channels};
 use crate::estimate::Verdict;
 use crate::i18n::{Lang, Localize};
-use crate::record::{ConditionStatus, LotCondition, LotRecord, LotUnit, MeasurandRecord};
+use crate::record::{
+    ConditionStatus, LotCondition, LotFile, LotRecord, LotUnit, MeasurandRecord, RecordingFile, RunRecord,
+    SerialSource,
+};
 use crate::report::translator::Translator;
 use chrono::DateTime;
 use quick_junit::{NonSuccessKind, Report, SerializeError, TestCase, TestCaseStatus, TestSuite};
@@ -32,15 +35,45 @@ pub fn junit(lot: &LotRecord) -> Result<String, SerializeError> {
     report.to_string()
 }
 
+/// The document of a run of a procedure: one unit.
+///
+/// # Errors
+/// What keeps it from being written as XML.
+pub fn junit_of_run(run: &RunRecord) -> Result<String, SerializeError> {
+    let Some(procedure) = &run.procedure else { return Report::new("").to_string() };
+    let of = |f: &RecordingFile| LotFile { path: f.path.clone(), sha256: f.sha256.clone() };
+    let unit = LotUnit {
+        unit_under_test: run.unit_under_test.clone(),
+        serial_from: SerialSource::Recording,
+        recording: run.recording.first().map(|f| f.path.clone()).unwrap_or_default(),
+        files: run.recording.iter().map(of).collect(),
+        folder: String::new(),
+        verdict: run.verdict,
+        summary: run.summary.clone(),
+        conditions: run.conditions.iter().map(LotCondition::of).collect(),
+        measurands: run.measurands.iter().filter(|m| m.limit.is_some()).cloned().collect(),
+        errors: run.errors.clone(),
+    };
+    let mut report = Report::new(procedure.title.text());
+    if let Ok(at) = DateTime::parse_from_rfc3339(&run.session.evaluated_at) {
+        report.set_timestamp(at);
+    }
+    report.add_test_suite(suite(&unit, &procedure.id));
+    report.to_string()
+}
+
 fn suite(unit: &LotUnit, procedure: &str) -> TestSuite {
     let mut suite = TestSuite::new(unit.serial());
     for (name, value) in [
         ("verdict", unit.verdict.id()),
-        ("serial_from", unit.serial_from.id()),
+        ("serial_from", if unit.folder.is_empty() { "" } else { unit.serial_from.id() }),
         ("recording", unit.recording.as_str()),
         ("folder", unit.folder.as_str()),
     ] {
-        suite.add_property((name, value));
+        // A run on its own has no folder in a lot.
+        if !value.is_empty() {
+            suite.add_property((name, value));
+        }
     }
     let of = |name: String, phase: Option<&str>, status| {
         let mut case = TestCase::new(name, status);

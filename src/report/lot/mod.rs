@@ -6,7 +6,7 @@ mod quantity;
 mod reasons;
 
 pub use csv::csv;
-pub use junit::junit;
+pub use junit::{junit, junit_of_run};
 pub use quantity::QuantityView;
 
 use super::number::date_time;

@@ -421,8 +421,20 @@ static REPORT: TableSpec = TableSpec {
             "true",
             "Whether published values are shown in a column next to the measured ones.",
         ),
+        optional(
+            "signatures",
+            Kind::Choices(SIGNER_ROLES),
+            "[\"tested\", \"approved\"]",
+            "Who must sign the result, each by a key of their own; `sagnac verify` asks for it. Default: nobody.",
+        ),
     ],
 };
+
+const SIGNER_ROLES: &[Word] = &[
+    ("tested", "who made the test"),
+    ("reviewed", "who checked the result"),
+    ("approved", "who decided on the unit"),
+];
 
 static WAIVER: TableSpec = TableSpec {
     name: "waiver",

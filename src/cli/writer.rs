@@ -1,0 +1,141 @@
+//! How results become files: forms, templates, language.
+
+use super::{inputs, place};
+use crate::i18n::{Lang, Note};
+use crate::output::{OutputError, StagedFolder, StagedPart};
+use crate::report::export::{Dcc, EXPORTERS, Exporter, FURTHER, export};
+use crate::report::pdf::{MAKES_PDF, PdfPages};
+use crate::report::{Document, Renderer, ReportError, Results};
+use std::path::PathBuf;
+
+/// Writes results in some forms.
+pub struct Writer {
+    /// Templates.
+    pub renderer: Renderer,
+    exporters: Vec<&'static dyn Exporter>,
+    certificate: Option<Dcc>,
+    pdf: Option<PdfPages>,
+    lang: Lang,
+}
+
+/// A folder in the making.
+pub trait Target {
+    /// Writes a file; its name may hold sub-folders.
+    ///
+    /// # Errors
+    /// [`OutputError`] for a file that cannot be written.
+    fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError>;
+
+    /// The bytes of the record of the folder once the files `still` are written too.
+    ///
+    /// # Errors
+    /// [`OutputError`] for a record that is no JSON.
+    fn record_with(&self, document: &Document<'_>, still: &[&str]) -> Result<Vec<u8>, OutputError>;
+}
+
+impl Target for StagedFolder {
+    fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
+        StagedFolder::write(self, name, contents)
+    }
+
+    fn record_with(&self, document: &Document<'_>, still: &[&str]) -> Result<Vec<u8>, OutputError> {
+        StagedFolder::record_with(self, document.record(), still)
+    }
+}
+
+impl Target for StagedPart<'_> {
+    fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
+        StagedPart::write(self, name, contents)
+    }
+
+    fn record_with(&self, document: &Document<'_>, still: &[&str]) -> Result<Vec<u8>, OutputError> {
+        StagedPart::record_with(self, document.record(), still)
+    }
+}
+
+impl Writer {
+    /// A writer of every form but PDF, and of that where pages of it are asked for.
+    ///
+    /// # Errors
+    /// The diagnostic, in words, where this build makes no PDF.
+    pub fn new(renderer: Renderer, pdf: Option<PdfPages>, lang: Lang) -> Result<Writer, String> {
+        if pdf.is_some() && !MAKES_PDF {
+            return Err(place::error(&ReportError::NoPdf.note(), lang));
+        }
+        Ok(Writer { renderer, exporters: EXPORTERS.to_vec(), certificate: None, pdf, lang })
+    }
+
+    /// A writer of the forms that are named; of those that are written unasked where none is.
+    #[must_use]
+    pub fn of_forms(mut self, named: &[String]) -> Writer {
+        if !named.is_empty() {
+            let all = EXPORTERS.iter().chain(FURTHER).copied();
+            self.exporters = all.filter(|e| named.iter().any(|n| n == e.id())).collect();
+        }
+        self
+    }
+
+    /// The same, and a calibration certificate.
+    #[must_use]
+    pub fn with_certificate(mut self, certificate: Dcc) -> Writer {
+        self.certificate = Some(certificate);
+        self
+    }
+
+    /// Writes the files of results, all but the record of the whole.
+    ///
+    /// # Errors
+    /// The diagnostic, in words.
+    pub fn files(&self, results: &Results, target: &dyn Target) -> Result<(), String> {
+        let whole = results.whole(self.lang);
+        self.part(&whole, "", target)?;
+        for (below, part) in results.parts(self.lang) {
+            self.part(&part, &format!("{below}/"), target)?;
+        }
+        if let Some(pages) = self.pdf {
+            let name = whole.page("pdf");
+            let record = target.record_with(&whole, &[&name]).map_err(|e| self.refused(&e))?;
+            let pdf = whole.pdf(&self.renderer, &record, pages).map_err(|e| self.said(&e.note()))?;
+            target.write(&name, &pdf).map_err(|e| self.refused(&e))?;
+        }
+        Ok(())
+    }
+
+    /// Writes the files of a document below a part of the folder; the record of the whole comes last of all, with its list.
+    fn part(&self, document: &Document<'_>, below: &str, target: &dyn Target) -> Result<(), String> {
+        let whole = below.is_empty();
+        let record_file = document.kind().record_file();
+        let certificate = self.certificate.iter().map(|c| c as &dyn Exporter);
+        let exporters: Vec<&dyn Exporter> = self.exporters.iter().copied().chain(certificate).collect();
+        let files = export(document, &exporters, &self.renderer).map_err(|e| self.said(&e.note()))?;
+        for (name, contents) in &files {
+            if !whole || name != record_file {
+                target.write(&format!("{below}{name}"), contents).map_err(|e| self.refused(&e))?;
+            }
+        }
+        // The hash on the pages of a part is that of its record; where no record is written, there is none to name.
+        if let Some((pages, record)) = self.pdf.zip(files.get(record_file)).filter(|_| !whole) {
+            let pdf = document.pdf(&self.renderer, record, pages).map_err(|e| self.said(&e.note()))?;
+            let name = format!("{below}{}", document.page("pdf"));
+            target.write(&name, &pdf).map_err(|e| self.refused(&e))?;
+        }
+        Ok(())
+    }
+
+    /// Writes results and puts their folder in its place.
+    ///
+    /// # Errors
+    /// The diagnostic, in words.
+    pub fn publish(&self, results: &Results, folder: StagedFolder) -> Result<PathBuf, String> {
+        self.files(results, &folder)?;
+        inputs::publish(folder, results.whole(self.lang).record(), self.lang)
+    }
+
+    fn refused(&self, error: &OutputError) -> String {
+        self.said(&error.note())
+    }
+
+    fn said(&self, note: &Note) -> String {
+        place::error(note, self.lang)
+    }
+}

@@ -1,0 +1,98 @@
+//! The signatures of a result as its pages show them.
+
+use super::number::date_time;
+use super::translator::Translator;
+use crate::i18n::Lang;
+use crate::signing::{Link, Role};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// File in which a folder keeps what its pages show of the signatures of another.
+pub const SIGNATURES_SHOWN: &str = "signatures.json";
+
+/// A signature, as it was found when the page was made.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Signature {
+    /// What the signer did.
+    pub role: Role,
+    /// Name of the signer, as stated.
+    pub name: Option<String>,
+    /// When, RFC 3339.
+    pub signed_at: String,
+    /// Fingerprint of the key; absent where the signature does not hold.
+    pub key: Option<String>,
+    /// Whether it held, and the files were those that were signed.
+    pub holds: bool,
+    /// Rows that it lets pass, with the reasons.
+    pub waived: Vec<WaivedRow>,
+}
+
+/// A row that is let pass.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WaivedRow {
+    /// Measurand, with `@channel` where there are several.
+    pub row: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// The same in the words of a page.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct SignatureView {
+    /// What the signer did.
+    pub role: String,
+    /// Name of the signer.
+    pub name: String,
+    /// When.
+    pub at: String,
+    /// Fingerprint of the key.
+    pub key: String,
+    /// Class of the state, for colours.
+    pub status: &'static str,
+    /// Whether it holds.
+    pub status_word: String,
+    /// Rows that it lets pass.
+    pub waived: Vec<WaivedRow>,
+}
+
+/// The signatures that the pages of a folder show, where they are those of another.
+pub fn shown(folder: &Path) -> Vec<Signature> {
+    let bytes = std::fs::read(folder.join(SIGNATURES_SHOWN)).unwrap_or_default();
+    serde_json::from_slice(&bytes).unwrap_or_default()
+}
+
+impl Signature {
+    /// The signatures of a chain, but for links of which nothing can be read.
+    pub fn of_chain(links: &[Link]) -> Vec<Signature> {
+        let of = |link: &Link| {
+            let said = &link.statement.as_ref()?.predicate;
+            Some(Signature {
+                role: said.role,
+                name: said.name.clone(),
+                signed_at: said.signed_at.clone(),
+                key: link.fingerprint(),
+                holds: link.broken.is_empty(),
+                waived: said
+                    .waivers
+                    .iter()
+                    .map(|w| WaivedRow { row: w.row.clone(), reason: w.reason.clone() })
+                    .collect(),
+            })
+        };
+        links.iter().filter_map(of).collect()
+    }
+
+    pub(super) fn view(&self, lang: Lang) -> SignatureView {
+        let words = Translator { lang };
+        let (status, key) = if self.holds { ("ok", "signer.holds") } else { ("invalid", "signer.broken") };
+        SignatureView {
+            role: words.name("signer", self.role.id()),
+            name: self.name.clone().unwrap_or_default(),
+            at: date_time(&self.signed_at),
+            key: self.key.clone().unwrap_or_default(),
+            status,
+            status_word: words.t(key),
+            waived: self.waived.clone(),
+        }
+    }
+}

@@ -1,0 +1,194 @@
+//! The signatures of a folder, one after the other.
+
+use super::key::{self, Invalid, KeyError};
+use super::role::Role;
+use super::statement::{Previous, SIGN_OFF, STATEMENT, SignOff, Statement, Subject, Waived};
+use crate::i18n::{Note, io_reason};
+use crate::output::{CHECKSUMS_FILE, StagedFile, sha256};
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+
+/// Folder of the signatures in a folder of results.
+pub const SIGNATURES_FOLDER: &str = "signatures";
+
+/// Ending of the file of a signature, behind the name of its statement.
+const SIGNATURE: &str = ".sig";
+
+/// One statement with its signature.
+#[derive(Debug, Clone)]
+pub struct Link {
+    /// File of the statement.
+    pub name: String,
+    /// What it says; `None` where it cannot be read.
+    pub statement: Option<Statement>,
+    /// The key that signed it; `None` where the signature does not hold.
+    pub key: Option<ssh_key::PublicKey>,
+    /// What is wrong with it.
+    pub broken: Vec<Broken>,
+    sha256: String,
+}
+
+/// What is wrong with a link.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Broken {
+    /// It is no statement of this kind.
+    NoStatement,
+    /// Its signature is missing.
+    Unsigned,
+    /// Its signature does not hold, in the words of the library.
+    Signature(String),
+    /// Its signature was written otherwise than signatures are.
+    Rewritten,
+    /// A file is not what was signed.
+    File(String),
+    /// A file of the folder is not among those that were signed.
+    Unsaid(String),
+    /// It does not name the statement that stands before it.
+    Previous,
+}
+
+impl Link {
+    /// The fingerprint of its key.
+    pub fn fingerprint(&self) -> Option<String> {
+        self.key.as_ref().map(key::fingerprint)
+    }
+
+    /// Its role; `None` where nothing can be read.
+    pub fn role(&self) -> Option<Role> {
+        self.statement.as_ref().map(|s| s.predicate.role)
+    }
+}
+
+/// The links of a folder in their order, each with what is wrong with it. `files` are the hashes of the files of the folder as
+/// they are, by their names.
+pub fn chain(folder: &Path, files: &BTreeMap<String, String>) -> Vec<Link> {
+    let at = folder.join(SIGNATURES_FOLDER);
+    let mut names: Vec<String> = fs::read_dir(&at)
+        .into_iter()
+        .flatten()
+        .flatten()
+        .map(|e| e.file_name().to_string_lossy().into_owned())
+        .filter(|name| name.ends_with(".json"))
+        .collect();
+    names.sort();
+    let mut links: Vec<Link> = vec![];
+    for name in names {
+        let bytes = fs::read(at.join(&name)).unwrap_or_default();
+        let mut broken = vec![];
+        let statement = statement(&bytes);
+        let key = match fs::read_to_string(at.join(format!("{name}{SIGNATURE}"))) {
+            Ok(signature) => match key::verify(&bytes, &signature) {
+                Ok(key) => Some(key),
+                Err(why) => {
+                    broken.push(match why {
+                        Invalid::Library(why) => Broken::Signature(why),
+                        Invalid::Rewritten => Broken::Rewritten,
+                    });
+                    None
+                }
+            },
+            Err(_) => {
+                broken.push(Broken::Unsigned);
+                None
+            }
+        };
+        match &statement {
+            None => broken.push(Broken::NoStatement),
+            Some(statement) => {
+                broken.extend(differing(statement, files));
+                let before =
+                    links.last().map(|l| Previous { name: l.name.clone(), sha256: l.sha256.clone() });
+                if statement.predicate.previous != before {
+                    broken.push(Broken::Previous);
+                }
+            }
+        }
+        links.push(Link { sha256: sha256(&bytes), name, statement, key, broken });
+    }
+    links
+}
+
+fn statement(bytes: &[u8]) -> Option<Statement> {
+    let statement: Statement = serde_json::from_slice(bytes).ok()?;
+    let known = statement.statement_type == STATEMENT && statement.predicate_type == SIGN_OFF;
+    known.then_some(statement)
+}
+
+/// The files that differ from what a statement says of them, and those that it says nothing of.
+fn differing(statement: &Statement, files: &BTreeMap<String, String>) -> Vec<Broken> {
+    let signed: BTreeMap<&str, Option<&String>> =
+        statement.subject.iter().map(|s| (s.name.as_str(), s.digest.get("sha256"))).collect();
+    let changed = signed.iter().filter(|(name, hash)| files.get(**name) != **hash);
+    let changed = changed.map(|(name, _)| Broken::File((*name).to_owned()));
+    let unsaid = files.keys().filter(|name| !signed.contains_key(name.as_str()));
+    changed.chain(unsaid.map(|name| Broken::Unsaid(name.clone()))).collect()
+}
+
+/// Signs the files of a folder; gives the name of the statement. `about` says what is signed, without the statement before it,
+/// which is filled in.
+///
+/// # Errors
+/// A note where the key or the disk refuses.
+pub fn sign(
+    folder: &Path,
+    files: &BTreeMap<String, String>,
+    key: &Path,
+    about: SignOff,
+) -> Result<String, Note> {
+    let links = chain(folder, files);
+    let previous = links.last().map(|l| Previous { name: l.name.clone(), sha256: l.sha256.clone() });
+    let name = format!("{:02}-{}.json", links.len() + 1, about.role.id());
+    let subject = files.iter().map(|(name, hash)| Subject {
+        name: name.clone(),
+        digest: BTreeMap::from([("sha256".to_owned(), hash.clone())]),
+    });
+    let statement = Statement {
+        statement_type: STATEMENT.to_owned(),
+        subject: subject.collect(),
+        predicate_type: SIGN_OFF.to_owned(),
+        predicate: SignOff { previous, ..about },
+    };
+    let mut bytes = serde_json::to_vec_pretty(&statement)
+        .map_err(|e| Note::new("system.other").with("reason", e.to_string()))?;
+    bytes.push(b'\n');
+    let shown = key.display().to_string();
+    let signature = key::sign(key, &bytes).map_err(|e| {
+        let name = match e {
+            KeyError::Unreadable(_) => "signing.key_unreadable",
+            KeyError::Kind(_) => "signing.key_kind",
+            KeyError::Agent(_) => "signing.agent",
+        };
+        Note::new(name).with("path", shown).with("reason", e.to_string())
+    })?;
+    let at = folder.join(SIGNATURES_FOLDER);
+    fs::create_dir_all(&at).map_err(|e| {
+        let note = Note::new("output_error.create_folder").with("path", at.display().to_string());
+        note.with("reason", io_reason(&e))
+    })?;
+    // The statement comes last: a signature without one is none.
+    for (name, bytes) in [(format!("{name}{SIGNATURE}"), signature.into_bytes()), (name.clone(), bytes)] {
+        let staged = StagedFile::begin(&at.join(&name), &[], false).map_err(|e| e.note())?;
+        let written = std::io::Write::write_all(&mut staged.file().map_err(|e| e.note())?, &bytes);
+        written.map_err(|e| staged.refused(e).note())?;
+        staged.publish().map_err(|e| e.note())?;
+    }
+    Ok(name)
+}
+
+/// The hashes of the files of a folder as they are, by the names that it states, that of the list among them.
+pub fn files_of(folder: &Path, stated: impl Iterator<Item = String>) -> BTreeMap<String, String> {
+    stated
+        .chain(std::iter::once(CHECKSUMS_FILE.to_owned()))
+        .filter_map(|name| Some((sha256(&fs::read(folder.join(&name)).ok()?), name)))
+        .map(|(hash, name)| (name, hash))
+        .collect()
+}
+
+/// The rows of a record that are waived by any of its links.
+pub fn waived(links: &[Link]) -> Vec<(&Link, &Waived)> {
+    links
+        .iter()
+        .flat_map(|l| l.statement.iter().flat_map(move |s| s.predicate.waivers.iter().map(move |w| (l, w))))
+        .collect()
+}

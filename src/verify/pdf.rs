@@ -1,0 +1,54 @@
+//! A PDF on its own against the record that is attached to it.
+
+use super::Finding;
+use super::verdict::verdict;
+use crate::i18n::{Lang, Note};
+use crate::output::{Kind, is_plain};
+use crate::record::{self, RunRecord};
+use crate::report::pdf::{MAKES_PDF, PdfPages, attached};
+use crate::report::signatures::shown;
+use crate::report::{Renderer, StoredResults};
+use std::fs;
+use std::path::Path;
+
+/// Typesets a PDF anew from what is attached to it and compares byte by byte. `scratch` is an empty folder for the attached files.
+pub fn pdf(bytes: &[u8], scratch: &Path) -> Vec<Finding> {
+    if !MAKES_PDF {
+        return vec![Finding::Unchecked("pdf.none".into())];
+    }
+    let (language, files) = match attached(bytes) {
+        Ok(found) => found,
+        Err(reason) => {
+            return vec![Finding::Differs(Note::new("verify.pdf_unreadable").with("reason", reason))];
+        }
+    };
+    for (name, contents) in files.iter().filter(|(name, _)| is_plain(name)) {
+        let path = scratch.join(name);
+        let written =
+            path.parent().map(fs::create_dir_all).transpose().and_then(|_| fs::write(&path, contents));
+        if written.is_err() {
+            return vec![Finding::Unchecked("verify.no_scratch".into())];
+        }
+    }
+    let record = Kind::ALL.iter().find_map(|k| files.get(k.record_file()));
+    let (Some(record), Ok(stored)) = (record, StoredResults::open(scratch)) else {
+        return vec![Finding::Differs("verify.pdf_without".into())];
+    };
+    if stored.lacks_figures() {
+        return vec![Finding::Unchecked("verify.pdf_parts".into())];
+    }
+    let lang = Lang::from_code(&language).unwrap_or_default();
+    let renderer = Renderer::new().with_signatures(shown(scratch));
+    let whole = stored.results.whole(lang);
+    let same = [PdfPages::All, PdfPages::Summary]
+        .into_iter()
+        .any(|pages| whole.pdf(&renderer, record, pages).is_ok_and(|made| made == bytes));
+    let run: Option<RunRecord> = record::read::open(&scratch.join(Kind::Result.record_file())).ok();
+    let mut findings = vec![if same {
+        Finding::Agrees("verify.pdf".into())
+    } else {
+        Finding::Differs("verify.pdf_differs".into())
+    }];
+    findings.extend(run.iter().flat_map(verdict));
+    findings
+}

@@ -1,0 +1,134 @@
+//! The verdict of a result, decided anew from the numbers of its record.
+
+use super::Finding;
+use crate::acceptance::verdict::whole;
+use crate::estimate::{Rule, Verdict};
+use crate::i18n::Note;
+use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
+
+/// Slack of a comparison of numbers that went through decimal digits, relative.
+const SLACK: f64 = 1e-9;
+
+/// Decides every row of a record anew, and the whole by its rows, conditions and errors.
+pub fn verdict(record: &RunRecord) -> Vec<Finding> {
+    let mut findings = vec![];
+    let judged: Vec<(&MeasurandRecord, &LimitRecord)> =
+        record.measurands.iter().filter_map(|row| Some((row, row.limit.as_ref()?))).collect();
+    for (row, limit) in &judged {
+        if !allowed(row, limit).contains(&row.verdict) {
+            findings.push(Finding::Differs(
+                Note::new("verify.row_verdict")
+                    .with("measurand", row.id.as_str())
+                    .with("channel", row.channel.as_str())
+                    .with("verdict", row.verdict.id()),
+            ));
+        }
+        if let (Some(value), Some(margin)) = (row.value, row.margin) {
+            let nearest = [limit.max.map(|max| max - value), limit.min.map(|min| value - min)];
+            let nearest = nearest.into_iter().flatten().reduce(f64::min);
+            if nearest.is_none_or(|n| (n - margin).abs() > SLACK * (value.abs() + n.abs())) {
+                findings.push(Finding::Differs(
+                    Note::new("verify.row_margin")
+                        .with("measurand", row.id.as_str())
+                        .with("channel", row.channel.as_str()),
+                ));
+            }
+        }
+    }
+    for row in record.measurands.iter().filter(|r| r.limit.is_none() && r.verdict != Verdict::None) {
+        let note = Note::new("verify.row_without_limit").with("measurand", row.id.as_str());
+        findings.push(Finding::Differs(note));
+    }
+    let errors: Vec<Note> = record.errors.iter().map(|e| e.0.clone()).collect();
+    let (whole, _) = whole(&record.measurands, &record.conditions, &errors);
+    // Limits that decide nothing, a phase that was not recorded: what leaves a verdict open is in the sentences, not in the rows.
+    let left_open =
+        record.verdict == Verdict::Indeterminate && matches!(whole, Verdict::Pass | Verdict::None);
+    let phases = record.phases.iter().map(|p| p.verdict).max();
+    let of_phases = phases.is_some_and(|worst| worst == record.verdict);
+    if whole != record.verdict && !left_open && !of_phases {
+        let note = Note::new("verify.verdict_differs");
+        findings.push(Finding::Differs(note.with("stated", record.verdict.id()).with("found", whole.id())));
+    }
+    if findings.is_empty() {
+        let note = Note::new("verify.verdict").with("verdict", record.verdict.id()).with("n", judged.len());
+        findings.push(Finding::Agrees(note));
+    }
+    findings
+}
+
+/// The verdicts that the numbers of a row allow.
+fn allowed(row: &MeasurandRecord, limit: &LimitRecord) -> Vec<Verdict> {
+    let inside = |value: f64, low: Option<f64>, high: Option<f64>| {
+        let slack = SLACK * value.abs();
+        low.is_none_or(|low| value >= low - slack) && high.is_none_or(|high| value <= high + slack)
+    };
+    let Some(value) = row.value else {
+        let shown = 1.0 - limit.risk - SLACK;
+        let beyond =
+            limit.max.zip(row.lower_limit).is_some_and(|(max, b)| b.value > max && b.coverage >= shown);
+        let below =
+            limit.max.zip(row.upper_limit).is_some_and(|(max, b)| b.value <= max && b.coverage >= shown);
+        return match (beyond, below || limit.max.is_none()) {
+            (true, _) => vec![Verdict::Fail, Verdict::Indeterminate],
+            (false, true) => vec![Verdict::Pass, Verdict::Indeterminate],
+            (false, false) => vec![Verdict::Indeterminate],
+        };
+    };
+    let accepted = limit.acceptance_min.is_some() || limit.acceptance_max.is_some();
+    match limit.rule {
+        // A value that is disputed has no region of acceptance and decides nothing.
+        _ if !accepted => vec![Verdict::Indeterminate],
+        Rule::Simple if inside(value, limit.min, limit.max) => vec![Verdict::Pass],
+        Rule::Simple => vec![Verdict::Fail],
+        Rule::GuardBand if inside(value, limit.acceptance_min, limit.acceptance_max) => vec![Verdict::Pass],
+        Rule::GuardBand if inside(value, limit.min, limit.max) => vec![Verdict::Indeterminate],
+        Rule::GuardBand => vec![Verdict::Fail, Verdict::Indeterminate],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_value_is_judged_by_the_region_of_acceptance() {
+        let limit = |rule| LimitRecord {
+            min: None,
+            max: Some(10.0),
+            unit: "deg/h".into(),
+            rule,
+            risk: 0.05,
+            acceptance_min: None,
+            acceptance_max: Some(if rule == Rule::Simple { 10.0 } else { 8.0 }),
+            source: String::new(),
+        };
+        let verdicts = |value: f64, rule| {
+            let row = MeasurandRecord {
+                id: "static_bias".into(),
+                channel: "rate".into(),
+                phase: None,
+                value: Some(value),
+                unit: "deg/h".into(),
+                interval: None,
+                identifiable: true,
+                upper_limit: None,
+                most_likely: None,
+                lower_limit: None,
+                method: "mean".into(),
+                limit: None,
+                reference: None,
+                verdict: Verdict::Pass,
+                margin: None,
+                specific_risk: None,
+                notes: vec![],
+            };
+            allowed(&row, &limit(rule))
+        };
+        assert_eq!(verdicts(7.9, Rule::GuardBand), [Verdict::Pass]);
+        assert_eq!(verdicts(8.1, Rule::GuardBand), [Verdict::Indeterminate]);
+        assert_eq!(verdicts(13.0, Rule::GuardBand), [Verdict::Fail, Verdict::Indeterminate]);
+        assert_eq!(verdicts(9.9, Rule::Simple), [Verdict::Pass]);
+        assert_eq!(verdicts(10.1, Rule::Simple), [Verdict::Fail]);
+    }
+}
