@@ -63,7 +63,18 @@ fn samples_give_their_verdicts() {
         assert_eq!(said.err, "", "no terminal, no progress");
         assert_eq!(
             names(&out),
-            ["figures", "report.html", "report.md", "result.json", "sigma_tau.csv"],
+            [
+                "SHA256SUMS",
+                "figures",
+                "junit.xml",
+                "limits.toml",
+                "measurands.csv",
+                "procedure.toml",
+                "report.html",
+                "report.md",
+                "result.json",
+                "sigma_tau.csv"
+            ],
             "{name}"
         );
         support::assert_no_nan(&out);

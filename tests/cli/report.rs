@@ -38,7 +38,8 @@ fn comes_out_the_same(dir: &Path) {
     assert_eq!(differences(&at("o"), &at("again")), [""; 0]);
     render("o", "ru", "ru");
     let words = differences(&at("o"), &at("ru"));
-    let of_words = |name: &String| [".html", ".md", ".svg"].iter().any(|end| name.ends_with(end));
+    let of_words =
+        |name: &String| [".html", ".md", ".svg", "SHA256SUMS"].iter().any(|end| name.ends_with(end));
     assert!(words.len() > 2 && words.iter().all(of_words), "{words:?}");
     render("ru", "en", "back");
     assert_eq!(differences(&at("o"), &at("back")), [""; 0]);
@@ -112,9 +113,18 @@ fn forms_are_chosen_and_what_is_missing_is_said() {
     sagnac(dir.path(), &run);
     let report = |args: &[&str]| sagnac(dir.path(), &[&["report", "o", "--lang", "en"], args].concat());
     assert_eq!(report(&["--format", "html", "--out", "h"]).code, 0);
-    assert_eq!(names(&at("h")), ["report.html", "result.json"]);
+    assert_eq!(names(&at("h")), ["SHA256SUMS", "report.html", "result.json"]);
     assert_eq!(report(&["--format", "csv,md", "--out", "c"]).code, 0);
-    assert_eq!(names(&at("c")), ["figures", "report.md", "result.json", "sigma_tau.csv"]);
+    let of_both = [
+        "SHA256SUMS",
+        "figures",
+        "measurands.csv",
+        "procedure.toml",
+        "report.md",
+        "result.json",
+        "sigma_tau.csv",
+    ];
+    assert_eq!(names(&at("c")), of_both);
     assert!(!names(&at("c/figures")).contains(&"data.json".to_owned()));
 
     // Into its own folder it would take away what it reads.
@@ -127,7 +137,16 @@ fn forms_are_chosen_and_what_is_missing_is_said() {
     let said = report(&["--out", "less"]);
     assert_eq!(said.code, 0, "{said:?}");
     assert!(said.err.contains("data.json") && said.err.contains("sigma_tau.csv"), "{}", said.err);
-    assert_eq!(names(&at("less")), ["report.html", "report.md", "result.json"]);
+    let less = [
+        "SHA256SUMS",
+        "junit.xml",
+        "measurands.csv",
+        "procedure.toml",
+        "report.html",
+        "report.md",
+        "result.json",
+    ];
+    assert_eq!(names(&at("less")), less);
     let page = fs::read_to_string(at("less/report.html")).unwrap();
     assert!(page.contains("The figures are not shown") && !page.contains("<svg"));
     let verdict = |name: &str| fs::read_to_string(at(name)).unwrap().lines().nth(4).map(str::to_owned);

@@ -12,6 +12,32 @@ use std::process::Command;
 /// and names of standards. What stands between backticks or double quotes, or in square brackets, is the user's or a
 /// file's and is not looked at.
 const LATIN: &[&str] = &[
+    // Verbs, options and their words.
+    "approve",
+    "approved",
+    "dcc",
+    "key",
+    "laboratory",
+    "name",
+    "pages",
+    "pdf",
+    "quiet",
+    "reason",
+    "reviewed",
+    "sign",
+    "signers",
+    "tested",
+    "waive",
+    // Names of keys and files of signatures, and of a quantity.
+    "Ed",
+    "OpenSSH",
+    "SUMS",
+    "allowed",
+    "ed",
+    "instability",
+    "lead",
+    "pub",
+    "ssh",
     // Symbols of formulas.
     "c",
     "cargo",

@@ -11,6 +11,7 @@ use std::path::Path;
 
 /// Ids that a record may hold where its documentation lists them.
 const LISTED: &[(&str, &[&str])] = &[
+    ("signer", &["approved", "reviewed", "tested"]),
     (
         "terminal_column",
         &[
@@ -148,7 +149,9 @@ fn quoted(text: &str, mark: char) -> impl Iterator<Item = &str> {
 }
 
 fn is_key(text: &str, tables: &BTreeSet<String>) -> bool {
-    let file = [".html", ".md", ".css", ".toml", ".json", ".csv", ".svg"].iter().any(|e| text.ends_with(e));
+    let file = [".html", ".md", ".css", ".toml", ".json", ".csv", ".svg", ".xml", ".parquet"]
+        .iter()
+        .any(|e| text.ends_with(e));
     let plain = text.chars().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || c == '_' || c == '.');
     let first = text.split('.').next().unwrap_or_default();
     plain && !file && text.contains('.') && !text.ends_with('.') && tables.contains(first)

@@ -17,6 +17,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/procedure/tables/temperature.rs", "descriptions of keys for the schema and the guide"),
     ("src/config/procedure/unit_facts.rs", "descriptions of keys for the schema and the guide"),
     ("src/config/user.rs", "the key tables of settings: documentation, as of procedures"),
+    ("src/config/laboratory.rs", "the key tables of laboratory files: documentation, as of procedures"),
     ("src/store/index/", "statements of SQL"),
     ("src/config/procedure/guide.rs", "the guide is an English document"),
     ("src/config/procedure/schema.rs", "the schema is English"),
