@@ -70,6 +70,7 @@ fn every_unit_is_tested_and_the_worst_decides() {
     assert_eq!(
         names(&out),
         [
+            "SHA256SUMS",
             "SN-1001",
             "SN-1002",
             "SN-1003",

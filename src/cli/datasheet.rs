@@ -17,6 +17,7 @@ use crate::report::{Results, terminal};
 use crate::store::Filter;
 use chrono::{SecondsFormat, Utc};
 use clap::Args;
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -69,8 +70,9 @@ pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
     let now = Utc::now();
     let (files, mut broken) = args.files(lang)?;
     let mut read_units = vec![];
-    for file in &files {
-        match TestedUnit::read(file) {
+    let read: Vec<Result<TestedUnit, Note>> = files.par_iter().map(|file| TestedUnit::read(file)).collect();
+    for unit in read {
+        match unit {
             Ok(unit) => read_units.push(unit),
             Err(note) => {
                 place::eprint_diagnostic(&place::warning(&note, lang));

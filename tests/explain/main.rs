@@ -62,8 +62,15 @@ fn a_step_is_found_and_the_loop_closes() {
     assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
     assert!(said.out.starts_with("MISMATCH EXPLAINED  ") && said.out.contains("bias step"), "{}", said.out);
     let e = dir.path().join("e");
-    let files =
-        ["alternatives.toml", "augmented.toml", "correction.csv", "explain.json", "report.html", "report.md"];
+    let files = [
+        "SHA256SUMS",
+        "alternatives.toml",
+        "augmented.toml",
+        "correction.csv",
+        "explain.json",
+        "report.html",
+        "report.md",
+    ];
     assert_eq!(names(&e), files);
     let all = json(&e.join("explain.json"));
     assert_eq!((all["format"].as_str(), all["verdict"].as_str()), (Some("explain/1"), Some("mismatch")));

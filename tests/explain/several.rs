@@ -22,7 +22,10 @@ fn what_recordings_share_is_found_with_all_of_them() {
     let said = sagnac(dir.path(), &args);
     assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
     let all = dir.path().join("all");
-    assert_eq!(names(&all), ["augmented.toml", "joint.json", "recordings", "report.html", "report.md"]);
+    assert_eq!(
+        names(&all),
+        ["SHA256SUMS", "augmented.toml", "joint.json", "recordings", "report.html", "report.md"]
+    );
     let joint = json(&all.join("joint.json"));
     assert_eq!(joint["format"], "explain-joint/1");
     let shared = &joint["shared"][0];

@@ -5,6 +5,7 @@ use crate::lot::population::LEAST_VALUES;
 use crate::lot::tolerance::{Promise, normal_factor};
 use crate::numeric::order::quantile;
 use crate::record::{SheetCurve, SheetPoint, SheetUnitCurve};
+use rayon::prelude::*;
 
 /// The estimator whose curves are taken.
 const ESTIMATOR: &str = "oadev";
@@ -41,7 +42,9 @@ fn curve(channel: &str, units: &[TestedUnit], promise: Promise) -> Option<SheetC
     let mut times: Vec<f64> = curves.iter().flat_map(|c| c.points.iter().map(|[tau, _]| *tau)).collect();
     times.sort_by(f64::total_cmp);
     times.dedup_by(|b, a| *b - *a <= SAME * *a);
-    let points: Vec<SheetPoint> = times.into_iter().filter_map(|tau| point(tau, &curves, promise)).collect();
+    let points: Vec<Option<SheetPoint>> =
+        times.into_par_iter().map(|tau| point(tau, &curves, promise)).collect();
+    let points: Vec<SheetPoint> = points.into_iter().flatten().collect();
     (curves.len() > 1 && !points.is_empty()).then(|| SheetCurve {
         channel: channel.to_owned(),
         points,

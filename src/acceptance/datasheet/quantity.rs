@@ -13,6 +13,7 @@ use crate::record::{
     InputMeasurand, Message, SheetBound, SheetLargest, SheetLimit, SheetOf, SheetOutlook, SheetQuantity,
     SheetScale, SheetShare, SheetSide, SheetSpread, SheetTypical, SheetValue,
 };
+use rayon::prelude::*;
 
 /// Coverage of the intervals of medians and shares.
 const COVERAGE: f64 = 0.95;
@@ -33,7 +34,10 @@ pub(super) fn quantities(units: &[TestedUnit], promise: Promise) -> Vec<SheetQua
             keys.push(key(m));
         }
     }
-    keys.into_iter().filter_map(|k| quantity(k, units, promise)).collect()
+    // Each depends on no other.
+    let each: Vec<Option<SheetQuantity>> =
+        keys.into_par_iter().map(|k| quantity(k, units, promise)).collect();
+    each.into_iter().flatten().collect()
 }
 
 /// What one unit tells of a quantity.
