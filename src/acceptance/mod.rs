@@ -13,6 +13,7 @@
 
 pub mod analysis;
 mod build_record;
+pub mod claimed;
 pub mod compare;
 pub mod condition;
 pub mod datasheet;

@@ -20,6 +20,7 @@ mod inputs;
 mod inspect;
 mod join;
 mod keep;
+mod model;
 mod next_step;
 mod options;
 mod phased_test;
@@ -104,6 +105,11 @@ enum Verb {
         sagnac datasheet 'samples/lot/*/result.json' --lang ru --out sheet\n  \
         sagnac datasheet --store /srv/sagnac --model OIUS-501 --lot 2026-14")]
     Datasheet(datasheet::DatasheetArgs),
+    /// Write the model of a recording, or of its result: noise, mean and effects with their uncertainties
+    #[command(after_help = "Examples:\n  sagnac model unit-0042.csv --out model.toml\n  \
+        sagnac model reports/SN-0042 --out model.toml\n  \
+        sagnac model unit-0042.csv --from 0s --to 5h --out first-half.toml")]
+    Model(model::ModelArgs),
     /// Simulate a recording from a model: noise, mean, effects and columns, reproducible to the bit
     #[command(
         after_help = "Examples:\n  sagnac simulate samples/model-static.toml --out static.csv --duration 10h --seed 7\n  \
@@ -207,6 +213,7 @@ pub fn main() -> ExitCode {
         Verb::Report(args) => report::main(&args, lang),
         Verb::Compare(args) => compare::main(&args, lang),
         Verb::Datasheet(args) => datasheet::main(&args, lang),
+        Verb::Model(args) => model::main(&args, lang),
         Verb::Simulate(args) => simulate::main(&args, lang),
         Verb::Effects(args) => effects::main(&args, lang),
         Verb::Explain(args) => explain::main(&args, lang),

@@ -4,7 +4,7 @@ use super::place::for_shell;
 use crate::config::procedure::Procedure;
 use crate::i18n::Note;
 use crate::ingest::Source;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// After a recording was looked at: a procedure and limits from it. `options` stand behind the recording. `None` for
 /// several files, which `init` does not read.
@@ -42,6 +42,11 @@ pub fn after_fail(recording: &[PathBuf], procedure: &Procedure) -> Option<Note> 
 /// After an effect was found.
 pub fn after_effect(kind: &str) -> Note {
     Note::new("next_step.effect").with("effect", kind)
+}
+
+/// After a model was written: another recording against it.
+pub fn after_model(model: &Path) -> Note {
+    Note::new("next_step.model").with("model", for_shell(&model.display().to_string()))
 }
 
 /// After the demonstration.

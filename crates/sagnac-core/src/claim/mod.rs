@@ -1,8 +1,10 @@
 //! A claimed simulation: the noise, mean, sensitivities and effects that an engineer believes a recording to hold, each
 //! with the uncertainty that he gives it.
 
+mod coefficient;
 mod profile;
 
+pub use coefficient::Coefficient;
 pub use profile::{Profile, SimulationPlan};
 
 use crate::effect::{ClaimedMean, Column, Effect, Values};

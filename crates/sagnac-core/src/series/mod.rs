@@ -53,6 +53,25 @@ pub struct Faults {
 }
 
 impl Series {
+    /// The rows from some seconds after the first to others, the end excluded. What was counted of faults is that of the whole.
+    #[must_use]
+    pub fn between(&self, from_s: f64, to_s: f64) -> Series {
+        let start = self.time_s.first().copied().unwrap_or(0.0);
+        let kept = |t: &f64| *t - start >= from_s && *t - start < to_s;
+        let first = self.time_s.iter().position(kept).unwrap_or(self.time_s.len());
+        let end = self.time_s.iter().rposition(kept).map_or(first, |last| last + 1);
+        let cut = |values: &[f64]| values.get(first..end).unwrap_or_default().to_vec();
+        let index = self.index.get(first..end).unwrap_or_default();
+        let origin = index.first().copied().unwrap_or(0);
+        Series {
+            time_s: cut(&self.time_s),
+            rate_deg_h: cut(&self.rate_deg_h),
+            columns: self.columns.iter().map(|(column, values)| (*column, cut(values))).collect(),
+            index: index.iter().map(|i| i - origin).collect(),
+            ..self.clone()
+        }
+    }
+
     /// What must be known of the recording: what was found about it, and the rows that were left out or mended.
     pub fn remarks(&self) -> Vec<Note> {
         let mut out = self.notes.clone();
@@ -83,4 +102,28 @@ pub struct ReadFrom {
     pub column: String,
     /// Unit in the file.
     pub unit: String,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_part_begins_anew() {
+        let series = Series {
+            time_s: vec![5.0, 6.0, 7.0, 9.0],
+            rate_deg_h: vec![0.0, 1.0, 2.0, 4.0],
+            columns: BTreeMap::from([(Column::Temperature, vec![20.0, 21.0, 22.0, 24.0])]),
+            index: vec![0, 1, 2, 4],
+            ..Series::default()
+        };
+        let part = series.between(1.0, 4.5);
+        assert_eq!((part.time_s, part.rate_deg_h), (vec![6.0, 7.0, 9.0], vec![1.0, 2.0, 4.0]));
+        assert_eq!(
+            (part.index, part.columns[&Column::Temperature].clone()),
+            (vec![0, 1, 3], vec![21.0, 22.0, 24.0])
+        );
+        assert_eq!(series.between(0.0, f64::INFINITY), series);
+        assert!(series.between(10.0, 20.0).time_s.is_empty());
+    }
 }

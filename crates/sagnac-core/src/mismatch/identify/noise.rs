@@ -1,6 +1,6 @@
 //! The noise of a simulated recording, as a claim states it.
 
-use crate::claim::Stated;
+use crate::claim::{Coefficient, Stated};
 use crate::effect::{EFFECTS, Model};
 use crate::estimate::Estimate;
 use crate::noise::composite::{Composite, Damped};
@@ -8,25 +8,6 @@ use crate::noise::digest::{DigestPlan, RateAccumulator};
 use crate::noise::lines::FALSE_ALARM_RATE;
 use crate::noise::spectral_record::identify_digest;
 use crate::series::Series;
-
-/// Half of a 95 % interval in standard deviations.
-const HALF_WIDTH: f64 = 1.96;
-/// Upper limit of a coefficient that is not resolved, in deviations of its prior. A value beyond the prior is no mismatch
-/// yet: the simulation itself is asked. A wide prior would let a random walk stand for a single jump.
-const OF_LIMIT: f64 = 6.0;
-/// Logarithm of the ratio of a value to the end of its interval that counts at most.
-const LARGEST: f64 = 3.0;
-
-/// A coefficient.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Coefficient {
-    /// Value; 0 where the record does not show it.
-    pub value: f64,
-    /// Relative standard deviation.
-    pub relative: f64,
-    /// Deviation of a value of 0, in its own unit: a sixth of its upper limit.
-    pub bound: f64,
-}
 
 /// The noise found.
 pub struct Found {
@@ -45,21 +26,13 @@ pub struct Found {
 }
 
 fn coefficient(estimate: &Estimate) -> Coefficient {
-    let Some(value) = estimate.value.filter(|v| *v > 0.0) else {
-        let most = estimate.upper_limit.map_or(0.0, |limit| limit.value);
-        let most = most.max(estimate.most_likely.unwrap_or(0.0));
-        return Coefficient {
-            bound: if most.is_finite() { most / OF_LIMIT } else { 0.0 },
-            ..Coefficient::default()
-        };
-    };
-    // The prior of the engine is that of the logarithm: the longer side of an interval of unequal sides counts.
-    let relative = estimate.interval95().map_or(0.0, |i| {
-        let below = if i.low > 0.0 { (value / i.low).ln().min(LARGEST) } else { LARGEST };
-        let above = (i.high / value).max(1.0).ln();
-        below.max(above) / HALF_WIDTH
-    });
-    Coefficient { value, relative: if relative.is_finite() { relative } else { LARGEST }, bound: 0.0 }
+    match estimate.value.filter(|v| *v > 0.0) {
+        Some(value) => Coefficient::found(value, estimate.interval95().map(|i| (i.low, i.high))),
+        None => {
+            let most = estimate.upper_limit.map_or(0.0, |limit| limit.value);
+            Coefficient::at_most(most.max(estimate.most_likely.unwrap_or(0.0)))
+        }
+    }
 }
 
 /// Identifies the noise of a residual, row by row.

@@ -1,0 +1,92 @@
+//! What a result shows of a unit, as a claim that later recordings are held against.
+
+use crate::claim::{Claim, Coefficient, Uncertainty};
+use crate::effect::ClaimedMean;
+use crate::estimate::normal_quantile;
+use crate::i18n::Note;
+use crate::measurand;
+use crate::noise::model::NoiseModel;
+use crate::record::{MeasurandRecord, RunRecord};
+
+/// The claim of a result: noise coefficients and mean with their uncertainties, of one channel. Notes tell what it leaves out.
+///
+/// # Errors
+/// A note where the channel is not there or not the only one, or where nothing was measured that makes a claim.
+pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<Note>), Note> {
+    let mut channels: Vec<&str> = record.noise_models.iter().map(|m| m.channel.as_str()).collect();
+    channels.dedup();
+    let channel = match (channel, channels.as_slice()) {
+        (Some(asked), known) if known.contains(&asked) => asked,
+        (None, [only]) => *only,
+        (_, []) => return Err("model_verb.no_noise".into()),
+        (_, known) => return Err(Note::new("model_verb.channels").with("known", known.join(", "))),
+    };
+    let row = |id: &str| record.measurands.iter().find(|m| m.id == id && m.channel == channel);
+    let [n, b, k, q] = [
+        &measurand::ANGLE_RANDOM_WALK,
+        &measurand::BIAS_INSTABILITY,
+        &measurand::RATE_RANDOM_WALK,
+        &measurand::QUANTIZATION,
+    ]
+    .map(|m| row(m.id).map(known).unwrap_or_default());
+    let interval_s = record.recording.iter().find_map(|f| f.sample_interval_s).filter(|dt| *dt > 0.0);
+    let (Some(interval_s), true) = (interval_s, n.value > 0.0 || b.value > 0.0 || k.value > 0.0) else {
+        return Err("model_verb.no_noise".into());
+    };
+    // What the gyro reads at rest holds the rotation of the Earth; a bias is without it.
+    let earth = row(measurand::EARTH_RATE_COMPONENT.id).and_then(|m| m.value).unwrap_or(0.0);
+    let bias = row(measurand::STATIC_BIAS.id);
+    let deviation = bias.and_then(standard_uncertainty).unwrap_or(0.0);
+    let mut notes = vec![];
+    let model = record.noise_models.iter().find(|m| m.channel == channel);
+    let processes = model.map_or(0, |m| m.markov.len() + m.quasi_periodic.len());
+    if processes > 0 {
+        notes.push(Note::new("model_verb.processes").with("n", processes));
+    }
+    if bias.is_none() {
+        notes.push("model_verb.no_bias".into());
+    }
+    let claim = Claim {
+        case: String::new(),
+        description: Default::default(),
+        sample_rate_hz: 1.0 / interval_s,
+        columns: None,
+        noise: NoiseModel { n: n.value, b: b.value, k: k.value, r: 0.0, q: q.value },
+        quantization_lsb_arcsec: q.value * 12_f64.sqrt(),
+        mean: ClaimedMean {
+            bias_deg_h: bias.and_then(|m| m.value).unwrap_or(0.0) + earth,
+            ..ClaimedMean::default()
+        },
+        uncertainty: Uncertainty {
+            n_rel: n.relative,
+            b_rel: b.relative,
+            k_rel: k.relative,
+            n_deg_rt_h: n.bound,
+            b_deg_h: b.bound,
+            k_deg_h_rt_h: k.bound,
+            // Nothing is known of a bias that was not measured.
+            bias_deg_h: if bias.is_some() { deviation } else { UNKNOWN },
+            ..Uncertainty::default()
+        },
+        effects: vec![],
+    };
+    Ok((claim, notes))
+}
+
+/// Standard uncertainty of what was not measured, deg/h.
+const UNKNOWN: f64 = 1e6;
+
+fn standard_uncertainty(row: &MeasurandRecord) -> Option<f64> {
+    let interval = row.interval?;
+    Some((interval.high - interval.low) / (2.0 * normal_quantile(0.5 + 0.5 * interval.coverage)))
+}
+
+fn known(row: &MeasurandRecord) -> Coefficient {
+    match row.value.filter(|v| *v > 0.0) {
+        Some(value) => Coefficient::found(value, row.interval.map(|i| (i.low, i.high))),
+        None => {
+            let most = row.upper_limit.map_or(0.0, |limit| limit.value);
+            Coefficient::at_most(most.max(row.most_likely.unwrap_or(0.0)))
+        }
+    }
+}
