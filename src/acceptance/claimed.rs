@@ -29,7 +29,7 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
         &measurand::QUANTIZATION,
     ]
     .map(|m| row(m.id).map(known).unwrap_or_default());
-    let interval_s = record.recording.iter().find_map(|f| f.sample_interval_s).filter(|dt| *dt > 0.0);
+    let interval_s = record.recording.first().map(|f| f.sample_interval_s).filter(|dt| *dt > 0.0);
     let (Some(interval_s), true) = (interval_s, n.value > 0.0 || b.value > 0.0 || k.value > 0.0) else {
         return Err("model_verb.no_noise".into());
     };
