@@ -27,6 +27,7 @@ const LATIN: &[&str] = &[
     "sign",
     "signers",
     "tested",
+    "to",
     "waive",
     // Names of keys and files of signatures, and of a quantity.
     "Ed",
@@ -34,6 +35,8 @@ const LATIN: &[&str] = &[
     "SUMS",
     "allowed",
     "ed",
+    "first",
+    "half",
     "instability",
     "lead",
     "pub",
