@@ -215,12 +215,6 @@ impl<'a> Document<'a> {
         paper_context(self.context.clone())
     }
 
-    /// Title of the page.
-    pub fn title(&self) -> String {
-        let title = self.context.get_attr("v").and_then(|v| v.get_attr("title"));
-        title.ok().filter(|t| !t.is_undefined()).map(|t| t.to_string()).unwrap_or_default()
-    }
-
     /// What the document is of, for the head of a page: the unit, the case, the procedure or the model.
     pub fn subject(&self) -> String {
         match self.record {

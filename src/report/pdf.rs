@@ -29,8 +29,6 @@ pub enum PdfPages {
 
 /// A page of Markdown that becomes a PDF, and what goes with it.
 pub struct Page<'a> {
-    /// Title.
-    pub title: &'a str,
     /// What the document is of, such as a serial number.
     pub subject: &'a str,
     /// When its record was made, RFC 3339.
@@ -69,7 +67,6 @@ impl Document<'_> {
             matches!(name.as_str(), PROCEDURE_FILE | LIMITS_FILE) && !text.is_empty()
         };
         let page = Page {
-            title: &self.title(),
             subject: &self.subject(),
             made_at: self.made_at(),
             markdown: &markdown,
@@ -104,7 +101,6 @@ pub fn of_history(
     let context = paper_context(view_context(&view, lang));
     let figures = figures::all(history);
     let page = Page {
-        title: &view.title,
         subject: "",
         // What is told depends on the store alone: the page is as old as the latest result in it.
         made_at: history.results.iter().map(|r| r.evaluated_at.as_str()).max().unwrap_or_default(),
@@ -136,7 +132,7 @@ pub fn typeset(page: &Page<'_>, lang: Lang) -> Result<Vec<u8>, ReportError> {
     let media_type =
         |name: &str| if name.ends_with(".json") { "application/json" } else { "application/toml" };
     let (record_name, record) = page.record;
-    let description = words.with("pdf.record", &[("title", page.title)]);
+    let description = words.t("pdf.record");
     let mut attachments = vec![Attachment {
         name: record_name,
         bytes: record,
@@ -164,9 +160,8 @@ pub fn typeset(page: &Page<'_>, lang: Lang) -> Result<Vec<u8>, ReportError> {
     let foot = words.with("pdf.foot", &[("file", record_name), ("hash", &digest[..DIGITS])]);
     let number = words.t("pdf.page");
     let paper = Paper {
-        title: page.title,
         language: lang.code(),
-        head: [page.title, page.subject],
+        subject: page.subject,
         foot: &foot,
         page_number: &number,
         made_at: moment(page.made_at),

@@ -1,7 +1,7 @@
 //! The look of a page, and the whole document in the typesetter's language.
 
 use crate::fonts::FAMILIES;
-use crate::markup::{body, string};
+use crate::markup::{body, string, title};
 use crate::{Paper, Relation};
 
 /// Name of the document among its files.
@@ -12,18 +12,18 @@ const LOOK: &str = include_str!("look.typ");
 /// The document.
 pub fn document(paper: &Paper<'_>) -> String {
     let families: Vec<String> = FAMILIES.iter().map(|f| string(f)).collect();
-    let [left, right] = paper.head;
+    let title = title(paper.markdown);
     let (before, between, after) = numbering(paper.page_number);
     let date = paper.made_at;
     let mut out = LOOK.to_owned();
     out.push_str(&format!(
         "#show: page-of.with(title: {}, lang: {}, families: ({}), left: {}, right: {}, foot: {}, number: ({}, {}, {}), \
          date: datetime(year: {}, month: {}, day: {}, hour: {}, minute: {}, second: {}))\n",
-        string(paper.title),
+        string(&title),
         string(paper.language),
         families.join(", "),
-        string(left),
-        string(right),
+        string(&title),
+        string(paper.subject),
         string(paper.foot),
         string(before),
         string(between),

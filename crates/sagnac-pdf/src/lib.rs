@@ -22,12 +22,10 @@ use world::InMemory;
 /// What is typeset.
 #[derive(Debug, Clone)]
 pub struct Paper<'a> {
-    /// Title of the document, for its metadata.
-    pub title: &'a str,
     /// Language of its text: `en` or `ru`.
     pub language: &'a str,
-    /// Left and right of the head of every page.
-    pub head: [&'a str; 2],
+    /// What the document is of, on the right of the head of every page. On the left stands its title: its first heading.
+    pub subject: &'a str,
     /// Left of the foot of every page.
     pub foot: &'a str,
     /// Number of the page in the foot, such as `page {n} of {m}`.
@@ -121,7 +119,7 @@ pub fn typeset(paper: &Paper<'_>) -> Result<Vec<u8>, PdfError> {
         .map_err(|e| PdfError(vec![e.message().to_string()]))?;
     let options = PdfOptions {
         // Two documents of the same record are the same document.
-        ident: Smart::Custom(format!("{}\n{}\n{}", paper.title, paper.foot, paper.language)),
+        ident: Smart::Custom(format!("{}\n{}\n{}", paper.subject, paper.foot, paper.language)),
         creator: Smart::Custom(Some("sagnac".into())),
         timestamp: paper.made_at.datetime().map(Timestamp::new_utc),
         standards,

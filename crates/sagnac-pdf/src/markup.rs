@@ -21,6 +21,20 @@ pub fn string(text: &str) -> String {
     format!("\"{}\"", shown(text).replace('\\', "\\\\").replace('"', "\\\""))
 }
 
+/// The title of a text: its first heading, else its first words.
+pub fn title(markdown: &str) -> String {
+    let mut words = String::new();
+    for event in Parser::new_ext(markdown, Options::ENABLE_TABLES) {
+        match event {
+            Event::Text(text) | Event::Code(text) => words.push_str(&text),
+            Event::End(TagEnd::Heading(_) | TagEnd::Paragraph) if !words.trim().is_empty() => break,
+            _ => {}
+        }
+    }
+    // An archive takes no document without a title.
+    if words.trim().is_empty() { "Sagnac".to_owned() } else { words.trim().to_owned() }
+}
+
 /// The text of a paper in markup.
 pub fn body(paper: &Paper<'_>) -> String {
     let mut body = Body { paper, out: String::new(), nested: vec![] };
@@ -264,14 +278,15 @@ impl Table {
             let width = |i: usize| if self.is_to_be_filled(i) { "1fr" } else { "auto" };
             return (0..columns).map(|i| width(i).to_owned()).collect();
         }
+        // Short columns keep their width; the others share what is left by what a usual cell needs, and no word is too wide.
         let share = |(i, longest): (usize, &usize)| {
+            if *longest <= SHORT {
+                return "auto".to_owned();
+            }
             let words = self.texts.iter().skip(i).step_by(columns).flat_map(|t| t.split(' '));
             let word = words.map(|w| w.chars().count().min(LONGEST_WORD / 2)).max().unwrap_or(1);
             let mean = of(i).sum::<usize>() as f64 / of(i).count().max(1) as f64;
-            // Between what a usual cell needs and what the longest needs; a short number is not broken.
-            let usual = (mean * *longest as f64).sqrt();
-            let least = if *longest <= SHORT { *longest } else { word } as f64;
-            format!("{:.1}fr", usual.max(least) + 2.0)
+            format!("{:.1}fr", (mean * *longest as f64).sqrt().max(word as f64) + 2.0)
         };
         longest.iter().enumerate().map(share).collect()
     }
@@ -291,9 +306,8 @@ mod tests {
 
     fn of(markdown: &str, pages: Pages) -> String {
         let paper = Paper {
-            title: "t",
             language: "en",
-            head: ["", ""],
+            subject: "",
             foot: "",
             page_number: "{n}",
             made_at: Moment { year: 2026, month: 1, day: 1, time: [0; 3] },
@@ -304,6 +318,13 @@ mod tests {
             pages,
         };
         body(&paper)
+    }
+
+    #[test]
+    fn the_title_is_the_first_heading() {
+        assert_eq!(title("# A *b* \\_c `d`\n\ntext\n"), "A b _c d");
+        assert_eq!(title("text\n\n# later\n"), "text");
+        assert_eq!(title(""), "Sagnac");
     }
 
     #[test]
