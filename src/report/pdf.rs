@@ -66,13 +66,17 @@ impl Document<'_> {
         let source = |(name, text): &'_ &(String, String)| {
             matches!(name.as_str(), PROCEDURE_FILE | LIMITS_FILE) && !text.is_empty()
         };
+        // In the order of their names: a run has them in another order than a folder.
+        let mut sources: Vec<(&str, &str)> =
+            self.tables.iter().filter(source).map(|(n, t)| (n.as_str(), t.as_str())).collect();
+        sources.sort_unstable();
         let page = Page {
             subject: &self.subject(),
             made_at: self.made_at(),
             markdown: &markdown,
             drawings: self.figures.iter().map(|f| drawing(f, self.lang)).collect(),
             record: (self.kind().record_file(), record),
-            sources: self.tables.iter().filter(source).map(|(n, t)| (n.as_str(), t.as_str())).collect(),
+            sources,
             data: [(FIGURES_FILE, figures.as_str()), (SIGNATURES_SHOWN, shown.as_str())]
                 .into_iter()
                 .filter(|(_, text)| !text.is_empty())
