@@ -21,7 +21,10 @@ fn compare(folder: &Path, args: &[&str]) -> (String, Value) {
         .filter(|n| n != "figures")
         .collect();
     names.sort();
-    assert_eq!(names, ["SHA256SUMS", "comparison.csv", "comparison.html", "comparison.json", "comparison.md"]);
+    assert_eq!(
+        names,
+        ["SHA256SUMS", "comparison.csv", "comparison.html", "comparison.json", "comparison.md"]
+    );
     (said.out, json(&folder.join("c/comparison.json")))
 }
 

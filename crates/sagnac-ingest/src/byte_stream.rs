@@ -64,7 +64,8 @@ impl Read for Hashed {
 
 enum Inner {
     Plain(Hashed),
-    Gzip(flate2::bufread::MultiGzDecoder<BufReader<Hashed>>),
+    /// Boxed: with some builds of its library it is far larger than the others.
+    Gzip(Box<flate2::bufread::MultiGzDecoder<BufReader<Hashed>>>),
     Zstd(zstd::stream::read::Decoder<'static, BufReader<Hashed>>),
 }
 
@@ -108,7 +109,7 @@ impl ByteStream {
         let buffered = |h| BufReader::with_capacity(1 << 18, h);
         let inner = match packing {
             Packing::Plain => Inner::Plain(hashed),
-            Packing::Gzip => Inner::Gzip(flate2::bufread::MultiGzDecoder::new(buffered(hashed))),
+            Packing::Gzip => Inner::Gzip(Box::new(flate2::bufread::MultiGzDecoder::new(buffered(hashed)))),
             Packing::Zstd => Inner::Zstd(
                 zstd::stream::read::Decoder::with_buffer(buffered(hashed))
                     .map_err(|e| unpack_error(path, &e, 0))?,
