@@ -367,8 +367,6 @@ fn identification(
     })
 }
 
-/// XML as a reader sees it, for tests.
-
 #[cfg(test)]
 mod tests {
     use super::super::xml::reading::{self, elements, ending};

@@ -441,12 +441,12 @@ impl Certificate<'_> {
     }
 
     fn limits(&self, xml: &mut Xml, limit: &LimitRecord) -> io::Result<()> {
-        let (lower, upper) = ("basic_acceptanceLimitLower", "basic_acceptanceLimitUpper");
-        let ends: [(&str, &[(&str, &str)], Option<f64>); 4] = [
-            ("dcc.limit_min", &[], limit.min),
-            ("dcc.limit_max", &[], limit.max),
-            ("dcc.acceptance_min", &[("refType", lower)], limit.acceptance_min),
-            ("dcc.acceptance_max", &[("refType", upper)], limit.acceptance_max),
+        // What an end is called, what the schema calls it, and its value.
+        let ends = [
+            ("dcc.limit_min", None, limit.min),
+            ("dcc.limit_max", None, limit.max),
+            ("dcc.acceptance_min", Some("basic_acceptanceLimitLower"), limit.acceptance_min),
+            ("dcc.acceptance_max", Some("basic_acceptanceLimitUpper"), limit.acceptance_max),
         ];
         let known = ends.into_iter().filter_map(|(key, kind, end)| Some((key, kind, end?)));
         let known: Vec<_> = known.filter(|(.., end)| end.is_finite()).collect();
@@ -455,7 +455,8 @@ impl Certificate<'_> {
         }
         node(xml, "dcc:data", &[], |xml| {
             known.into_iter().try_for_each(|(key, kind, end)| {
-                node(xml, "dcc:quantity", kind, |xml| {
+                let kind: Vec<(&str, &str)> = kind.map(|kind| ("refType", kind)).into_iter().collect();
+                node(xml, "dcc:quantity", &kind, |xml| {
                     self.texts(xml, "dcc:name", |words| words.t(key))?;
                     quantity(xml, &plain(end), &limit.unit)
                 })

@@ -68,6 +68,7 @@ pub(super) fn stated(text: Option<&str>) -> Option<&str> {
     text.map(str::trim).filter(|t| !t.is_empty())
 }
 
+/// XML as a reader sees it, for tests.
 #[cfg(test)]
 pub(super) mod reading {
     use quick_xml::Reader;
