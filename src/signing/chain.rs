@@ -2,7 +2,7 @@
 
 use super::key::{self, Invalid, KeyError};
 use super::role::Role;
-use super::statement::{Previous, SIGN_OFF, STATEMENT, SignOff, Statement, Subject, Waived};
+use super::statement::{Previous, SIGN_OFF, STATEMENT, SignOff, Statement, Subject};
 use crate::i18n::{Note, io_reason};
 use crate::output::{CHECKSUMS_FILE, StagedFile, sha256};
 use std::collections::BTreeMap;
@@ -182,13 +182,5 @@ pub fn files_of(folder: &Path, stated: impl Iterator<Item = String>) -> BTreeMap
         .chain(std::iter::once(CHECKSUMS_FILE.to_owned()))
         .filter_map(|name| Some((sha256(&fs::read(folder.join(&name)).ok()?), name)))
         .map(|(hash, name)| (name, hash))
-        .collect()
-}
-
-/// The rows of a record that are waived by any of its links.
-pub fn waived(links: &[Link]) -> Vec<(&Link, &Waived)> {
-    links
-        .iter()
-        .flat_map(|l| l.statement.iter().flat_map(move |s| s.predicate.waivers.iter().map(move |w| (l, w))))
         .collect()
 }

@@ -9,7 +9,7 @@ mod role;
 mod signers;
 mod statement;
 
-pub use chain::{Broken, Link, SIGNATURES_FOLDER, chain, files_of, sign, waived};
+pub use chain::{Broken, Link, SIGNATURES_FOLDER, chain, files_of, sign};
 pub use key::NAMESPACE;
 pub use role::Role;
 pub use signers::Signers;

@@ -2,8 +2,8 @@
 
 use crate::estimate::Verdict;
 use crate::i18n::{Arg, Note};
+use crate::output::sha256;
 use crate::record::{RESULT_FORMAT, SheetInput, SheetProcedure, read};
-use sha2::{Digest, Sha256};
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -36,8 +36,7 @@ impl TestedUnit {
         if serial.is_empty() {
             return Err(Note::new("datasheet.refused.no_serial").with("path", path));
         }
-        let sha256 = Sha256::digest(&bytes).iter().map(|b| format!("{b:02x}")).collect();
-        Ok(TestedUnit { serial, path, sha256, input })
+        Ok(TestedUnit { serial, path, sha256: sha256(&bytes), input })
     }
 
     /// Name of the lot; empty where none is named.
