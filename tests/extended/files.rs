@@ -7,18 +7,19 @@ use rayon::prelude::*;
 use std::fmt::Write;
 use tempfile::tempdir;
 
-/// Numbers as words that a careless sum would print; none of these records holds a figure of such size.
-const OVERFLOWN: [&str; 5] = ["1e308", "1.7976931348623157e308", "1e+308", "e307", "e308"];
+/// What a careless sum would print; none of these records holds a figure of such size.
+const OVERFLOWN: f64 = 1e300;
 
 fn assert_sound(folder: &std::path::Path, name: &str) {
     for (path, bytes) in files(folder) {
         let text = String::from_utf8(bytes).unwrap();
-        for word in OVERFLOWN {
-            assert!(!text.contains(word), "{name}: `{word}` in {}", path.display());
+        for word in text.split([' ', ',', '\n', '>', '<', '"', ':']) {
+            // A word is judged as a number, since a hash may contain `e308`.
+            let number =
+                word.ends_with(|c: char| c.is_ascii_digit()).then(|| word.parse::<f64>().ok()).flatten();
+            assert!(number.is_none_or(|n| n.abs() < OVERFLOWN), "{name}: `{word}` in {}", path.display());
+            assert!(!["-0", "-0.0", "−0"].contains(&word), "{name}: a negative zero in {}", path.display());
         }
-        let minus_zero =
-            text.split([' ', ',', '\n', '>', '<', '"', ':']).any(|w| ["-0", "-0.0", "−0"].contains(&w));
-        assert!(!minus_zero, "{name}: a negative zero in {}", path.display());
     }
 }
 
