@@ -196,7 +196,8 @@ fn anew(args: &VerifyArgs, folder: &Folder, run: Option<&RunRecord>) -> Result<V
     match run.kind {
         RunKind::Run => {
             let procedure = args.procedure.clone().unwrap_or_else(|| folder.path.join(PROCEDURE_FILE));
-            command.arg("run").arg(procedure).args(&args.recording);
+            // The settings of the user may name a store, which must not keep this check as another attempt.
+            command.arg("run").arg(procedure).args(&args.recording).arg("--no-store");
             let limits = folder.path.join(LIMITS_FILE);
             if run.procedure.as_ref().is_some_and(|p| p.limits.is_some()) && limits.is_file() {
                 command.arg("--limits").arg(limits);
@@ -210,7 +211,7 @@ fn anew(args: &VerifyArgs, folder: &Folder, run: Option<&RunRecord>) -> Result<V
         command.args(["--serial", serial]);
     }
     let out = scratch.path().join("anew");
-    command.arg("--out").arg(&out).arg("--quiet").env_remove("SAGNAC_STORE");
+    command.arg("--out").arg(&out).arg("--quiet");
     let ran = command.output();
     let made = std::fs::read(out.join(Kind::Result.record_file())).ok();
     let made: Option<Value> = made.and_then(|bytes| serde_json::from_slice(&bytes).ok());

@@ -9,7 +9,7 @@ mod pdf;
 mod signing;
 
 use std::path::Path;
-use support::{altered, limits, procedure, sagnac, sample};
+use support::{altered, limits, procedure, sagnac, sagnac_with, sample};
 use tempfile::TempDir;
 
 /// A folder with the result `r` of a unit, by the static procedure with lines added to what it says of the report.
@@ -48,6 +48,18 @@ fn a_result_is_verified_from_its_hashes_to_its_figures() {
     let (code, said) = verified(dir.path(), &["r", "--recording", &other]);
     assert_eq!(code, 1, "{said}");
     assert!(said.contains("its hash differs"), "{said}");
+    // A store in the settings of the user keeps no further attempt.
+    let at = dir.path();
+    assert_eq!(sagnac(at, &["store", "init", "store"]).code, 0);
+    std::fs::create_dir(at.join("sagnac")).unwrap();
+    std::fs::write(
+        at.join("sagnac/config.toml"),
+        format!("[store]\npath = \"{}\"\n", at.join("store").display()),
+    )
+    .unwrap();
+    let set = [("XDG_CONFIG_HOME", at.to_str().unwrap())];
+    assert_eq!(sagnac_with(at, &["verify", "r", "--recording", &recording], &set).code, 0);
+    assert_eq!(std::fs::read_dir(at.join("store/results")).unwrap().count(), 0);
     let said = sagnac(dir.path(), &["verify", "r", "--lang", "ru"]);
     assert!(said.out.ends_with("Расхождений нет.\n"), "{said:?}");
 }

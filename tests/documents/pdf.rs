@@ -69,6 +69,9 @@ fn a_report_is_the_same_twice_and_checked_without_its_folder() {
         fs::write(at.join("lone.pdf"), &pdf).unwrap();
         let (code, said) = verified(at, &["lone.pdf"]);
         assert!(code == 0 && said.contains("byte for byte"), "{out}: {said}");
+        fs::write(at.join("lone.pdf"), [&pdf, b"% more\n".as_slice()].concat()).unwrap();
+        let (code, said) = verified(at, &["lone.pdf"]);
+        assert!(code == 1 && said.contains("7 bytes of an update follow"), "{out}: {said}");
         for place in [pdf.len() / 3, pdf.len() / 2, pdf.len() - 40] {
             let mut bad = pdf.clone();
             bad[place] ^= 1;
