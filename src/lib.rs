@@ -40,6 +40,7 @@
 //! | [`record`] | what a run leaves behind, as `result.json` holds it |
 //! | [`acceptance`] | conditions, the run, comparisons, inspection |
 //! | [`report`] | views of a record as HTML, Markdown and SVG |
+//! | [`prove`] | what the engine says of a recording of which something is concealed |
 //! | [`store`] | results that are kept, and their index |
 //! | [`i18n`] | sentences in English and Russian |
 //! | [`output`] | folders that appear complete or not at all |
@@ -53,6 +54,7 @@ pub mod i18n;
 pub mod ingest;
 mod library;
 pub mod output;
+pub mod prove;
 pub mod record;
 pub mod report;
 pub mod selftest;

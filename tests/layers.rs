@@ -39,7 +39,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
             &["simulate"],
             &["acceptance", "selftest"],
             &["report"],
-            &["library", "verify"],
+            &["library", "prove", "verify"],
             &["cli"],
         ],
     ),

@@ -29,6 +29,7 @@ mod plan;
 mod printer;
 mod procedures;
 mod progress;
+mod prove;
 mod read;
 mod report;
 mod run;
@@ -135,6 +136,10 @@ enum Verb {
         sagnac simulate model.toml --schedule next/schedule.toml --out simulated.csv"
     )]
     Plan(plan::PlanArgs),
+    /// Conceal something of a recording, let the engine explain the rest, and judge its answer by rules fixed before
+    #[command(after_help = "Exit codes: 0 every rule holds, 1 a rule does not hold, 2 could not run.\n\n\
+        Example:\n  sagnac prove proofs/closed-loop-ramp.toml --data /data --out proved")]
+    Prove(prove::ProveArgs),
     /// Find out whether a folder of results is still what was written, and who signed it
     #[command(after_help = "Exit codes: 0 nothing differs, 1 something differs, 2 could not.\n\n\
         Examples:\n  sagnac verify reports/SN-0042 --signers allowed_signers\n  \
@@ -218,6 +223,7 @@ pub fn main() -> ExitCode {
         Verb::Effects(args) => effects::main(&args, lang),
         Verb::Explain(args) => explain::main(&args, lang),
         Verb::Plan(args) => plan::main(&args, lang),
+        Verb::Prove(args) => prove::main(&args, lang),
         Verb::Verify(args) => verify::main(&args, lang),
         Verb::Sign(args) => sign::sign(&args, lang),
         Verb::Approve(args) => sign::approve(&args, lang),

@@ -5,7 +5,7 @@ use crate::mismatch::joint::record::JointExplanation;
 use crate::output::Listed;
 use crate::plan::Plan;
 use crate::record::explanation::Explanation;
-use crate::record::{DataSheet, HistoryRecord, LotRecord, RunRecord};
+use crate::record::{DataSheet, HistoryRecord, LotRecord, ProofRecord, RunRecord};
 use clap::{Args, ValueEnum};
 
 #[derive(Debug, Args)]
@@ -40,6 +40,10 @@ pub enum SchemaKind {
     Schedule,
     /// alternatives.toml: what would explain a recording as well
     Alternatives,
+    /// A proof file: what is concealed of a recording, and the rules by which the answer is judged
+    Proof,
+    /// proof.json
+    ProofResult,
     /// A sheet file: rows, names and units of a data sheet
     Sheet,
     /// datasheet.json
@@ -55,6 +59,10 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Manifest => crate::config::procedure::schema::manifest(),
         SchemaKind::Layout => crate::config::procedure::schema::layout(),
         SchemaKind::Model => crate::config::procedure::schema::model(),
+        SchemaKind::Proof => crate::config::procedure::schema::proof(),
+        SchemaKind::ProofResult => {
+            serde_json::to_value(schemars::schema_for!(Listed<ProofRecord>)).unwrap_or_default()
+        }
         SchemaKind::Sheet => crate::config::procedure::schema::sheet(),
         SchemaKind::Schedule => crate::config::procedure::schema::schedule(),
         SchemaKind::Alternatives => crate::config::procedure::schema::alternatives(),

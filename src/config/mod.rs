@@ -1,7 +1,7 @@
 //! TOML files whose keys are described once, as data: reading with every problem placed, and the parts of schema and
 //! guide that follow from the description.
 //!
-//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`manifest`], [`layout`], [`laboratory`] and [`user`] are the files; the others
+//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`proof`], [`manifest`], [`layout`], [`laboratory`] and [`user`] are the files; the others
 //! know none of them.
 
 pub mod alternatives;
@@ -13,6 +13,7 @@ mod line_repair;
 pub mod manifest;
 pub mod model;
 pub mod procedure;
+pub mod proof;
 pub mod quantity;
 pub(crate) mod read_tables;
 pub(crate) mod reader;

@@ -136,6 +136,8 @@ pub enum Kind {
     Choices(&'static [Word]),
     /// A list of names of columns, of which these words are known.
     Columns(&'static [Word]),
+    /// A list of ids of effects of the catalogue, or `unknown`.
+    Effects,
     /// A number with its unit, in a text: `"20 degC"`.
     Quantity {
         /// Unit it is converted to.
@@ -191,7 +193,9 @@ impl Kind {
             Kind::Date => Note::new("keyed.kind.date"),
             Kind::Choice(words) => one_of(words),
             Kind::Choices(words) => Note::new("keyed.kind.list_of").with("words", in_quotes(words)),
+            Kind::Columns([]) => Note::new("proof_file.columns"),
             Kind::Columns(words) => Note::new("keyed.kind.columns").with("words", in_quotes(words)),
+            Kind::Effects => Note::new("proof_file.effects"),
             Kind::Quantity { unit, range, .. } => {
                 let shown = if unit == "1" { "%" } else { unit };
                 if range == Range::ANY {

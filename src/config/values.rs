@@ -7,6 +7,7 @@ use super::role_words;
 use super::section::{Allowance, Entry, Given, Named, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
 use super::texts::{Blank, local, text};
+use crate::effect::EFFECTS;
 use crate::i18n::Note;
 use crate::recording::ColumnRef;
 use crate::units::Unit;
@@ -70,6 +71,16 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
             }
             Some(Entry::Names(names))
         }
+        Kind::Effects => {
+            let DeValue::Array(items) = value.toml else { return reader.wrong(value) };
+            let mut ids = vec![];
+            for item in items {
+                let span = item.span();
+                let item = value.with(item.get_ref(), &span);
+                ids.extend(text(reader, item, Blank::Refused).and_then(|id| effect(&id, &span, reader)));
+            }
+            Some(Entry::Names(ids))
+        }
         Kind::Quantity { unit, difference, range } => {
             quantity_in(reader, value, unit, difference, range).map(Entry::Number)
         }
@@ -87,6 +98,21 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
         | Kind::Tables(_)
         | Kind::TableOrTables(_) => reader.wrong(value),
     }
+}
+
+/// The id of an effect of the catalogue, or `unknown`; anything else is reported.
+fn effect(id: &str, span: &Span, reader: &mut Reader<'_>) -> Option<String> {
+    let known = || EFFECTS.iter().map(|e| e.kind()).chain(["unknown"]);
+    if known().any(|k| k == id) {
+        return Some(id.to_owned());
+    }
+    let help = match nearest(id, known()) {
+        Some(near) => Note::new("keyed.help.did_you_mean_value").with("value", near),
+        None => Note::new("model_file.help.kinds"),
+    };
+    let at = reader.source.inside_quotes(span);
+    reader.error(&at, Note::new("model_file.no_kind").with("kind", shorten(id)), Some(help));
+    None
 }
 
 fn id(reader: &mut Reader<'_>, value: Value<'_>) -> Option<String> {

@@ -45,6 +45,7 @@ impl Earlier {
                 Kind::Explanation => "explain.error.foreign_folder".into(),
                 Kind::Joint => "joint.error.foreign_folder".into(),
                 Kind::Plan => "plan.error.foreign_folder".into(),
+                Kind::Proof => "prove.error.foreign_folder".into(),
             });
         }
         let Some(earlier) = Earlier::read(target, kind) else {
@@ -91,6 +92,7 @@ impl Earlier {
                 note("output_error.what.joint").with("verdict", text("/verdict").unwrap_or_default())
             }
             Kind::Plan => note("output_error.what.plan"),
+            Kind::Proof => note("output_error.what.proof"),
             Kind::Lot => {
                 let units = self.record.get("units").and_then(Value::as_array).map_or(0, Vec::len);
                 note("output_error.what.lot").with("n", units)

@@ -25,11 +25,13 @@ pub enum Kind {
     Plan,
     /// The data sheet of a lot.
     DataSheet,
+    /// A proof: what was concealed, what was said, what is true.
+    Proof,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 7] = [
+    pub const ALL: [Kind; 8] = [
         Kind::Result,
         Kind::Comparison,
         Kind::Explanation,
@@ -37,6 +39,7 @@ impl Kind {
         Kind::Lot,
         Kind::Plan,
         Kind::DataSheet,
+        Kind::Proof,
     ];
 
     /// The JSON file that a folder of this kind holds, and by which it is known.
@@ -49,13 +52,14 @@ impl Kind {
             Kind::Joint => "joint.json",
             Kind::Plan => "plan.json",
             Kind::DataSheet => "datasheet.json",
+            Kind::Proof => "proof.json",
         }
     }
 
     /// Name of its pages without the ending, such as `report` for `report.html`.
     pub fn page_stem(self) -> &'static str {
         match self {
-            Kind::Result | Kind::Explanation | Kind::Joint | Kind::Plan => "report",
+            Kind::Result | Kind::Explanation | Kind::Joint | Kind::Plan | Kind::Proof => "report",
             Kind::Comparison => "comparison",
             Kind::Lot => "index",
             Kind::DataSheet => "datasheet",
@@ -72,6 +76,7 @@ impl Kind {
             Kind::Joint => "{\"format\":\"explain-joint/",
             Kind::Plan => "{\"format\":\"plan/",
             Kind::DataSheet => "{\"format\":\"datasheet/",
+            Kind::Proof => "{\"format\":\"proof-result/",
         }
     }
 
@@ -93,6 +98,7 @@ impl Kind {
             Kind::Joint => name == "augmented.toml",
             Kind::Plan => name == "schedule.toml",
             Kind::DataSheet => name == "limits.toml",
+            Kind::Proof => name == "model.toml",
         }
     }
 
@@ -107,7 +113,7 @@ impl Kind {
                 }
                 Kind::Joint => name == "recordings",
                 Kind::Lot => name == "junit.xml",
-                Kind::Comparison | Kind::Explanation | Kind::Plan | Kind::DataSheet => false,
+                Kind::Comparison | Kind::Explanation | Kind::Plan | Kind::DataSheet | Kind::Proof => false,
             };
         page || matches!(name, "figures" | "signatures.json" | CHECKSUMS_FILE)
             || name == self.record_file()

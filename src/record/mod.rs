@@ -22,6 +22,7 @@ pub(crate) mod message;
 mod null_numbers;
 mod origin;
 mod phase;
+mod proof;
 pub mod read;
 mod siblings;
 mod table_step;
@@ -54,6 +55,10 @@ pub use lot::{LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, SerialSourc
 pub use message::Message;
 pub use origin::{ColumnRecord, LimitsFile, ProcedureRecord, Program, RecordingFile, Session, UnitUnderTest};
 pub use phase::PhaseRecord;
+pub use proof::{
+    ClaimOrigin, CourseRecord, FoundValue, Hidden, HiddenKind, KnownRecord, PROOF_FORMAT, ProofOutcome,
+    ProofRecord, ProofRecording, ProtocolStep, RuleRecord,
+};
 pub use siblings::{SiblingQuantity, SiblingsRecord};
 pub use table_step::TableStepRecord;
 

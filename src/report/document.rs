@@ -6,6 +6,7 @@ use super::explain::{ExplainFile, ExplainView};
 use super::joint::{JointFile, JointView};
 use super::lot::LotView;
 use super::plan::{PlanFile, PlanView};
+use super::proof::ProofView;
 use super::render::{paper_context, run_context, view_context};
 use super::results::{ExplanationResults, Results};
 use super::view::{PhasePart, View};
@@ -15,7 +16,7 @@ use crate::acceptance::phases::figures as phase_figures;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::output::Kind;
-use crate::record::{DataSheet, LotRecord, RunRecord};
+use crate::record::{DataSheet, LotRecord, ProofRecord, RunRecord};
 use minijinja::value::Value;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -44,6 +45,7 @@ enum Record<'a> {
     Joint(&'a JointFile),
     Plan(&'a PlanFile),
     DataSheet(&'a DataSheet),
+    Proof(&'a ProofRecord),
 }
 
 impl<'a> Document<'a> {
@@ -166,6 +168,23 @@ impl<'a> Document<'a> {
         }
     }
 
+    /// The document of a proof.
+    pub fn of_proof(
+        proof: &'a ProofRecord,
+        figures: &'a [Figure],
+        tables: &'a [(String, String)],
+        lang: Lang,
+    ) -> Document<'a> {
+        Document {
+            lang,
+            context: view_context(&ProofView::new(proof, figures, lang), lang),
+            template: "proof",
+            figures: figures.into(),
+            tables,
+            record: Record::Proof(proof),
+        }
+    }
+
     /// The lot that the document is of.
     pub fn lot(&self) -> Option<&'a LotRecord> {
         match self.record {
@@ -192,6 +211,7 @@ impl<'a> Document<'a> {
             Record::Joint(_) => Kind::Joint,
             Record::Plan(_) => Kind::Plan,
             Record::DataSheet(_) => Kind::DataSheet,
+            Record::Proof(_) => Kind::Proof,
         }
     }
 
@@ -225,6 +245,7 @@ impl<'a> Document<'a> {
             Record::Joint(file) => file.explanation.case.clone(),
             Record::Plan(file) => file.plan.case.clone(),
             Record::DataSheet(sheet) => sheet.model.clone().unwrap_or_default(),
+            Record::Proof(proof) => proof.title.text().to_owned(),
         }
     }
 
@@ -238,6 +259,7 @@ impl<'a> Document<'a> {
             Record::Joint(file) => &file.context.explained_at,
             Record::Plan(file) => &file.context.planned_at,
             Record::DataSheet(sheet) => &sheet.made_at,
+            Record::Proof(proof) => &proof.proved_at,
         }
     }
 
@@ -270,6 +292,7 @@ impl Results {
             Results::DataSheet(sheet, figures, tables) => {
                 Document::of_datasheet(sheet, figures, tables, lang)
             }
+            Results::Proof(proof, figures, tables) => Document::of_proof(proof, figures, tables, lang),
         }
     }
 

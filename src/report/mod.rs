@@ -16,6 +16,7 @@ pub mod methods;
 pub mod number;
 pub mod pdf;
 pub mod plan;
+pub mod proof;
 mod prose;
 pub mod render;
 mod results;

@@ -51,6 +51,8 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("joint.md", include_str!("../../templates/joint.md")),
     ("plan.html", include_str!("../../templates/plan.html")),
     ("plan.md", include_str!("../../templates/plan.md")),
+    ("proof.html", include_str!("../../templates/proof.html")),
+    ("proof.md", include_str!("../../templates/proof.md")),
 ];
 
 /// Largest template file that is read.

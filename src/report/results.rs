@@ -18,7 +18,8 @@ use crate::plan::record::PLAN_FORMAT;
 use crate::record::explanation::Explanation;
 use crate::record::read::{self, ReadError};
 use crate::record::{
-    DATASHEET_FORMAT, DataSheet, FigureRecord, LOT_FORMAT, LotRecord, RESULT_FORMAT, RunRecord,
+    DATASHEET_FORMAT, DataSheet, FigureRecord, LOT_FORMAT, LotRecord, PROOF_FORMAT, ProofRecord,
+    RESULT_FORMAT, RunRecord,
 };
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -113,6 +114,8 @@ pub enum Results {
     Plan(Box<PlanFile>, Vec<(String, String)>),
     /// Of a data sheet: the record, figures and tables.
     DataSheet(Box<DataSheet>, Vec<Figure>, Vec<(String, String)>),
+    /// Of a proof: the record, figures, and the claim as a model.
+    Proof(Box<ProofRecord>, Vec<Figure>, Vec<(String, String)>),
 }
 
 impl Results {
@@ -154,6 +157,7 @@ impl Results {
             Results::Joint(_) => Kind::Joint,
             Results::Plan(..) => Kind::Plan,
             Results::DataSheet(..) => Kind::DataSheet,
+            Results::Proof(..) => Kind::Proof,
         }
     }
 
@@ -164,6 +168,7 @@ impl Results {
             Results::Comparison(comparison, ..) => Some(&comparison.program.version),
             Results::Lot(lot, _) => Some(&lot.program.version),
             Results::DataSheet(sheet, ..) => Some(&sheet.program.version),
+            Results::Proof(proof, ..) => Some(&proof.program.version),
             Results::Explanation(_) | Results::Joint(_) | Results::Plan(..) => None,
         }
     }
@@ -180,6 +185,7 @@ impl Results {
             Results::Joint(results) => Some(results.file.explanation.case.as_str()).filter(|c| !c.is_empty()),
             Results::Plan(file, _) => Some(file.plan.case.as_str()).filter(|c| !c.is_empty()),
             Results::DataSheet(sheet, ..) => sheet.model.as_deref(),
+            Results::Proof(..) => None,
         }
     }
 }
@@ -204,7 +210,7 @@ struct Listing {
 }
 
 impl StoredResults {
-    /// Reads a `result.json`, `explain.json`, `joint.json`, `comparison.json`, `index.json`, `plan.json` or `datasheet.json`, or
+    /// Reads a `result.json`, `explain.json`, `joint.json`, `comparison.json`, `index.json`, `plan.json`, `datasheet.json` or `proof.json`, or
     /// the folder of one, with what stands beside it.
     ///
     /// # Errors
@@ -229,6 +235,11 @@ impl StoredResults {
             Some("lot") => Results::of_lot(read::of_format::<LotRecord>(&bytes, LOT_FORMAT).map_err(wrong)?),
             Some("datasheet") => {
                 Results::of_datasheet(read::of_format(&bytes, DATASHEET_FORMAT).map_err(wrong)?)
+            }
+            Some("proof-result") => {
+                let proof: ProofRecord = read::of_format(&bytes, PROOF_FORMAT).map_err(wrong)?;
+                let figures = from.figures("", 1, &[]);
+                Results::Proof(Box::new(proof), figures, from.tables("", Kind::Proof))
             }
             _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),
         };

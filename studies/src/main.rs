@@ -18,7 +18,7 @@ A study that was interrupted goes on after its last finished case, as long as th
 --out      folder for the pages (default: docs/validation/); the misses in README.md stay as they are
 --list     names the studies
 --index    runs nothing; writes the misses of all pages into README.md
-Cases of the laboratory as folders: laboratory-write, laboratory-explain, laboratory-score (run without arguments for help)
+Cases of the laboratory as folders: laboratory-write, laboratory-seal, laboratory-explain, laboratory-score (run without arguments for help)
 ";
 
 struct Options {

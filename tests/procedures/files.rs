@@ -452,6 +452,7 @@ fn the_guide_is_the_key_tables() {
         ("limits.md", "keys", guide::limits_reference()),
         ("layout.md", "keys", guide::layout_reference()),
         ("model.md", "keys", guide::model_reference()),
+        ("prove.md", "keys", guide::proof_reference()),
     ] {
         let path = guide_folder.join(file);
         let page = std::fs::read_to_string(&path).unwrap();
@@ -486,4 +487,7 @@ fn the_files_shown_in_the_guide_are_sound() {
     let model = sagnac::config::model::parse("model.md", page("model.md").as_bytes())
         .unwrap_or_else(|e| panic!("{e}"));
     assert_eq!((model.claim.effects.len(), model.drivers.len()), (1, 1));
+    let proof = sagnac::config::proof::parse("prove.md", page("prove.md").as_bytes(), Path::new("."))
+        .unwrap_or_else(|e| panic!("{e}"));
+    assert_eq!((proof.decoys.len(), proof.references.len(), proof.rules.len()), (1, 1, 3));
 }

@@ -3,6 +3,7 @@
 mod features;
 mod long_studies;
 mod notices;
+mod proofs;
 mod same_results;
 
 use std::path::{Path, PathBuf};
@@ -18,6 +19,8 @@ same-results OLD NEW [--only TEXT]
     Run every shipped sample with two binaries and compare their result.json: numbers to the last digit.
 features [CARGO OPTION]...
     Check sagnac-ingest with every cargo feature alone, with none and with all.
+proofs DATA [WORD]...
+    Run the proofs with the recordings of a folder, those whose path contains a word or all, and add a line a run to docs/PROOFS.md.
 notices [--check]
     Write THIRD-PARTY.md: licences and notices of the packages that the program contains.
 ";
@@ -32,6 +35,7 @@ fn main() -> ExitCode {
             None => usage(),
         },
         Some((command, rest)) if command == "study" && rest.len() < 2 => long_studies::run(root, rest),
+        Some((command, [data, words @ ..])) if command == "proofs" => proofs::run(root, data, words),
         Some((command, rest)) if command == "features" => features::check(root, rest),
         Some((command, [])) if command == "notices" => notices::run(root, false),
         Some((command, [check])) if command == "notices" && check == "--check" => notices::run(root, true),

@@ -12,7 +12,7 @@ use crate::units::Unit;
 ///
 /// Counts become a physical unit here: `unit = "count"` with `scale = "0.01 arcsec/count"` is a channel in arcsec
 /// with a factor of 0.01.
-pub(super) fn read(section: &Section, reader: &mut Reader<'_>) -> Option<(Channel, String)> {
+pub(crate) fn read(section: &Section, reader: &mut Reader<'_>) -> Option<(Channel, String)> {
     let id = section.text("id")?;
     let column = match section.entry("column") {
         Some(Entry::Column(column)) => recording_options::column(section, column.clone()),

@@ -7,6 +7,7 @@ use super::tables::phases::PHASES_FILE;
 use crate::config::layout::tables::LAYOUT_FILE;
 use crate::config::manifest::tables::MANIFEST_FILE;
 use crate::config::model::tables::MODEL_FILE;
+use crate::config::proof::tables::PROOF_FILE;
 use crate::i18n::{Lang, Localize};
 use crate::measurand::MEASURANDS;
 use std::fmt::Write;
@@ -39,6 +40,11 @@ pub fn layout_reference() -> String {
 /// Every key of a claim, as Markdown.
 pub fn model_reference() -> String {
     reference(&MODEL_FILE)
+}
+
+/// Every key of a proof file, as Markdown.
+pub fn proof_reference() -> String {
+    reference(&PROOF_FILE)
 }
 
 /// Every measurand that may be asked for, as Markdown.
@@ -91,6 +97,7 @@ fn value(key: &KeySpec) -> String {
         Kind::Choice(_) => "one of the words listed".to_owned(),
         Kind::Choices(_) => "a list of the words listed".to_owned(),
         Kind::Columns(_) => "a list of names of columns".to_owned(),
+        Kind::Effects => "a list of ids of effects".to_owned(),
         kind => kind.describe().say(Lang::En),
     };
     if key.example.is_empty() || matches!(key.kind, Kind::Format(_) | Kind::Flag) {

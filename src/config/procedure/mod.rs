@@ -1,7 +1,7 @@
 //! Procedures and limits as data: what is recorded, under which conditions, what is determined, by which limits it is
 //! judged. TOML in, typed values in inside units out; every problem of a file is reported at once with its place.
 
-mod channel;
+pub(crate) mod channel;
 pub mod check;
 pub mod guide;
 pub mod limit_set;

@@ -10,6 +10,7 @@ use crate::config::alternatives::ALTERNATIVES_FILE;
 use crate::config::layout::tables::LAYOUT_FILE;
 use crate::config::manifest::tables::MANIFEST_FILE;
 use crate::config::model::tables::MODEL_FILE;
+use crate::config::proof::tables::PROOF_FILE;
 use crate::config::schedule::tables::SCHEDULE_FILE;
 use crate::config::sheet::tables::SHEET_FILE;
 use crate::effect::EFFECTS;
@@ -50,6 +51,11 @@ pub fn model() -> Value {
 /// The schema of a sheet file.
 pub fn sheet() -> Value {
     document(&SHEET_FILE, "Sagnac sheet")
+}
+
+/// The schema of a proof file.
+pub fn proof() -> Value {
+    document(&PROOF_FILE, "Sagnac proof")
 }
 
 /// The schema of a schedule.
@@ -160,6 +166,10 @@ fn value(kind: Kind) -> Value {
         Kind::Choice(words) => one_of(words),
         Kind::Choices(words) => json!({"type": "array", "items": one_of(words)}),
         Kind::Columns(_) => json!({"type": "array", "items": {"type": "string"}}),
+        Kind::Effects => {
+            let ids: Vec<&str> = EFFECTS.iter().map(|e| e.kind()).chain(["unknown"]).collect();
+            json!({"type": "array", "items": {"enum": ids}})
+        }
         Kind::Quantity { .. } | Kind::QuantityBy(_) => quantity(),
         Kind::QuantityMap => {
             let properties: Map<String, Value> = available().map(|id| (id.to_owned(), quantity())).collect();

@@ -6,6 +6,7 @@ use super::catalogue::{names, seeds};
 use super::engine::{AGAIN, explain_folder};
 use super::folder;
 use super::score::Score;
+use super::seal::{opened, seal};
 use super::tally;
 use super::truth::{Family, Half, Strength};
 use rayon::prelude::*;
@@ -16,8 +17,9 @@ use std::path::{Path, PathBuf};
 pub const USAGE: &str =
     "usage: sagnac-studies laboratory-write DIR [--half HALF] [--family NAME] [--subject NAME] \
 [--strength NAME] [--count N] [--seed N]
+       sagnac-studies laboratory-seal DIR --keys DIR
        sagnac-studies laboratory-explain DIR [--again]
-       sagnac-studies laboratory-score DIR [--wrong]
+       sagnac-studies laboratory-score DIR [--keys DIR] [--wrong]
 
 laboratory-write    writes cases, each as a folder with recording.csv, model.toml and truth.json
   --half      development (default) or held-out; the latter is looked at only to report
@@ -26,9 +28,11 @@ laboratory-write    writes cases, each as a folder with recording.csv, model.tom
   --strength  clear or middling (default: both)
   --count     cases of each subject and strength (default: 1)
   --seed      first seed (default: 1)
+laboratory-seal     moves every truth.json into a folder of keys and writes their hashes into DIR/SEAL
 laboratory-explain  explains every folder that has no explain.json yet, through the library
   --again     explains with augmented.toml once more
 laboratory-score    scores the answers in the folders: explain.json, correction.csv, again.txt
+  --keys      the folder of keys of sealed cases
   --wrong     lists the cases that are not named right
 ";
 
@@ -42,6 +46,7 @@ struct Asked {
     strengths: Vec<Strength>,
     count: u64,
     seed: u64,
+    keys: Option<PathBuf>,
     flag: bool,
 }
 
@@ -53,6 +58,7 @@ pub fn run(arguments: &[String]) -> Option<Result<(), String>> {
     let (name, rest) = arguments.split_first()?;
     let command: fn(&Asked) -> Result<(), String> = match name.as_str() {
         "laboratory-write" => write,
+        "laboratory-seal" => sealed,
         "laboratory-explain" => explain,
         "laboratory-score" => score,
         _ => return None,
@@ -69,6 +75,7 @@ fn parse(arguments: &[String]) -> Result<Asked, String> {
         strengths: Strength::ALL.to_vec(),
         count: 1,
         seed: 1,
+        keys: None,
         flag: false,
     };
     let mut rest = arguments.iter();
@@ -82,6 +89,7 @@ fn parse(arguments: &[String]) -> Result<Asked, String> {
             "--subject" => asked.subject = Some(value()?.clone()),
             "--count" => asked.count = number(value()?)?,
             "--seed" => asked.seed = number(value()?)?,
+            "--keys" => asked.keys = Some(PathBuf::from(value()?)),
             "--again" | "--wrong" => asked.flag = true,
             option if option.starts_with('-') => return Err(format!("{option} is no option")),
             folder => asked.folder = PathBuf::from(folder),
@@ -133,11 +141,20 @@ fn write(asked: &Asked) -> Result<(), String> {
     done.into_iter().find_map(Result::err).map_or(Ok(()), Err)
 }
 
-/// Folders with a truth, in order.
+/// Moves the truths away.
+fn sealed(asked: &Asked) -> Result<(), String> {
+    let Some(keys) = &asked.keys else { return Err(format!("--keys is missing\n{USAGE}")) };
+    let failed = |e: io::Error| e.to_string();
+    let cases = folders(&asked.folder).map_err(failed)?;
+    println!("{} keys in {}", seal(&cases, &asked.folder, keys).map_err(failed)?, keys.display());
+    Ok(())
+}
+
+/// Folders with a case, in order.
 fn folders(of: &Path) -> io::Result<Vec<PathBuf>> {
     let mut all: Vec<PathBuf> = std::fs::read_dir(of)?
         .filter_map(|e| e.ok().map(|e| e.path()))
-        .filter(|p| p.join("truth.json").exists())
+        .filter(|p| p.join("recording.csv").exists() && p.join("model.toml").exists())
         .collect();
     all.sort();
     Ok(all)
@@ -157,7 +174,14 @@ fn score(asked: &Asked) -> Result<(), String> {
     let failed = |e: io::Error| e.to_string();
     let mut scores = vec![];
     for at in folders(&asked.folder).map_err(failed)? {
-        let truth = folder::truth(&at).map_err(failed)?;
+        let truth = match &asked.keys {
+            None => folder::truth(&at),
+            Some(keys) => {
+                let name = at.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+                opened(&asked.folder, keys, &name).and_then(|key| Ok(serde_json::from_slice(&key)?))
+            }
+        };
+        let truth = truth.map_err(failed)?;
         let Some(answer) = Answer::read(&at).map_err(failed)? else {
             eprintln!("{}: no explain.json", at.display());
             continue;

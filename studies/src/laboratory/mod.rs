@@ -2,7 +2,7 @@
 //!
 //! Surroundings ([`environment`]) act on a unit ([`unit`]) whose noise is made in time ([`noise`]). [`subjects`] are scenes
 //! with effects set into them; [`effect`] makes each as strong as asked, by what an [`oracle`] gains from the truth. A
-//! [`case`] is a recording with its claim and its [`truth`]; [`folder`] writes it, [`score`] judges what the engine
+//! [`case`] is a recording with its claim and its [`truth`]; [`folder`] writes it, [`seal`] keeps the truth apart, [`score`] judges what the engine
 //! answered, after the contract of `explain`. The [`catalogue`] fixes which half of the cases is looked at only to report.
 
 pub mod answer;
@@ -22,6 +22,7 @@ pub mod noise;
 pub mod oracle;
 pub mod process;
 pub mod score;
+pub mod seal;
 pub mod study;
 pub mod subjects;
 pub mod tally;

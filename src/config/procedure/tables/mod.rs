@@ -218,7 +218,7 @@ pub const STAMPS: &[Word] = &[
     ("number", "numbers"),
 ];
 
-static CHANNEL: TableSpec = TableSpec {
+pub(crate) static CHANNEL: TableSpec = TableSpec {
     name: "channel",
     doc: "One channel: a column of the recording and its role.",
     keys: &[

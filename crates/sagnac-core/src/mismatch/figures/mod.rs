@@ -10,6 +10,7 @@ mod spectrum;
 
 pub use against::{Against, against};
 pub use course::{TimeSeries, local_level, time_course};
+pub use join::over_time;
 pub use spectrum::{Spectra, spectrum};
 
 use crate::effect::{Domain, Place};

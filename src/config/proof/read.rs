@@ -1,0 +1,310 @@
+//! A proof file, with every problem at its place.
+
+use super::tables::PROOF_FILE;
+use super::{ClaimSource, Decoy, Must, Part, ProofFile, Reference, Rule, Shown, Source};
+use crate::config::contained_files::{self, folder_of};
+use crate::config::diagnostics::Problems;
+use crate::config::procedure::channel;
+use crate::config::read_tables::checked;
+use crate::config::reader::{Reader, for_example};
+use crate::config::section::{Entry, Section};
+use crate::config::text_file::{self, Wording};
+use crate::effect::Domain;
+use crate::i18n::Note;
+use std::path::{Path, PathBuf};
+
+/// What is said of a proof file that cannot be read at all.
+const WORDING: Wording = Wording { unreadable: "proof_file.unreadable", folder: "proof_file.folder" };
+
+/// Reads a proof file.
+///
+/// # Errors
+/// Every problem of the file, each with its place.
+pub fn load(path: &Path) -> Result<ProofFile, Problems> {
+    parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?, folder_of(path))
+}
+
+/// Reads a proof file from its bytes; `name` stands in diagnostics, and the models that it names are looked for in `folder`.
+///
+/// # Errors
+/// Every problem of the text.
+pub fn parse(name: &str, bytes: &[u8], folder: &Path) -> Result<ProofFile, Problems> {
+    let build = |root: &Section, reader: &mut Reader<'_>| build(root, folder, reader);
+    let (proof, problems) = checked(&text_file::source(name, bytes)?, &PROOF_FILE, build);
+    proof.flatten().ok_or(problems)
+}
+
+fn build(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Option<ProofFile> {
+    let recording = root.table("recording")?;
+    let conceal = root.table("conceal");
+    let channels: Vec<_> =
+        root.tables("channel").iter().filter_map(|s| channel::read(s, reader)).map(|(c, _)| c).collect();
+    let references: Vec<Reference> =
+        root.tables("reference").iter().filter_map(|s| reference(s, reader)).collect();
+    let hidden = conceal.and_then(|c| c.names("columns")).unwrap_or_default().to_vec();
+    let rules = root.tables("rule").iter().filter_map(|s| rule(s, &references, &hidden, reader)).collect();
+    Some(ProofFile {
+        title: root.local_text("title")?,
+        question: root.local_text("question")?,
+        source: source(recording, folder, reader)?,
+        seed: recording.number("seed").unwrap_or(1.0) as u64,
+        channels,
+        rate: recording.text("rate"),
+        unit: recording.text("unit"),
+        sample_rate_hz: recording.number("sample_rate"),
+        average: recording.number("average").unwrap_or(1.0) as usize,
+        part: part(recording, reader),
+        added: conceal.and_then(|c| model(c, "effects", folder, reader)),
+        hidden_columns: hidden,
+        decoys: root.tables("decoy").iter().filter_map(decoy).collect(),
+        claim: claim(root.table("claim")?, folder, reader),
+        references,
+        rules,
+    })
+}
+
+/// A file that a key names.
+fn model(section: &Section, key: &str, folder: &Path, reader: &mut Reader<'_>) -> Option<PathBuf> {
+    let text = section.text(key)?;
+    let at = reader.source.inside_quotes(&section.span_of(key));
+    contained_files::file(&text, folder, &at, reader).map(|f| f.path)
+}
+
+fn source(recording: &Section, folder: &Path, reader: &mut Reader<'_>) -> Option<Source> {
+    let path = recording.text("path");
+    let simulated = recording.entry("simulated").is_some();
+    if path.is_some() == simulated {
+        reader.error(&recording.span, "proof_file.path_or_simulated", None);
+        return None;
+    }
+    let Some(path) = path else {
+        let Some(duration_s) = recording.number("duration") else {
+            missing(recording, "duration", reader);
+            return None;
+        };
+        return Some(Source::Simulated { model: model(recording, "simulated", folder, reader)?, duration_s });
+    };
+    let at = reader.source.inside_quotes(&recording.span_of("path"));
+    if !contained_files::stays(&path, &at, reader) {
+        return None;
+    }
+    let Some(sha256) = recording.text("sha256") else {
+        missing(recording, "sha256", reader);
+        return None;
+    };
+    Some(Source::File { path, sha256: sha256.to_lowercase() })
+}
+
+/// Says that a table lacks a key that goes with what it says.
+fn missing(section: &Section, key: &'static str, reader: &mut Reader<'_>) {
+    let spec = PROOF_FILE.walk().into_iter().find_map(|t| t.key(key));
+    reader.error(&section.span, Note::new("proof_file.lacks").with("key", key), spec.map(for_example));
+}
+
+fn part(section: &Section, reader: &mut Reader<'_>) -> Part {
+    let part = Part { from_s: section.number("from"), to_s: section.number("to") };
+    if let (Some(from), Some(to)) = (part.from_s, part.to_s)
+        && from >= to
+    {
+        reader.error(&section.span_of("to"), "proof_file.to_before_from", None);
+    }
+    part
+}
+
+fn decoy(section: &Section) -> Option<Decoy> {
+    Some(Decoy { name: section.text("name")?, of: section.text("of")?, shift_s: section.number("shift")? })
+}
+
+fn claim(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ClaimSource {
+    if section.entry("model").is_none() {
+        return ClaimSource::Identified { part: part(section, reader), rate: section.text("rate") };
+    }
+    if let Some(key) = ["from", "to", "rate"].into_iter().find(|k| section.entry(k).is_some()) {
+        reader.error(&section.span_of(key), Note::new("proof_file.model_and").with("key", key), None);
+    }
+    ClaimSource::Model(model(section, "model", folder, reader).unwrap_or_default())
+}
+
+fn reference(section: &Section, reader: &mut Reader<'_>) -> Option<Reference> {
+    let ends = [section.number("low"), section.number("high")];
+    let unit = match section.entry("unit") {
+        Some(Entry::Unit(unit)) => Some(unit.clone()),
+        _ => None,
+    };
+    let interval = match (ends, unit) {
+        ([Some(low), Some(high)], Some(unit)) if low <= high => Some(([low, high], unit)),
+        ([None, None], None) => None,
+        _ => {
+            reader.error(&section.span, "proof_file.interval", None);
+            return None;
+        }
+    };
+    Some(Reference {
+        id: section.text("id")?,
+        what: section.local_text("what")?,
+        interval,
+        source: section.local_text("source")?,
+    })
+}
+
+fn rule(
+    section: &Section,
+    references: &[Reference],
+    hidden: &[String],
+    reader: &mut Reader<'_>,
+) -> Option<Rule> {
+    let when =
+        if section.word("when") == Some(Shown::Unveiled.id()) { Shown::Unveiled } else { Shown::Concealed };
+    if when == Shown::Unveiled && hidden.is_empty() {
+        reader.error(&section.span_of("when"), "proof_file.nothing_unveiled", None);
+    }
+    let must = section.word("must")?;
+    let needs: &[&'static str] = match must {
+        "verdict" => &["verdicts"],
+        "name" | "not_name" => &["kinds"],
+        "follow" | "not_follow" => &["columns"],
+        "parameter" => &["kinds", "parameter", "reference"],
+        "locate" => &["domain", "low", "high"],
+        "course" => &["columns", "at_least"],
+        _ => &["at_least"],
+    };
+    for key in ["verdicts", "kinds", "columns", "parameter", "reference", "domain", "low", "high", "at_least"]
+    {
+        let given = section.entry(key).is_some();
+        if needs.contains(&key) && !given {
+            missing(section, key, reader);
+            return None;
+        }
+        if given && !needs.contains(&key) {
+            let note = Note::new("proof_file.foreign").with("must", must).with("key", key);
+            reader.error(&section.span_of(key), note, None);
+        }
+    }
+    let names = |key: &str| section.names(key).unwrap_or_default().to_vec();
+    let at_least = section.number("at_least").unwrap_or(0.0);
+    let must = match must {
+        "verdict" => match section.entry("verdicts") {
+            Some(Entry::Words(words)) => Must::Verdict(words.clone()),
+            _ => return None,
+        },
+        "name" => Must::Name(names("kinds")),
+        "not_name" => Must::NotName(names("kinds")),
+        "follow" => Must::Follow(names("columns")),
+        "not_follow" => Must::NotFollow(names("columns")),
+        "parameter" => {
+            let id = section.text("reference")?;
+            let place = references.iter().position(|r| r.id == id && r.interval.is_some());
+            let Some(reference) = place else {
+                let at = reader.source.inside_quotes(&section.span_of("reference"));
+                reader.error(&at, Note::new("proof_file.no_reference").with("id", id), None);
+                return None;
+            };
+            Must::Parameter { kinds: names("kinds"), parameter: section.text("parameter")?, reference }
+        }
+        "locate" => {
+            let word = section.word("domain")?;
+            let domain = Domain::ALL.iter().copied().find(|d| d.id() == word)?;
+            let (low, high) = (section.number("low")?, section.number("high")?);
+            if low > high {
+                reader.error(&section.span_of("high"), "proof_file.interval", None);
+            }
+            Must::Locate { domain, low, high }
+        }
+        "course" => Must::Course { columns: names("columns"), at_least },
+        "improve" => Must::Improve(at_least),
+        _ => Must::Recover(at_least),
+    };
+    Some(Rule { when, must })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::config::proof::tables::{ASKS, DOMAINS};
+
+    const TEXT: &str = r#"format = "proof/1"
+title = "Ramp"
+question = "Is it found?"
+
+[recording]
+path = "fog/a.csv"
+sha256 = "AB"
+from = "10 s"
+to = "1 h"
+
+[conceal]
+columns = ["ramp"]
+
+[[decoy]]
+name = "d"
+of = "ramp"
+shift = "2 min"
+
+[claim]
+to = "10 min"
+
+[[reference]]
+id = "f"
+what = "Frequency"
+low = 4.1
+high = 4.2
+unit = "Hz"
+source = "README"
+
+[[rule]]
+must = "parameter"
+kinds = ["comb"]
+parameter = "frequency_hz"
+reference = "f"
+
+[[rule]]
+when = "unveiled"
+must = "follow"
+columns = ["ramp"]
+"#;
+
+    fn said(text: &str) -> String {
+        parse("p.toml", text.as_bytes(), Path::new(".")).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn a_proof_is_read_as_it_says() {
+        let read = parse("p.toml", TEXT.as_bytes(), Path::new(".")).unwrap_or_else(|e| panic!("{e}"));
+        assert_eq!(read.source, Source::File { path: "fog/a.csv".into(), sha256: "ab".into() });
+        assert_eq!(read.part, Part { from_s: Some(10.0), to_s: Some(3600.0) });
+        assert_eq!(read.decoys[0].shift_s, 120.0);
+        let ClaimSource::Identified { part, rate } = &read.claim else { panic!("{:?}", read.claim) };
+        assert_eq!((part.to_s, rate), (Some(600.0), &None));
+        assert_eq!(read.rules[1], Rule { when: Shown::Unveiled, must: Must::Follow(vec!["ramp".into()]) });
+        assert!(matches!(&read.rules[0].must, Must::Parameter { reference: 0, .. }));
+    }
+
+    #[test]
+    fn problems_have_their_places() {
+        for (from, to, place) in [
+            ("sha256 = \"AB\"\n", "", "p.toml:5:1"),
+            ("path = \"fog/a.csv\"", "path = \"../a.csv\"", "p.toml:6:9"),
+            ("to = \"1 h\"", "to = \"1 s\"", "p.toml:9:6"),
+            ("reference = \"f\"", "reference = \"g\"", "p.toml:34:14"),
+            ("\"comb\"", "\"combb\"", "p.toml:32:11"),
+            ("columns = [\"ramp\"]\n\n[[decoy]]", "[[decoy]]", "p.toml:35:8"),
+            ("parameter = \"frequency_hz\"\n", "", "p.toml:30:1"),
+            ("high = 4.2", "high = 4.0", "p.toml:21:1"),
+            ("[claim]\n", "[claim]\nmodel = \"none.toml\"\n", "p.toml:20:6"),
+        ] {
+            assert!(TEXT.contains(from), "{from}");
+            let said = said(&TEXT.replacen(from, to, 1));
+            assert!(said.contains(place), "{to}: {said}");
+        }
+    }
+
+    #[test]
+    fn every_domain_and_rule_has_its_word() {
+        assert!(DOMAINS.iter().map(|w| w.0).eq(Domain::ALL.iter().map(|d| d.id())));
+        for (must, _) in ASKS {
+            let text = TEXT.replace("must = \"follow\"", &format!("must = \"{must}\""));
+            let read = parse("p.toml", text.as_bytes(), Path::new("."));
+            assert_eq!(read.is_ok(), must.ends_with("follow"), "{must}");
+        }
+    }
+}
