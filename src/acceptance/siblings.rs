@@ -208,6 +208,7 @@ mod tests {
             path: String::new(),
             sha256: String::new(),
             input: input(0.002 * scatter(i, 3), 0.01 * scatter(i, 7), ""),
+            tables: vec![],
         };
         (1..=count).map(one).collect()
     }

@@ -40,6 +40,9 @@ pub struct DataSheet {
     pub pairs: Vec<SheetPair>,
     /// σ(τ) of the lot, by channel.
     pub curves: Vec<SheetCurve>,
+    /// Bias over temperature of the lot, where results have compensation tables beside them.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub temperature_curves: Vec<SheetTemperatureCurve>,
     /// The results that count, each with its hash.
     pub results: Vec<SheetResult>,
 }
@@ -314,12 +317,39 @@ pub struct SheetPoint {
     pub bound: Option<f64>,
 }
 
+/// Bias over temperature of the units of a lot, of one channel.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetTemperatureCurve {
+    /// Channel.
+    pub channel: String,
+    /// Points of the lot, by temperature.
+    pub points: Vec<SheetTemperaturePoint>,
+    /// The curves of the units: temperatures in degC and the bias less its own mean over the common range, deg/h.
+    pub units: Vec<SheetUnitCurve>,
+}
+
+/// One temperature.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct SheetTemperaturePoint {
+    /// Temperature, degC.
+    pub temperature_deg_c: f64,
+    /// Median of the units, deg/h.
+    pub median: f64,
+    /// 16 % of the units lie below, deg/h.
+    pub low: f64,
+    /// 84 % lie below, deg/h.
+    pub high: f64,
+    /// Two-sided tolerance band at this temperature, with the proportion and confidence of the sheet, if units are normal; deg/h.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub band: Option<[f64; 2]>,
+}
+
 /// The curve of one unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub struct SheetUnitCurve {
     /// Serial number.
     pub serial: String,
-    /// Averaging times in s and deviations in deg/h.
+    /// Averaging times in s and deviations in deg/h; or temperatures and biases.
     pub points: Vec<[f64; 2]>,
 }
 

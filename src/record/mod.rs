@@ -38,7 +38,7 @@ pub use datasheet::{
     DATASHEET_FORMAT, DataSheet, InputLimit, InputMeasurand, InputUnit, SheetBound, SheetCondition,
     SheetCurve, SheetInput, SheetLargest, SheetLimit, SheetOf, SheetOutlook, SheetPair, SheetPoint,
     SheetProcedure, SheetQuantity, SheetResult, SheetRisk, SheetScale, SheetShare, SheetSide, SheetSpread,
-    SheetTypical, SheetUnitCurve, SheetValue,
+    SheetTemperatureCurve, SheetTemperaturePoint, SheetTypical, SheetUnitCurve, SheetValue,
 };
 pub use deviation::DeviationRecord;
 pub use evidence::Evidence;

@@ -3,6 +3,7 @@
 //! `cargo test --release --test datasheet -- --ignored write_the_samples` writes `samples/lot/` anew.
 
 mod by_others;
+mod over_temperature;
 mod rows;
 mod samples;
 

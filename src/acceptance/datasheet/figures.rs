@@ -2,15 +2,18 @@
 
 use crate::figure::{Axis, Figure, Layer, Panel, Scale, Style};
 use crate::i18n::Note;
-use crate::record::{DataSheet, SheetCurve, SheetOf, SheetQuantity, SheetScale};
+use crate::record::{
+    DataSheet, SheetCurve, SheetOf, SheetQuantity, SheetScale, SheetTemperatureCurve, SheetUnitCurve,
+};
 
-/// Every figure: σ(τ) of each channel, then the units of each quantity that has bounds.
+/// Every figure: σ(τ) of each channel, bias over temperature, then the units of each quantity that has bounds.
 pub fn all(sheet: &DataSheet) -> Vec<Figure> {
     let several =
         sheet.quantities.iter().any(|q| Some(&q.channel) != sheet.quantities.first().map(|f| &f.channel));
     let curves = sheet.curves.iter().map(|c| sigma_tau(c, several));
     let drawn = sheet.quantities.iter().enumerate().filter(|(_, q)| !q.bounds.is_empty());
-    curves.chain(drawn.map(|(i, q)| units(q, i))).collect()
+    let temperature = sheet.temperature_curves.iter().map(|c| over_temperature(c, several));
+    curves.chain(temperature).chain(drawn.map(|(i, q)| units(q, i))).collect()
 }
 
 /// Id of the figure of a quantity.
@@ -26,13 +29,7 @@ fn sigma_tau(curve: &SheetCurve, several: bool) -> Figure {
     let mut layers = vec![];
     let band = curve.points.iter().map(|p| (p.tau_s, p.low, p.high)).collect();
     layers.push(Layer::Band { points: band, style: Style::Data, legend: "datasheet.legend.band".into() });
-    // One line for all units: a point that is no number breaks it.
-    let mut hairs: Vec<(f64, f64)> = vec![];
-    for unit in &curve.units {
-        hairs.extend(unit.points.iter().map(|[tau, deviation]| (*tau, *deviation)));
-        hairs.push((f64::NAN, f64::NAN));
-    }
-    layers.push(Layer::Line { points: hairs, style: Style::Muted, legend: "datasheet.legend.unit".into() });
+    layers.push(hairs(&curve.units));
     let median = curve.points.iter().map(|p| (p.tau_s, p.median)).collect();
     layers.push(Layer::Line { points: median, style: Style::Data, legend: "datasheet.legend.median".into() });
     let bound: Vec<(f64, f64)> = curve.points.iter().filter_map(|p| Some((p.tau_s, p.bound?))).collect();
@@ -50,6 +47,54 @@ fn sigma_tau(curve: &SheetCurve, several: bool) -> Figure {
             layers,
         }],
         remarks: vec![Note::new("datasheet.figure.sigma_tau_remark").with("n", curve.units.len())],
+    }
+}
+
+/// Each unit as a hairline: one line for all, which a point that is no number breaks.
+fn hairs(units: &[SheetUnitCurve]) -> Layer {
+    let mut points: Vec<(f64, f64)> = vec![];
+    for unit in units {
+        points.extend(unit.points.iter().map(|[x, y]| (*x, *y)));
+        points.push((f64::NAN, f64::NAN));
+    }
+    Layer::Line { points, style: Style::Muted, legend: "datasheet.legend.unit".into() }
+}
+
+/// Bias over temperature: the band of the middle two thirds, each unit, the median, the tolerance band.
+fn over_temperature(curve: &SheetTemperatureCurve, several: bool) -> Figure {
+    let line = |points, style, legend: &str| Layer::Line { points, style, legend: legend.to_owned() };
+    let points = || curve.points.iter();
+    let mut layers = vec![
+        Layer::Band {
+            points: points().map(|p| (p.temperature_deg_c, p.low, p.high)).collect(),
+            style: Style::Data,
+            legend: "datasheet.legend.band".into(),
+        },
+        hairs(&curve.units),
+        line(
+            points().map(|p| (p.temperature_deg_c, p.median)).collect(),
+            Style::Data,
+            "datasheet.legend.median",
+        ),
+    ];
+    let side =
+        |i: usize| points().filter_map(|p| Some((p.temperature_deg_c, p.band?[i]))).collect::<Vec<_>>();
+    let mut bounds = side(0);
+    if !bounds.is_empty() {
+        bounds.push((f64::NAN, f64::NAN));
+        bounds.extend(side(1));
+        layers.push(line(bounds, Style::Reference, "datasheet.legend.tolerance"));
+    }
+    Figure {
+        id: format!("over_temperature_{}", curve.channel),
+        title: "datasheet.figure.over_temperature".into(),
+        channel: if several { curve.channel.clone() } else { String::new() },
+        panels: vec![Panel {
+            x: axis("axis.temperature", "degC", Scale::Linear),
+            y: axis("datasheet.axis.bias", "deg/h", Scale::Linear),
+            layers,
+        }],
+        remarks: vec![Note::new("datasheet.figure.over_temperature_remark").with("n", curve.units.len())],
     }
 }
 

@@ -4,6 +4,7 @@ mod curves;
 pub mod figures;
 pub mod limits;
 mod outlook;
+mod over_temperature;
 mod pairs;
 mod quantity;
 mod rows;
@@ -46,6 +47,7 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
         conditions: conditions(&units),
         pairs: pairs::pairs(&quantities),
         curves: curves::curves(&units, promise),
+        temperature_curves: over_temperature::curves(&units, promise),
         quantities,
         results: units
             .iter()

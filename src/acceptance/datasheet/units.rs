@@ -1,5 +1,6 @@
 //! Which results count: one a unit, all of one model and one procedure.
 
+use super::over_temperature::Table;
 use crate::estimate::Verdict;
 use crate::i18n::{Arg, Note};
 use crate::output::sha256;
@@ -21,6 +22,8 @@ pub struct TestedUnit {
     pub sha256: String,
     /// What the file has.
     pub input: SheetInput,
+    /// The compensation tables beside it.
+    pub tables: Vec<Table>,
 }
 
 impl TestedUnit {
@@ -36,7 +39,7 @@ impl TestedUnit {
         if serial.is_empty() {
             return Err(Note::new("datasheet.refused.no_serial").with("path", path));
         }
-        Ok(TestedUnit { serial, path, sha256: sha256(&bytes), input })
+        Ok(TestedUnit { serial, path, sha256: sha256(&bytes), input, tables: Table::beside(file) })
     }
 
     /// Name of the lot; empty where none is named.
@@ -183,7 +186,13 @@ mod tests {
     fn unit(serial: &str, more: &str) -> TestedUnit {
         let text = format!(r#"{{"unit_under_test": {{"serial": "{serial}"}}, "measurands": [] {more}}}"#);
         let input = serde_json::from_str(&text).unwrap();
-        TestedUnit { serial: serial.to_owned(), path: more.to_owned(), sha256: String::new(), input }
+        TestedUnit {
+            serial: serial.to_owned(),
+            path: more.to_owned(),
+            sha256: String::new(),
+            input,
+            tables: vec![],
+        }
     }
 
     const PASS: &str = r#", "verdict": "pass""#;

@@ -110,7 +110,13 @@ impl SheetView {
                 .map(|(i, q)| QuantityView::new(q, several, drawn(&figure_id(i)), words))
                 .collect(),
             pairs: sheet.pairs.iter().map(|p| pair(p, several, words)).collect(),
-            curves: sheet.curves.iter().filter_map(|c| drawn(&format!("sigma_tau_{}", c.channel))).collect(),
+            curves: sheet
+                .curves
+                .iter()
+                .map(|c| format!("sigma_tau_{}", c.channel))
+                .chain(sheet.temperature_curves.iter().map(|c| format!("over_temperature_{}", c.channel)))
+                .filter_map(|id| drawn(&id))
+                .collect(),
             results: sheet
                 .results
                 .iter()
