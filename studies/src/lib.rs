@@ -67,6 +67,7 @@ pub static STUDIES: &[&Study] = &[
     &explain::studies::CLOSED_LOOP,
     &explain::studies::OTHERS,
     &laboratory::study::STUDY,
+    &laboratory::real_noise::STUDY,
     &planned::STUDY,
     &noticeable::STUDY,
     &joint::STUDY,

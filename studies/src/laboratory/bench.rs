@@ -57,6 +57,25 @@ impl Bench {
         Bench::of_length(dice, 0.25, hours)
     }
 
+    /// A unit at rest with given noise, of which a claim is stated that is right.
+    pub fn of_noise(mut dice: Dice, claim: Claim, parts: Parts) -> Bench {
+        let rows = parts.white.len();
+        Bench {
+            span: Span::new(rows as f64 / claim.rate_hz, dice.uniform(0.0, 24.0)),
+            dice,
+            rate_hz: claim.rate_hz,
+            rows,
+            parts,
+            right: claim.clone(),
+            claim,
+            columns: Columns::new(),
+            surroundings: BTreeMap::new(),
+            warmth: None,
+            motion: None,
+            added: vec![0.0; rows],
+        }
+    }
+
     fn of_length(mut dice: Dice, rate_hz: f64, hours: f64) -> Bench {
         let rows = (hours * 3600.0 * rate_hz / 1000.0).round() as usize * 1000;
         let levels = instrument(&mut dice);

@@ -44,22 +44,34 @@ pub fn make(name: &str, strength: Strength, seed: u64) -> Option<Case> {
 }
 
 fn concealed(subject: &Subject, strength: Strength, dice: Dice, seed: u64) -> Option<Case> {
-    let mut bench = if subject.days { Bench::of_days(dice) } else { Bench::new(dice) };
+    let bench = if subject.days { Bench::of_days(dice) } else { Bench::new(dice) };
+    on_bench(subject, bench, strength.gains(), Some(strength), seed)
+}
+
+/// The case of a subject on a bench, its effects with gains from a range. `None` where they cannot be as strong as asked.
+pub fn on_bench(
+    subject: &Subject,
+    mut bench: Bench,
+    gains: [f64; 2],
+    strength: Option<Strength>,
+    seed: u64,
+) -> Option<Case> {
     (subject.scene)(&mut bench);
     let effects: Vec<_> = subject.effects.iter().map(|effect| effect(&mut bench)).collect();
     let oracle = Oracle::new(&bench.claim, &bench.columns, &bench.residual());
     let mut told: Vec<Concealed> = vec![];
     for effect in &effects {
-        let asked = asked_gain(&mut bench.dice, strength.gains());
+        let asked = asked_gain(&mut bench.dice, gains);
         let hidden = effect.conceal(&mut bench, &oracle, asked)?;
         bench.added.iter_mut().zip(&hidden.added_deg_h).for_each(|(a, h)| *a += h);
         told.push(hidden.told);
     }
     told.sort_by(|a, b| b.gain.unwrap_or(0.0).total_cmp(&a.gain.unwrap_or(0.0)));
-    Some(finish(bench, subject.family, subject.name, Some(strength), told, seed))
+    Some(finish(bench, subject.family, subject.name, strength, told, seed))
 }
 
-fn finish(
+/// The case of a bench with what is concealed in it.
+pub fn finish(
     bench: Bench,
     family: Family,
     subject: &str,

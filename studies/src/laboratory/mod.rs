@@ -21,6 +21,7 @@ pub mod motion;
 pub mod noise;
 pub mod oracle;
 pub mod process;
+pub mod real_noise;
 pub mod score;
 pub mod seal;
 pub mod study;
