@@ -15,7 +15,7 @@ const CLAIM: &str = "[recording]\ncase = \"unit\"\nsample_rate_hz = 0.1\n[noise]
 const DRIVEN: &str = "[[driver]]\ncolumn = \"temp_degC\"\ntime_s = [0.0, 20000.0, 30000.0, 50000.0, 60000.0]\n\
     value = [20.0, 40.0, 40.0, 20.0, 25.0]\nnoise = 0.01\n[[driver]]\ncolumn = \"supply_v\"\ntime_s = [0.0, 60000.0]\n\
     value = [27.0, 27.0]\nnoise = 0.01\n[[effect]]\nkind = \"temp_linear\"\n[effect.parameters]\n\
-    coefficient_deg_h_per_degC = 0.05\nreference_degC = 20.0\n";
+    coefficient_deg_h_per_degC = 0.05\n";
 
 const STEP: &str =
     "[[effect]]\nkind = \"bias_step\"\n[effect.parameters]\nstep_deg_h = 0.5\ntime_s = 30000.0\n";

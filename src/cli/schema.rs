@@ -42,7 +42,7 @@ pub enum SchemaKind {
     Alternatives,
     /// A proof file: what is concealed of a recording, and the rules by which the answer is judged
     Proof,
-    /// proof.json
+    /// proof.json: what came of a proof
     ProofResult,
     /// A sheet file: rows, names and units of a data sheet
     Sheet,

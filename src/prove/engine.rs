@@ -1,12 +1,18 @@
 //! The engine in a process of its own: an empty folder, the files that are shown, and what it writes.
 
-use super::{CLAIM_FILE, RECORDING_FILE, confined};
+use super::confined;
 use crate::i18n::Note;
 use crate::output::{Kind, sha256};
 use crate::report::{ExplanationResults, Results, StoredResults};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tempfile::TempDir;
+
+/// Name of the claim among the files of a proof.
+pub const CLAIM_FILE: &str = "model.toml";
+
+/// Name of the recording as the engine sees it.
+pub(super) const RECORDING_FILE: &str = "recording.csv";
 
 /// Folder of the explanation.
 const SAID: &str = "said";

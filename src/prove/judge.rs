@@ -270,7 +270,8 @@ fn title(kind: &str) -> Arg {
 
 /// A verdict in words.
 fn verdict(id: &str) -> Arg {
-    Arg::key("explain.verdict", if id == "unknown-mismatch" { "unknown" } else { id })
+    let id = if id == "unknown-mismatch" { "unknown" } else { id };
+    Arg::key("explain.verdict", id)
 }
 
 fn either(words: Vec<Arg>) -> Arg {

@@ -6,6 +6,7 @@ mod confined;
 mod engine;
 mod figures;
 mod judge;
+mod order;
 mod protocol;
 mod rows;
 
@@ -17,33 +18,11 @@ use crate::record::{
     ClaimOrigin, Hidden, HiddenKind, PROOF_FORMAT, Program, ProofOutcome, ProofRecord, ProofRecording,
 };
 use crate::report::ExplanationResults;
-use engine::Room;
+pub use engine::CLAIM_FILE;
+use engine::{RECORDING_FILE, Room};
+pub use order::ProofOrder;
 use protocol::Protocol;
 use rows::{Prepared, text_of};
-use std::path::Path;
-
-/// Name of the claim among the files of a proof.
-pub const CLAIM_FILE: &str = "model.toml";
-
-/// Name of the recording as the engine sees it.
-const RECORDING_FILE: &str = "recording.csv";
-
-/// What is to be proved.
-#[derive(Debug, Clone, Copy)]
-pub struct ProofOrder<'a> {
-    /// The proof file.
-    pub proof: &'a ProofFile,
-    /// Its path, as named.
-    pub path: &'a str,
-    /// Its SHA-256.
-    pub sha256: &'a str,
-    /// Folder of the recordings.
-    pub data: &'a Path,
-    /// The program that is the engine.
-    pub program: &'a Path,
-    /// When it is proved, RFC 3339.
-    pub proved_at: &'a str,
-}
 
 /// A proof with what its page shows.
 #[derive(Debug, Clone, PartialEq)]

@@ -1,6 +1,6 @@
 //! The rows of a proof: what is shown, what is concealed, and what is shown when the veil is lifted.
 
-use super::ProofOrder;
+use super::order::ProofOrder;
 use crate::claim::Claim;
 use crate::config::model;
 use crate::config::proof::{ClaimSource, Decoy, Part, ProofFile, Source};

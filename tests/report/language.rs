@@ -14,6 +14,13 @@ use std::process::Command;
 const LATIN: &[&str] = &[
     // Verbs, options and their words.
     "approve",
+    "closed",
+    "loop",
+    "proof",
+    "proofs",
+    "prove",
+    "proved",
+    "ramp",
     "approved",
     "dcc",
     "key",
@@ -257,6 +264,10 @@ const LATIN: &[&str] = &[
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "prove.found.named",
+    "prove.found.place",
+    "prove.found.share",
+    "prove.found.value",
     "explain.error.of_recording",
     "history.column.cp",
     "history.column.cpk",

@@ -13,6 +13,23 @@ use std::path::Path;
 const LISTED: &[(&str, &[&str])] = &[
     ("signer", &["approved", "reviewed", "tested"]),
     (
+        "prove",
+        &[
+            "outcome.fails",
+            "outcome.holds",
+            "short.concealed",
+            "short.unveiled",
+            "step.claim",
+            "step.concealed",
+            "step.explained",
+            "step.explained_again",
+            "step.shown",
+            "step.unveiled",
+            "summary.fails",
+            "summary.holds",
+        ],
+    ),
+    (
         "terminal_column",
         &[
             "effect",

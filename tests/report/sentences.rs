@@ -30,6 +30,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/manifest/tables.rs", "the key tables of manifests: documentation, as of procedures"),
     ("src/config/recording_keys.rs", "keys of procedures and manifests: documentation, as of procedures"),
     ("src/config/layout/tables.rs", "the key tables of layouts: documentation, as of procedures"),
+    ("src/config/proof/tables.rs", "the key tables of proofs: documentation, as of procedures"),
     ("src/config/model/tables.rs", "the key tables of claims: documentation, as of procedures"),
     ("src/config/alternatives/tables.rs", "the key tables of alternatives: documentation, as of procedures"),
     ("src/config/sheet/tables.rs", "the key tables of sheet files: documentation, as of procedures"),

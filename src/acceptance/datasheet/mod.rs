@@ -1,5 +1,6 @@
 //! The data sheet of a lot, from the results of its units.
 
+mod compensation_table;
 mod curves;
 pub mod figures;
 pub mod limits;

@@ -1,59 +1,14 @@
 //! Bias over temperature of the units of a lot, from the compensation tables beside their results.
 
+use super::compensation_table::Table;
 use super::units::TestedUnit;
 use crate::lot::population::LEAST_VALUES;
 use crate::lot::tolerance::{Promise, normal_factor};
 use crate::numeric::order::quantile;
 use crate::record::{SheetTemperatureCurve, SheetTemperaturePoint, SheetUnitCurve};
-use serde::Deserialize;
-use std::path::Path;
 
 /// Temperatures at which the lot is told.
 const POINTS: usize = 25;
-
-/// What a compensation table says, as far as it is used here.
-#[derive(Debug, Clone, Deserialize)]
-pub struct Table {
-    channel: String,
-    temperature_deg_c: Vec<f64>,
-    bias_deg_h: Vec<f64>,
-}
-
-impl Table {
-    /// The tables beside a result file, in the order of their names.
-    pub(super) fn beside(file: &Path) -> Vec<Table> {
-        let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let named = |name: &str| name.starts_with("compensation") && name.ends_with(".json");
-        let mut paths: Vec<_> =
-            std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path()).collect();
-        paths.retain(|p| p.file_name().is_some_and(|n| named(&n.to_string_lossy())));
-        paths.sort();
-        let table = |p: &std::path::PathBuf| serde_json::from_slice::<Table>(&std::fs::read(p).ok()?).ok();
-        paths.iter().filter_map(table).filter(Table::is_sound).collect()
-    }
-
-    fn is_sound(&self) -> bool {
-        let rises = self.temperature_deg_c.windows(2).all(|w| w[0] < w[1]);
-        let finite = self.temperature_deg_c.iter().chain(&self.bias_deg_h).all(|v| v.is_finite());
-        self.temperature_deg_c.len() > 1
-            && self.temperature_deg_c.len() == self.bias_deg_h.len()
-            && rises
-            && finite
-    }
-
-    fn ends(&self) -> (f64, f64) {
-        let t = &self.temperature_deg_c;
-        (t.first().copied().unwrap_or(f64::NAN), t.last().copied().unwrap_or(f64::NAN))
-    }
-
-    /// The bias at a temperature of the range, on straight lines.
-    fn at(&self, temperature: f64) -> f64 {
-        let t = &self.temperature_deg_c;
-        let after = t.partition_point(|v| *v < temperature).clamp(1, t.len() - 1);
-        let share = (temperature - t[after - 1]) / (t[after] - t[after - 1]);
-        self.bias_deg_h[after - 1] + share * (self.bias_deg_h[after] - self.bias_deg_h[after - 1])
-    }
-}
 
 /// The curves of every channel that at least two units have over a common range.
 pub(super) fn curves(units: &[TestedUnit], promise: Promise) -> Vec<SheetTemperatureCurve> {
@@ -123,9 +78,10 @@ mod tests {
     use super::*;
 
     fn table(from: f64, to: f64, bias: impl Fn(f64) -> f64) -> Table {
-        let temperature_deg_c: Vec<f64> = (0..25).map(|i| from + (to - from) * f64::from(i) / 24.0).collect();
-        let bias_deg_h = temperature_deg_c.iter().map(|t| bias(*t)).collect();
-        Table { channel: "rate".into(), temperature_deg_c, bias_deg_h }
+        let at: Vec<f64> = (0..25).map(|i| from + (to - from) * f64::from(i) / 24.0).collect();
+        let biases: Vec<f64> = at.iter().map(|t| bias(*t)).collect();
+        let text = serde_json::json!({"channel": "rate", "temperature_deg_c": at, "bias_deg_h": biases});
+        serde_json::from_value(text).unwrap()
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! Which results count: one a unit, all of one model and one procedure.
 
-use super::over_temperature::Table;
+use super::compensation_table::Table;
 use crate::estimate::Verdict;
 use crate::i18n::{Arg, Note};
 use crate::output::sha256;
