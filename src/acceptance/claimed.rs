@@ -1,6 +1,6 @@
 //! What a result shows of a unit, as a claim that later recordings are held against.
 
-use crate::claim::{Claim, Coefficient, Uncertainty};
+use crate::claim::{Claim, Coefficient, Stated, Uncertainty};
 use crate::effect::ClaimedMean;
 use crate::estimate::normal_quantile;
 use crate::i18n::Note;
@@ -73,6 +73,51 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
     Ok((claim, notes))
 }
 
+/// Effects that belong to a unit and not to a moment: another recording of it shows them too.
+const LASTING: [&str; 24] = [
+    "bandwidth_filter",
+    "column_curve",
+    "column_driver",
+    "column_law",
+    "comb",
+    "dead_zone",
+    "line",
+    "markov_long",
+    "markov_short",
+    "noise_variance_driver",
+    "noise_variance_rate",
+    "power_law_noise",
+    "quantization",
+    "quasi_periodic",
+    "sf_asymmetry",
+    "sf_driver",
+    "sf_nonlinearity",
+    "sf_temperature",
+    "supply_sensitivity",
+    "temp_hysteresis",
+    "temp_linear",
+    "temp_polynomial",
+    "temp_rate",
+    "temp_response",
+];
+
+/// A claim that was identified, with the effects of an augmented one that belong to the unit. Noise and mean are those beside the
+/// effects, if all of these are kept.
+pub fn with_lasting(claim: Claim, augmented: &Claim) -> Claim {
+    let lasts = |stated: &&Stated| LASTING.contains(&stated.effect.kind());
+    let effects: Vec<Stated> = augmented.effects.iter().filter(lasts).cloned().collect();
+    if effects.len() < augmented.effects.len() {
+        return Claim { effects, ..claim };
+    }
+    Claim {
+        effects,
+        noise: augmented.noise,
+        quantization_lsb_arcsec: augmented.quantization_lsb_arcsec,
+        mean: augmented.mean,
+        ..claim
+    }
+}
+
 /// Standard uncertainty of what was not measured, deg/h.
 const UNKNOWN: f64 = 1e6;
 
@@ -88,5 +133,31 @@ fn known(row: &MeasurandRecord) -> Coefficient {
             let most = row.upper_limit.map_or(0.0, |limit| limit.value);
             Coefficient::at_most(most.max(row.most_likely.unwrap_or(0.0)))
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{EFFECTS, find};
+
+    fn stated(kind: &str) -> Stated {
+        Stated { effect: find(kind).unwrap(), values: Default::default() }
+    }
+
+    #[test]
+    fn effects_of_a_moment_are_left_out_and_those_of_the_unit_kept() {
+        assert!(LASTING.iter().all(|k| EFFECTS.iter().any(|e| e.kind() == *k)));
+        let kinds = |claim: &Claim| claim.effects.iter().map(|s| s.effect.kind()).collect::<Vec<_>>();
+        let text = b"[recording]\nsample_rate_hz = 1.0\n[noise]\nN_deg_rt_h = 0.1\n";
+        let identified = crate::config::model::parse("m.toml", text).unwrap().claim;
+        let mut augmented = identified.clone();
+        augmented.noise.n = 0.5;
+        augmented.effects = vec![stated("bandwidth_filter")];
+        let kept = with_lasting(identified.clone(), &augmented);
+        assert_eq!((kinds(&kept), kept.noise.n), (vec!["bandwidth_filter"], 0.5));
+        augmented.effects.push(stated("bias_step"));
+        let kept = with_lasting(identified.clone(), &augmented);
+        assert_eq!((kinds(&kept), kept.noise.n), (vec!["bandwidth_filter"], identified.noise.n));
     }
 }

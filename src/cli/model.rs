@@ -8,7 +8,7 @@ use crate::acceptance::claimed;
 use crate::claim::Claim;
 use crate::config::model;
 use crate::i18n::{Lang, LocalText, Localize, Note};
-use crate::mismatch;
+use crate::mismatch::{self, Options};
 use crate::output::StagedFile;
 use crate::record::{self, RunRecord};
 use crate::series::{SeriesOptions, load_series};
@@ -118,6 +118,10 @@ fn of_recording(args: &ModelArgs, lang: Lang) -> Result<Claim, String> {
     })?;
     let series = series.between(from.unwrap_or(0.0), to.unwrap_or(f64::INFINITY));
     let claim = mismatch::identify(&series, &mut |p| progress.explaining(p));
+    let claim = claim.and_then(|claim| {
+        let found = mismatch::explain(series, &claim, &Options::default(), &mut |p| progress.explaining(p));
+        Ok(claimed::with_lasting(claim, &found?.augmented))
+    });
     progress.finish();
     claim.map_err(say)
 }
