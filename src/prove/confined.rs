@@ -23,7 +23,7 @@ pub(super) fn run(folder: &Path, program: &Path, args: &[&str]) -> io::Result<(O
             let kept = confine(folder, program);
             command.output().map(|output| (output, kept))
         });
-        confined.join().unwrap_or_else(|_| Err(io::Error::other("the thread of the process ended")))
+        confined.join().unwrap_or_else(|_| Err(io::ErrorKind::Other.into()))
     })
 }
 
@@ -54,10 +54,12 @@ fn confine(_folder: &Path, _program: &Path) -> bool {
     false
 }
 
-#[cfg(all(test, target_os = "linux"))]
+#[cfg(test)]
 mod tests {
+    #[cfg(target_os = "linux")]
     use super::*;
 
+    #[cfg(target_os = "linux")]
     #[test]
     fn a_process_opens_its_folder_and_nothing_else() {
         let (inside, outside) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());

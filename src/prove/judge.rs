@@ -270,8 +270,12 @@ fn title(kind: &str) -> Arg {
 
 /// A verdict in words.
 fn verdict(id: &str) -> Arg {
-    let id = if id == "unknown-mismatch" { "unknown" } else { id };
-    Arg::key("explain.verdict", id)
+    let key = match id {
+        "consistent" => "explain.verdict.consistent",
+        "mismatch" => "explain.verdict.mismatch",
+        _ => "explain.verdict.unknown",
+    };
+    Arg::Key(key.to_owned())
 }
 
 fn either(words: Vec<Arg>) -> Arg {

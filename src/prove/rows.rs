@@ -296,7 +296,7 @@ mod tests {
 
     #[test]
     fn a_decoy_holds_the_values_of_its_column_in_another_order() {
-        let decoy = Decoy { name: "d".into(), of: "t".into(), shift_s: 5.0 };
+        let decoy = Decoy { name: "d".into(), of: "t".into(), shift_s: 4.0 };
         assert_eq!(shifted(&[1.0, 2.0, 3.0, 4.0], &decoy, 2.0), [3.0, 4.0, 1.0, 2.0]);
         assert_eq!(shifted(&[1.0, 2.0], &Decoy { shift_s: 7.0, ..decoy.clone() }, 1.0), [2.0, 1.0]);
         assert!(shifted(&[], &decoy, 1.0).is_empty());

@@ -11,7 +11,7 @@ fn units_with_compensation_tables_are_told_over_temperature() {
     let (pass, fail) = (sample("temperature-pass.csv"), sample("temperature-fail.csv"));
     for (recording, serial) in [(&pass, "T-1"), (&fail, "T-2")] {
         let said = sagnac(at, &["run", "temperature-ramp", recording, "--serial", serial, "--out", serial]);
-        assert!(said.code < 2, "{said:?}");
+        assert!(matches!(said.code, 0 | 1 | 3), "{said:?}");
     }
     let said = sagnac(at, &["datasheet", "T-1/result.json", "T-2/result.json", "--out", "s"]);
     assert_eq!(said.code, 0, "{said:?}");

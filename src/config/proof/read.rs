@@ -282,15 +282,15 @@ columns = ["ramp"]
     #[test]
     fn problems_have_their_places() {
         for (from, to, place) in [
-            ("sha256 = \"AB\"\n", "", "p.toml:5:1"),
+            ("sha256 = \"AB\"\n", "", "p.toml:5:2"),
             ("path = \"fog/a.csv\"", "path = \"../a.csv\"", "p.toml:6:9"),
             ("to = \"1 h\"", "to = \"1 s\"", "p.toml:9:6"),
             ("reference = \"f\"", "reference = \"g\"", "p.toml:34:14"),
             ("\"comb\"", "\"combb\"", "p.toml:32:11"),
             ("columns = [\"ramp\"]\n\n[[decoy]]", "[[decoy]]", "p.toml:35:8"),
-            ("parameter = \"frequency_hz\"\n", "", "p.toml:30:1"),
-            ("high = 4.2", "high = 4.0", "p.toml:21:1"),
-            ("[claim]\n", "[claim]\nmodel = \"none.toml\"\n", "p.toml:20:6"),
+            ("parameter = \"frequency_hz\"\n", "", "p.toml:30:3"),
+            ("high = 4.2", "high = 4.0", "p.toml:22:3"),
+            ("[claim]\n", "[claim]\nmodel = \"none.toml\"\n", "p.toml:20:10"),
         ] {
             assert!(TEXT.contains(from), "{from}");
             let said = said(&TEXT.replacen(from, to, 1));
