@@ -288,8 +288,8 @@ columns = ["ramp"]
             ("reference = \"f\"", "reference = \"g\"", "p.toml:34:14"),
             ("\"comb\"", "\"combb\"", "p.toml:32:11"),
             ("columns = [\"ramp\"]\n\n[[decoy]]", "[[decoy]]", "p.toml:35:8"),
-            ("parameter = \"frequency_hz\"\n", "", "p.toml:30:3"),
-            ("high = 4.2", "high = 4.0", "p.toml:22:3"),
+            ("parameter = \"frequency_hz\"\n", "", "p.toml:30:1"),
+            ("high = 4.2", "high = 4.0", "p.toml:22:1"),
             ("[claim]\n", "[claim]\nmodel = \"none.toml\"\n", "p.toml:20:10"),
         ] {
             assert!(TEXT.contains(from), "{from}");
