@@ -6,8 +6,8 @@ use std::process::{Command, Output, Stdio};
 
 /// Where programs, libraries and their settings are that any program needs in order to start.
 #[cfg(target_os = "linux")]
-const SYSTEM: [&str; 8] =
-    ["/bin", "/usr/bin", "/lib", "/lib64", "/usr/lib", "/usr/lib64", "/etc/ld.so.cache", "/dev/null"];
+const SYSTEM: [&str; 7] =
+    ["/bin", "/usr/bin", "/lib", "/lib64", "/usr/lib", "/usr/lib64", "/etc/ld.so.cache"];
 
 /// Runs a program in a folder, without the environment of the caller. True beside its output where the kernel kept it from
 /// everything else; elsewhere nothing but its own honesty does.

@@ -32,25 +32,25 @@ fn against(prepared: &Prepared, course: &[f64]) -> Option<Figure> {
         y: axis(label, unit),
         layers,
     };
-    let line = |values: &[f64], style, legend: &str| Layer::Line {
-        points: over_time(time, values).0,
-        style,
-        legend: legend.to_owned(),
-    };
-    let hidden = prepared
-        .hidden
-        .iter()
-        .map(|(name, values)| panel("figure.prove.hidden", name, vec![line(values, Style::Data, name)]));
+    let line = |points, style, legend: &str| Layer::Line { points, style, legend: legend.to_owned() };
+    let means = |values: &[f64]| over_time(time, values).0;
+    let hidden = prepared.hidden.iter().map(|(name, values)| {
+        panel("figure.prove.hidden", name, vec![line(means(values), Style::Data, name)])
+    });
     let added = prepared.added.iter().map(|added| {
-        panel("figure.prove.added", "deg/h", vec![line(&added.course, Style::Data, "figure.prove.added")])
+        panel(
+            "figure.prove.added",
+            "deg/h",
+            vec![line(means(&added.course), Style::Data, "figure.prove.added")],
+        )
     });
     let mut panels: Vec<Panel> = hidden.chain(added).collect();
     if panels.is_empty() {
         return None;
     }
-    let inferred = vec![line(course, Style::Model, "figure.prove.inferred")];
+    let (points, group) = over_time(time, course);
+    let inferred = vec![line(points, Style::Model, "figure.prove.inferred")];
     panels.push(panel("figure.prove.inferred", "deg/h", inferred));
-    let group = over_time(time, course).1;
     let averaged = |seconds: f64| Note::new("figure.explain.averaged").with("seconds", seconds);
     let remarks = (group > 1).then(|| averaged(group as f64 * prepared.shown.sample_interval_s));
     Some(Figure {

@@ -154,7 +154,7 @@ fn averaged(series: Series, rows: usize) -> Series {
         let last = first + rows - 1;
         series.index.get(last).is_some_and(|i| i - series.index[*first] == (rows - 1) as u64)
     };
-    // A mean stands at a whole number of its own intervals after the first row.
+    // Every mean begins at a multiple of its length on the grid, so that the means have a grid of their own.
     let mut firsts = vec![];
     let mut next = 0;
     while next < series.index.len() {

@@ -7,7 +7,7 @@ use crate::lot::tolerance::{Promise, normal_factor};
 use crate::numeric::order::quantile;
 use crate::record::{SheetTemperatureCurve, SheetTemperaturePoint, SheetUnitCurve};
 
-/// Temperatures at which the lot is told.
+/// Number of temperatures at which the lot is evaluated.
 const POINTS: usize = 25;
 
 /// The curves of every channel that at least two units have over a common range.

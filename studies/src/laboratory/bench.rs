@@ -57,7 +57,7 @@ impl Bench {
         Bench::of_length(dice, 0.25, hours)
     }
 
-    /// A unit at rest with given noise, of which a claim is stated that is right.
+    /// A unit at rest with given noise and a correct claim.
     pub fn of_noise(mut dice: Dice, claim: Claim, parts: Parts) -> Bench {
         let rows = parts.white.len();
         Bench {
