@@ -21,10 +21,12 @@
 //! ```
 //!
 //! - [`Recording`]: a file of any format that is read, or columns in memory; [`Recording::rate`] gives the samples.
-//! - [`noise::identify`]: noise terms with their intervals, Allan deviation, spectral lines.
+//! - [`noise::identify`]: noise terms with their intervals, Allan deviation, spectral lines; [`noise::allan`]: deviations alone.
+//! - [`Analysis`]: every quantity of a gyro at rest, without a procedure.
 //! - [`Procedure`]: a test procedure with its limits, run on a recording; [`RunResult`] is what comes of it, and is read
 //!   back from its folder.
 //! - [`export`]: the forms in which results are written, and the trait of an own one.
+//! - [`compare()`], [`data_sheet`]: results side by side; what they promise of the population of the units.
 //! - [`explain()`]: why a recording departs from a [`Model`] of it.
 //! - [`Error`]: the one error of all of these.
 //!
@@ -65,7 +67,10 @@ pub mod store;
 pub mod verify;
 
 pub use i18n::Lang;
-pub use library::{Error, Explanation, Model, Noise, Procedure, Rate, Recording, RunResult, explain};
+pub use library::{
+    Analysis, Compared, Error, Explanation, Model, Noise, Procedure, Rate, Recording, RunResult, compare,
+    data_sheet, explain, explain_watched, write_results,
+};
 pub use record::UnitUnderTest;
 pub use report::export;
 pub use sagnac_core::{
@@ -73,9 +78,9 @@ pub use sagnac_core::{
     schedule, temperature, units,
 };
 
-/// Noise of a gyro at rest: [`identify`](fn@identify) for samples in memory, and the methods that it is made of.
+/// Noise of a gyro at rest: [`allan`](fn@allan) and [`identify`](fn@identify) for samples in memory, and the methods that it is made of.
 pub mod noise {
-    pub use crate::library::{Noise, identify};
+    pub use crate::library::{AllanCurve, AllanPlan, Noise, allan, identify, identify_in_memory};
     pub use sagnac_core::noise::*;
 }
 

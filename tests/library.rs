@@ -194,3 +194,63 @@ fn a_result_that_is_read_back_is_written_as_the_run_writes_it_in_any_language() 
         }
     }
 }
+
+#[test]
+fn an_analysis_in_the_library_is_that_of_the_program() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    assert_cmd::Command::cargo_bin("sagnac")
+        .unwrap()
+        .args(["analyze", "samples/unit-indeterminate.csv", "--no-store", "--out"])
+        .arg(&out)
+        .assert()
+        .code(0);
+    let program: serde_json::Value =
+        serde_json::from_slice(&fs::read(out.join("result.json")).unwrap()).unwrap();
+    let result =
+        sagnac::Analysis::default().run(&Recording::open("samples/unit-indeterminate.csv").unwrap()).unwrap();
+    let library = serde_json::to_value(result.record()).unwrap();
+    for part in ["measurands", "recording", "integrity", "window", "conditions"] {
+        assert_eq!(program[part], library[part], "{part}");
+    }
+    assert!(library["measurands"].as_array().is_some_and(|m| m.len() > 5));
+}
+
+#[test]
+fn deviations_in_memory_are_those_of_the_analysis() {
+    let recording = Recording::open("samples/unit-indeterminate.csv").unwrap();
+    let rate = recording.rate("rate_deg_h").unwrap();
+    let plan = sagnac::noise::AllanPlan::default();
+    let mut seen = 0;
+    let curves =
+        sagnac::noise::allan(&rate.deg_h().to_vec(), rate.sample_interval_s(), &plan, &mut |n, _| seen = n);
+    let curves = curves.unwrap();
+    let noise = sagnac::noise::identify(&rate).unwrap();
+    let (allan, identified) = (&curves[0].points, noise.allan());
+    assert_eq!(seen, rate.deg_h().len() as u64);
+    assert_eq!(
+        allan.iter().map(|p| (p.point.m, p.point.deviation.to_bits())).collect::<Vec<_>>(),
+        identified.iter().map(|p| (p.point.m, p.point.deviation.to_bits())).collect::<Vec<_>>()
+    );
+    assert!(
+        allan
+            .iter()
+            .all(|p| p.interval95.is_some_and(|i| i.low < p.point.deviation && p.point.deviation < i.high))
+    );
+}
+
+#[test]
+fn a_value_that_is_no_number_splits_the_record_of_the_deviations() {
+    let mut samples: Vec<f64> = (0..2000).map(|i| f64::from(i % 7)).collect();
+    samples[1000] = f64::NAN;
+    let plan = sagnac::noise::AllanPlan::default();
+    let curves = sagnac::noise::allan(&samples, 1.0, &plan, &mut |_, _| {}).unwrap();
+    let terms: Vec<(u64, u64)> =
+        curves[0].points.iter().take(2).map(|p| (p.point.m, p.point.terms)).collect();
+    // Stretches of 1000 and 999 samples: 999 + 998 terms of neighbours, 997 + 996 of pairs.
+    assert_eq!(terms, [(1, 1997), (2, 1993)]);
+    assert!(
+        sagnac::noise::allan(&vec![f64::NAN; 9], 1.0, &plan, &mut |_, _| {}).err().unwrap().is_argument()
+    );
+    assert!(sagnac::noise::allan(&samples, 0.0, &plan, &mut |_, _| {}).err().unwrap().is_argument());
+}

@@ -3,6 +3,7 @@
 //! | module | what it does |
 //! |---|---|
 //! | `pipeline` | the way from a recording to its record: collect, judge, measure, record |
+//! | `analysis`, `column_choice` | what stands in for a procedure where there is none |
 //! | `kinds` | what each kind of test adds to that way; one file or folder a kind, one list |
 //! | `condition` | whether the test was done as required; one condition a file |
 //! | `figures` | plots as data |
@@ -14,6 +15,7 @@
 pub mod analysis;
 mod build_record;
 pub mod claimed;
+pub mod column_choice;
 pub mod compare;
 pub mod condition;
 pub mod datasheet;

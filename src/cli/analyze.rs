@@ -1,6 +1,6 @@
 //! `sagnac analyze`: the noise of a recording without a procedure.
 
-use super::columns::{ColumnArgs, about, channels, unit_contradictions};
+use super::columns::ColumnArgs;
 use super::finish::run_and_finish;
 use super::inputs::Inputs;
 use super::join::JoinArgs;
@@ -9,14 +9,14 @@ use super::options::{GridArgs, OutputArgs};
 use super::place::{self, OutputPlace};
 use super::printer::Printer;
 use super::read::ReadArgs;
-use crate::acceptance::{Request, analysis};
+use crate::acceptance::Request;
+use crate::acceptance::analysis::Prepared;
+use crate::acceptance::column_choice::{channels, unit_contradictions};
 use crate::config::procedure::EffectiveLimits;
-use crate::config::procedure::model::Procedure;
 use crate::i18n::{Lang, Note};
 use crate::ingest::open_recording;
 use crate::output::Kind;
-use crate::record::{RunKind, UnitUnderTest};
-use crate::recording::Role;
+use crate::record::UnitUnderTest;
 use chrono::Utc;
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -72,32 +72,18 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         .begin(&out, Kind::Result, lang)?;
     let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
-    let channels = channels(&args.columns, named(args), &source).map_err(say)?;
+    let choice = args.columns.choice();
+    let channels = channels(&choice, named(args), &source).map_err(say)?;
     for note in unit_contradictions(&channels, &source) {
         progress.beside(|| place::eprint_diagnostic(&place::warning(&note, lang)));
     }
-    let use_stamps = channels.iter().any(|c| c.role == Role::Time);
-    let declared = args.columns.sample_rate;
-    let sample_rate = if use_stamps { declared } else { source.rate_without_stamps_hz(declared) };
-    if !use_stamps && sample_rate.is_none() {
-        return Err(say(about(named(args), "cli.no_time")));
-    }
-    let procedure: Procedure = analysis::procedure(channels, sample_rate, args.columns.warm_up);
+    let prepared = Prepared::new(channels, &choice, named(args), &source).map_err(say)?;
     let limits = EffectiveLimits::default();
     let request = Request {
-        kind: RunKind::Analyze,
-        procedure: &procedure,
-        procedure_record: None,
-        limits: &limits,
-        source: &source,
-        use_stamps,
         unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },
-        serial_of_recording: false,
-        operator: None,
-        station: None,
-        now,
         taus,
         exact: args.grid.exact,
+        ..prepared.request(&source, &limits, now)
     };
     let code = run_and_finish(&request, folder, &writer, printer, progress)?;
     let options = format!("{}{}", args.columns.as_typed(), args.read.as_typed());

@@ -1,6 +1,6 @@
 //! `sagnac compare`: Russian against Allan figures of any units, or the published tables.
 
-use super::columns::{ColumnArgs, channels, unit_contradictions};
+use super::columns::ColumnArgs;
 use super::finish::with_progress;
 use super::inputs::Inputs;
 use super::options::OutputArgs;
@@ -9,18 +9,19 @@ use super::progress::Progress;
 use super::read::ReadArgs;
 use super::writer::Writer;
 use super::{exit, place};
+use crate::acceptance::Request;
+use crate::acceptance::analysis::Prepared;
+use crate::acceptance::column_choice::{channels, unit_contradictions};
 use crate::acceptance::compare::published_checks::checked;
 use crate::acceptance::compare::{
     Comparison, Origin, Unit, mark_repeated, name_apart, not_compared, units_of,
 };
-use crate::acceptance::{Request, analysis};
 use crate::config::procedure::limits::LimitSpec;
 use crate::config::procedure::{EffectiveLimits, load_limits};
 use crate::i18n::{Lang, Localize, Note, visible_lines};
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
-use crate::record::{RunKind, RunRecord, UnitUnderTest, read};
-use crate::recording::Role;
+use crate::record::{RunRecord, UnitUnderTest, read};
 use crate::report::Results;
 use crate::report::compare::{CompareView, table};
 use chrono::{DateTime, SecondsFormat, Utc};
@@ -199,29 +200,13 @@ fn analysed(
     let say = |note: Note| place::error(&note, lang);
     let recording = open_recording(&[path.to_owned()], &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
-    let channels = channels(&args.columns, path, &source).map_err(say)?;
+    let choice = args.columns.choice();
+    let channels = channels(&choice, path, &source).map_err(say)?;
     let otherwise = unit_contradictions(&channels, &source);
-    let use_stamps = channels.iter().any(|c| c.role == Role::Time);
-    let stated = source.stated_sample_rate_hz().filter(|_| !use_stamps);
-    let sample_rate = args.columns.sample_rate.or(stated);
-    if !use_stamps && sample_rate.is_none() {
-        return Err(say(Note::new("cli.no_time").with("path", path.display().to_string())));
-    }
-    let procedure = analysis::procedure(channels, sample_rate, args.columns.warm_up);
+    let prepared = Prepared::new(channels, &choice, path, &source).map_err(say)?;
     let request = Request {
-        kind: RunKind::Analyze,
-        procedure: &procedure,
-        procedure_record: None,
-        limits,
-        source: &source,
-        use_stamps,
         unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },
-        serial_of_recording: false,
-        operator: None,
-        station: None,
-        now,
-        taus: None,
-        exact: false,
+        ..prepared.request(&source, limits, now)
     };
     let outcome = with_progress(&request, label, progress).map_err(|e| say(e.note()))?;
     Ok(Analysed { record: outcome.record, name: stem(path), otherwise })

@@ -1,12 +1,13 @@
 //! `sagnac init`: a procedure, limits and a job for continuous integration from what a recording holds.
 
-use super::columns::{ColumnArgs, about, channels};
+use super::columns::ColumnArgs;
 use super::finish::with_progress;
 use super::join::JoinArgs;
 use super::progress::{Display, Progress};
 use super::read::ReadArgs;
 use super::{exit, place};
-use crate::acceptance::{Request, analysis};
+use crate::acceptance::analysis::Prepared;
+use crate::acceptance::column_choice::channels;
 use crate::config::procedure::EffectiveLimits;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::lot::stated_serial;
@@ -15,7 +16,7 @@ use crate::measurand::{
     ANGLE_RANDOM_WALK, BIAS_INSTABILITY, QUANTIZATION, RATE_RAMP, RATE_RANDOM_WALK, RUSSIAN_ARW_10S,
     RUSSIAN_DRIFT_100S,
 };
-use crate::record::{RunKind, RunRecord, UnitUnderTest};
+use crate::record::RunRecord;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::report::number::duration;
 use chrono::Utc;
@@ -59,7 +60,7 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     JoinArgs::default().check(recording, "join.help.init", lang)?;
     let opened = open_recording(recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let source = opened.source;
-    let channels = channels(&args.columns, &args.recording, &source).map_err(say)?;
+    let channels = channels(&args.columns.choice(), &args.recording, &source).map_err(say)?;
     let (record, sample_rate_hz) = analysed(args, &channels, &source, lang)?;
     let files = written(args, layout.as_ref(), &channels, &source, (&record, sample_rate_hz))
         .map_err(|e| say(Note::new("init.template").with("reason", e.to_string())))?;
@@ -93,32 +94,14 @@ fn analysed(
     lang: Lang,
 ) -> Result<(RunRecord, Option<f64>), String> {
     let say = |note: Note| place::error(&note, lang);
-    let use_stamps = channels.iter().any(|c| c.role == Role::Time);
-    let declared = args.columns.sample_rate;
-    let sample_rate = if use_stamps { declared } else { source.rate_without_stamps_hz(declared) };
-    if !use_stamps && sample_rate.is_none() {
-        return Err(say(about(&args.recording, "cli.no_time")));
-    }
-    let procedure = analysis::procedure(channels.to_vec(), sample_rate, args.columns.warm_up);
-    let request = Request {
-        kind: RunKind::Analyze,
-        procedure: &procedure,
-        procedure_record: None,
-        limits: &EffectiveLimits::default(),
-        source,
-        use_stamps,
-        unit: UnitUnderTest::default(),
-        serial_of_recording: false,
-        operator: None,
-        station: None,
-        now: Utc::now(),
-        taus: None,
-        exact: false,
-    };
+    let prepared = Prepared::new(channels.to_vec(), &args.columns.choice(), &args.recording, source);
+    let prepared = prepared.map_err(say)?;
+    let limits = EffectiveLimits::default();
+    let request = prepared.request(source, &limits, Utc::now());
     let mut progress = Progress::new(Display::unless(false), lang);
     let outcome = with_progress(&request, &Note::new("cli.reading").say(lang), &mut progress)
         .map_err(|e| say(e.note()))?;
-    Ok((outcome.record, if use_stamps { None } else { sample_rate }))
+    Ok((outcome.record, prepared.sample_rate_without_stamps_hz()))
 }
 
 /// The layout of a raw binary file as the procedure names it: a procedure refers to files in its folder only.

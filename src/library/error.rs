@@ -1,7 +1,7 @@
 //! The one error of the library.
 
 use crate::acceptance::RunError;
-use crate::config::diagnostics::Problems;
+use crate::config::diagnostics::{Problem, Problems};
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{IngestError, RecordingError};
 use crate::report::ReportError;
@@ -42,6 +42,15 @@ impl Error {
             Kind::Argument(note) => note.say(lang),
         };
         text.trim_end().to_owned()
+    }
+
+    /// The problems of the files that are wrong, each with file, line and column; empty for other errors.
+    pub fn problems(&self) -> &[Problem] {
+        match self.0.as_ref() {
+            Kind::Configuration(problems)
+            | Kind::Recording(SeriesError::Open(RecordingError::Manifest(problems))) => &problems.list,
+            _ => &[],
+        }
     }
 
     /// True when a recording could not be opened or read.

@@ -4,12 +4,12 @@ use super::{Error, Recording, files};
 use crate::claim::Claim;
 use crate::config::model::{self, ModelFile, Profile, SimulationPlan};
 use crate::i18n::{Lang, Note};
-use crate::mismatch::{self, Options, Outcome};
+use crate::mismatch::{self, Options, Outcome, Progress};
 use crate::record::explanation::{self, MismatchVerdict};
 use crate::report::explain::{Context, ExplainView};
 use crate::report::export::Exporter;
 use crate::report::terminal::{self, Terminal};
-use crate::report::{Document, ExplanationResults};
+use crate::report::{Document, ExplanationResults, Results};
 use crate::simulate::{Order, Over, Rows, SimulateError, Simulation};
 use chrono::{SecondsFormat, Utc};
 use std::path::Path;
@@ -79,9 +79,22 @@ impl Model {
 /// [`Error::is_recording`] when the recording cannot be read; [`Error::is_argument`] when its rate column cannot be identified,
 /// or when recording and model cannot be compared.
 pub fn explain(recording: &Recording, model: &Model) -> Result<Explanation, Error> {
+    explain_watched(recording, model, &Options::default(), &mut |_| {})
+}
+
+/// The same with options; `progress` is told how far the work is.
+///
+/// # Errors
+/// As [`explain`].
+pub fn explain_watched(
+    recording: &Recording,
+    model: &Model,
+    options: &Options,
+    progress: &mut dyn FnMut(Progress),
+) -> Result<Explanation, Error> {
     let series = recording.series(&recording.series_options())?;
     let notes = series.remarks();
-    let outcome = mismatch::explain(series, &model.claim, &Options::default(), &mut |_| {});
+    let outcome = mismatch::explain(series, &model.claim, options, progress);
     let outcome = outcome.map_err(Error::argument)?;
     Ok(Explanation { outcome, notes, recording: recording.shown(), model: model.clone() })
 }
@@ -98,6 +111,12 @@ impl Explanation {
     /// Whether the model explains the recording.
     pub fn verdict(&self) -> MismatchVerdict {
         self.outcome.explanation.verdict
+    }
+
+    /// The same as results of any kind.
+    pub fn into_results(self) -> Results {
+        let context = self.context();
+        Results::Explanation(Box::new(ExplanationResults::new(&self.outcome, context)))
     }
 
     /// The effects found, the principal one first.

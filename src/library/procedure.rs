@@ -97,6 +97,19 @@ impl Procedure {
     /// left to evaluate, [`Error::is_argument`] when the serial number contradicts the manifest,
     /// [`Error::is_configuration`] when the model that the procedure names is wrong.
     pub fn run(&self, recording: &Recording, unit: &UnitUnderTest) -> Result<RunResult, Error> {
+        self.run_watched(recording, unit, &mut |_, _| {})
+    }
+
+    /// The same; `progress` gets bytes read and bytes in all.
+    ///
+    /// # Errors
+    /// As [`Procedure::run`].
+    pub fn run_watched(
+        &self,
+        recording: &Recording,
+        unit: &UnitUnderTest,
+        progress: &mut dyn FnMut(u64, u64),
+    ) -> Result<RunResult, Error> {
         let procedure = &self.procedure.value;
         let anew = recording.read_by(&procedure.recording.read)?;
         let recording = anew.as_ref().unwrap_or(recording);
@@ -121,7 +134,7 @@ impl Procedure {
             taus: None,
             exact: false,
         };
-        let mut outcome = execute(&request, &mut |_, _| {})?;
+        let mut outcome = execute(&request, progress)?;
         outcome.record.explained = self.explained(recording)?;
         Ok(RunResult { outcome })
     }
@@ -155,6 +168,15 @@ pub struct RunResult {
 }
 
 impl RunResult {
+    pub(super) fn new(outcome: Outcome) -> RunResult {
+        RunResult { outcome }
+    }
+
+    /// The same as results of any kind.
+    pub fn into_results(self) -> Results {
+        Results::Run(Box::new(self.outcome.into()))
+    }
+
     /// Reads a `result.json`, or the folder of one, with the figures and tables that stand beside it. One of several
     /// phases has the record of the whole only.
     ///

@@ -1,10 +1,12 @@
 //! A recording as a program holds it: files on disk, or columns in memory.
 
 use super::Error;
+use super::noise::checked_interval;
+use crate::acceptance::inspect::inspect_source;
 use crate::config::manifest::Manifest;
-use crate::i18n::Note;
+use crate::i18n::{Lang, Note};
 use crate::ingest::lot::stated_serial;
-use crate::ingest::{ReadOptions, Source, are_several, open_recording};
+use crate::ingest::{Column, MemoryColumn, ReadOptions, Source, are_several, open_recording};
 use crate::record::UnitUnderTest;
 use crate::series::{Series, SeriesOptions, load_series_of};
 use std::path::{Path, PathBuf};
@@ -69,7 +71,14 @@ impl Recording {
     pub fn from_columns<N: Into<String>>(
         columns: impl IntoIterator<Item = (N, Vec<f64>)>,
     ) -> Result<Recording, Error> {
-        let columns = columns.into_iter().map(|(name, values)| (name.into(), values)).collect();
+        Recording::from_memory(columns.into_iter().map(|(n, values)| MemoryColumn::new(n, values)).collect())
+    }
+
+    /// A recording in memory that another library holds, which is read in blocks and not copied.
+    ///
+    /// # Errors
+    /// As [`Recording::from_columns`].
+    pub fn from_memory(columns: Vec<MemoryColumn>) -> Result<Recording, Error> {
         Ok(Recording {
             source: Source::from_columns("memory", columns, BLOCK_ROWS)?,
             manifest: None,
@@ -144,6 +153,30 @@ impl Recording {
         Recording::open_with(&self.named, options).map(Some)
     }
 
+    /// Sample rate that was stated, Hz.
+    pub(super) fn sample_rate_hz(&self) -> Option<f64> {
+        self.sample_rate_hz
+    }
+
+    /// Serial number that the manifest states.
+    pub(super) fn serial_of_manifest(&self) -> Option<&str> {
+        self.manifest.as_ref()?.serial.as_deref()
+    }
+
+    /// Reads the recording and says in plain text what it holds: columns with quantity and unit, time base, faults, and which
+    /// tests it can support.
+    ///
+    /// # Errors
+    /// [`Error::is_recording`] when it cannot be read, or holds no column of numbers.
+    pub fn inspect(&self, lang: Lang, progress: &mut dyn FnMut(u64, u64)) -> Result<String, Error> {
+        Ok(inspect_source(&self.source, self.sample_rate_hz, lang, progress)?)
+    }
+
+    /// Columns with what their names and the format tell of them, in the order of the file.
+    pub fn described_columns(&self) -> &[Column] {
+        self.source.columns()
+    }
+
     pub(super) fn source(&self) -> &Source {
         &self.source
     }
@@ -196,10 +229,7 @@ impl Rate {
     /// # Errors
     /// [`Error::is_argument`] when the interval is not a positive number.
     pub fn from_samples(deg_h: Vec<f64>, sample_interval_s: f64) -> Result<Rate, Error> {
-        if !(sample_interval_s > 0.0 && sample_interval_s.is_finite()) {
-            let given = sample_interval_s.to_string();
-            return Err(Error::argument(Note::new("library.interval").with("given", given)));
-        }
+        let sample_interval_s = checked_interval(sample_interval_s)?;
         let index = (0..deg_h.len() as u64).collect();
         Ok(Rate { name: "rate".to_owned(), sample_interval_s, deg_h, index, rounding_deg_h: None })
     }

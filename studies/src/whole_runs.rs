@@ -10,7 +10,7 @@ use sagnac::acceptance::{Request, analysis, execute};
 use sagnac::config::procedure::EffectiveLimits;
 use sagnac::config::procedure::limits::LimitSpec;
 use sagnac::estimate::{Limit, Rule, Verdict};
-use sagnac::ingest::Source;
+use sagnac::ingest::{MemoryColumn, Source};
 use sagnac::measurand;
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::russian::predict;
@@ -185,7 +185,8 @@ fn limits(truths: &[(&'static str, f64)]) -> EffectiveLimits {
 }
 
 fn run(rate: Vec<f64>, tau0_s: f64, limits: &EffectiveLimits) -> RunRecord {
-    let source = Source::from_columns("simulated", vec![("rate".into(), rate)], 8192).expect("a source");
+    let source =
+        Source::from_columns("simulated", vec![MemoryColumn::new("rate", rate)], 8192).expect("a source");
     let unit = Unit::parse("deg/h").expect("a unit");
     let column = ColumnRef::Name("rate".into());
     let channel = Channel { id: "rate".into(), column, role: Role::Rate, unit, scale: 1.0 };

@@ -3,34 +3,77 @@
 use super::error::{IngestError, IngestErrorKind};
 use super::{Block, Column, FieldFault, FieldFaultKind, FileFacts, OnBlock, Opened, Table};
 use sagnac_core::numeric::range::usable;
+use std::ops::Range;
 use std::path::Path;
 
+/// Values of a column in memory, read in blocks: the memory of another library is used as it stands, without a copy of the whole.
+pub trait MemoryValues: Send + Sync {
+    /// Number of rows.
+    fn rows(&self) -> usize;
+
+    /// Appends the values of some rows; NaN where there is none.
+    fn append(&self, rows: Range<usize>, to: &mut Vec<f64>);
+}
+
+impl MemoryValues for Vec<f64> {
+    fn rows(&self) -> usize {
+        self.len()
+    }
+
+    fn append(&self, rows: Range<usize>, to: &mut Vec<f64>) {
+        to.extend_from_slice(self.get(rows).unwrap_or_default());
+    }
+}
+
+/// A column in memory.
+pub struct MemoryColumn {
+    /// Name, which tells quantity and unit as in a file.
+    pub name: String,
+    /// The values.
+    pub values: Box<dyn MemoryValues>,
+    /// Time that the values count from, s since 1970-01-01T00:00:00Z, where they are stamps with a date; their unit is then s.
+    pub epoch_s: Option<f64>,
+}
+
+impl MemoryColumn {
+    /// Numbers under a name.
+    pub fn new(name: impl Into<String>, values: impl MemoryValues + 'static) -> MemoryColumn {
+        MemoryColumn { name: name.into(), values: Box::new(values), epoch_s: None }
+    }
+}
+
+/// Size of columns of numbers, bytes.
+pub(super) fn bytes(rows: u64, columns: usize) -> u64 {
+    rows.saturating_mul(columns as u64).saturating_mul(size_of::<f64>() as u64)
+}
+
 struct Memory {
-    columns: Vec<Vec<f64>>,
+    columns: Vec<Box<dyn MemoryValues>>,
     block_rows: usize,
 }
 
 /// Opens named columns.
 pub(super) fn open(
     path: &Path,
-    columns: Vec<(String, Vec<f64>)>,
+    columns: Vec<MemoryColumn>,
     block_rows: usize,
 ) -> Result<Opened, IngestError> {
-    let rows = columns.first().map_or(0, |(_, c)| c.len());
-    if rows == 0 || columns.iter().any(|(_, c)| c.len() != rows) {
+    let rows = columns.first().map_or(0, |c| c.values.rows());
+    if rows == 0 || columns.iter().any(|c| c.values.rows() != rows) {
         return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.uneven"));
     }
-    let (names, columns): (Vec<String>, Vec<Vec<f64>>) = columns.into_iter().unzip();
-    let describe = |name| Column {
-        name,
+    let describe = |column: &MemoryColumn| Column {
+        name: column.name.clone(),
         numeric: true,
         storage: "double".to_owned(),
-        unit: None,
-        epoch_s: None,
+        unit: column.epoch_s.map(|_| "s".to_owned()),
+        epoch_s: column.epoch_s,
         rollover_s: None,
     };
+    let described = columns.iter().map(describe).collect();
+    let columns = columns.into_iter().map(|c| c.values).collect();
     Ok(Opened {
-        columns: names.into_iter().map(describe).collect(),
+        columns: described,
         rows_estimate: Some(rows as u64),
         cut_off: Vec::new(),
         notes: Vec::new(),
@@ -56,7 +99,7 @@ pub(super) fn nothing() -> Opened {
 
 impl Table for Memory {
     fn read(&self, wanted: &[usize], on_block: &mut OnBlock<'_>) -> Result<Option<FileFacts>, IngestError> {
-        let rows = self.columns.first().map_or(0, Vec::len);
+        let rows = self.columns.first().map_or(0, |c| c.rows());
         let mut block = Block::default();
         let mut start = 0;
         while start < rows {
@@ -64,18 +107,20 @@ impl Table for Memory {
             block.reset(wanted.len());
             block.first_row = start as u64 + 1;
             for (slot, &w) in wanted.iter().enumerate() {
-                let values = self.columns.get(w).and_then(|c| c.get(start..end)).unwrap_or_default();
-                if let Some(column) = block.columns.get_mut(slot) {
-                    column.extend_from_slice(values);
+                let (Some(values), Some(column)) = (self.columns.get(w), block.columns.get_mut(slot)) else {
+                    continue;
+                };
+                values.append(start..end, column);
+                let mut unusable = vec![];
+                for (row, v) in (start as u64 + 1..).zip(column.iter_mut()).filter(|(_, v)| !usable(**v)) {
+                    unusable.push((row, v.to_string()));
+                    *v = f64::NAN;
                 }
-                for (i, v) in values.iter().enumerate().filter(|(_, v)| !usable(**v)) {
-                    let row = (start + i) as u64 + 1;
-                    block.fault(|| non_finite(slot, row, v.to_string()), slot, FieldFaultKind::NonFinite);
-                }
-                if let Some(column) = block.columns.get_mut(slot) {
-                    column.iter_mut().filter(|v| !usable(**v)).for_each(|v| *v = f64::NAN);
+                for (row, text) in unusable {
+                    block.fault(|| non_finite(slot, row, text), slot, FieldFaultKind::NonFinite);
                 }
             }
+            block.bytes_done = bytes(end as u64, self.columns.len());
             if on_block(&mut block).is_break() {
                 return Ok(None);
             }

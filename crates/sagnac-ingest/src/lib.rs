@@ -110,6 +110,7 @@ pub use error::{IngestError, IngestErrorKind};
 pub use format::{Candidate, Format, OnBlock, Opened, Table};
 pub use formats::FORMATS;
 pub use guarded::decoder_is_running;
+pub use in_memory::{MemoryColumn, MemoryValues};
 pub use options::{Encoding, ReadOptions, StampOptions, StampWriting, TextOptions};
 pub use pauses::Pauses;
 pub use plan::{Plan, TimeBaseSpec, prepare};

@@ -5,6 +5,7 @@ use super::error::{IngestError, IngestErrorKind};
 use super::file_identity::FileIdentity;
 use super::format_detection::format_of;
 use super::guarded::guarded;
+use super::in_memory::MemoryColumn;
 use super::metadata::serial_numbers;
 use super::similar_column::similar;
 use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, in_memory, requested_columns};
@@ -120,17 +121,18 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
 }
 
 impl Source {
-    /// A recording in memory: names with columns of equal length. Used by simulations and tests.
+    /// A recording in memory: columns of equal length.
     ///
     /// # Errors
     /// [`IngestErrorKind::Empty`] without columns or rows or with columns of different length.
     pub fn from_columns(
         name: &str,
-        columns: Vec<(String, Vec<f64>)>,
+        columns: Vec<MemoryColumn>,
         block_rows: usize,
     ) -> Result<Source, IngestError> {
         let opened = in_memory::open(Path::new(name), columns, block_rows)?;
-        Ok(Source::alone(PathBuf::from(name), "memory", opened))
+        let bytes = in_memory::bytes(opened.rows_estimate.unwrap_or_default(), opened.columns.len());
+        Ok(Source { bytes, ..Source::alone(PathBuf::from(name), "memory", opened) })
     }
 
     /// A recording without columns under the path of one that could not be opened, so that its report can name it.

@@ -1,4 +1,5 @@
 use super::*;
+use crate::MemoryColumn;
 use crate::english::english;
 use sagnac_core::recording::ColumnRef;
 use sagnac_core::recording::SampleBlock;
@@ -43,7 +44,7 @@ fn run(
     spec: TimeBaseSpec,
     block_rows: usize,
 ) -> Result<(Keep, StreamReport), IngestError> {
-    let columns = columns.into_iter().map(|(n, c)| (n.to_owned(), c)).collect();
+    let columns = columns.into_iter().map(|(n, c)| MemoryColumn::new(n, c)).collect();
     let source = Source::from_columns("memory", columns, block_rows)?;
     let mut keep = Keep::default();
     let report = stream(&source, channels, spec, &mut [&mut keep], &mut |_, _| {})?;

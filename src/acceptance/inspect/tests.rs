@@ -3,7 +3,7 @@
 use super::clock_check::{ClockRemark, clock_remark, earth};
 use super::inspect_source;
 use super::tracks::{LevelFinder, LinearFit, runs};
-use crate::ingest::Source;
+use crate::ingest::{MemoryColumn, Source};
 use crate::noise::block_series::BlockSeriesAccumulator;
 use crate::noise::lines::SpectralLine;
 use crate::noise::model::NoiseModel;
@@ -15,7 +15,7 @@ type Columns = Vec<(&'static str, Vec<f64>)>;
 
 /// What is said of a recording in memory, on one line.
 fn told(columns: Columns, rate_hz: Option<f64>) -> String {
-    let columns = columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect();
+    let columns = columns.into_iter().map(|(name, values)| MemoryColumn::new(name, values)).collect();
     let source = Source::from_columns("unit.csv", columns, 4096).unwrap();
     let text = inspect_source(&source, rate_hz, crate::i18n::Lang::En, &mut |_, _| {}).unwrap();
     text.split_whitespace().collect::<Vec<_>>().join(" ")

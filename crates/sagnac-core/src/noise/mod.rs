@@ -15,7 +15,7 @@
 //! | whether the model describes the record | [`residual`] |
 //!
 //! Models and their closed forms: [`model`] (N, B, K, R, Q), [`composite`] (every term), [`data`] (kinds of noise, points
-//! and series). Uncertainty of deviations: [`edf`], [`intervals`], [`stretches`]. What a record can show before it is made:
+//! and series). Uncertainty of deviations: [`edf`], [`intervals`], [`ruling`], [`stretches`]. What a record can show before it is made:
 //! [`expected`], [`identifiable`], [`null_ratio`]. Other quantities: [`russian`], [`prediction`], [`static_bias`],
 //! [`autocorrelation`]. Fitness of the record: [`motion`], [`coarse`]. Records with known noise: [`simulate`].
 
@@ -46,6 +46,7 @@ pub mod part;
 mod phase;
 pub mod prediction;
 pub mod residual;
+pub mod ruling;
 pub mod russian;
 pub mod simulate;
 pub mod sinusoids;
