@@ -68,8 +68,8 @@ pub mod verify;
 
 pub use i18n::Lang;
 pub use library::{
-    Analysis, Compared, Error, Explanation, Model, Noise, Procedure, Rate, Recording, RunResult, compare,
-    data_sheet, explain, explain_watched, write_results,
+    Analysis, Compared, Error, Explanation, Model, Noise, Procedure, Rate, Recording, RunResult, SheetSource,
+    compare, data_sheet, explain, explain_watched, write_results,
 };
 pub use record::UnitUnderTest;
 pub use report::export;
@@ -80,7 +80,7 @@ pub use sagnac_core::{
 
 /// Noise of a gyro at rest: [`allan`](fn@allan) and [`identify`](fn@identify) for samples in memory, and the methods that it is made of.
 pub mod noise {
-    pub use crate::library::{AllanCurve, AllanPlan, Noise, allan, identify, identify_in_memory};
+    pub use crate::library::{AllanCurve, AllanPlan, Noise, allan, draw, identify, identify_in_memory};
     pub use sagnac_core::noise::*;
 }
 

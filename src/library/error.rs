@@ -53,6 +53,20 @@ impl Error {
         }
     }
 
+    /// An error that a note tells: an argument that cannot be used.
+    pub fn of_note(note: Note) -> Error {
+        Error::argument(note)
+    }
+
+    /// What is wrong with a recording and where, when that is what the error is about.
+    pub fn ingest(&self) -> Option<&IngestError> {
+        match self.0.as_ref() {
+            Kind::Recording(SeriesError::Open(RecordingError::File(e)) | SeriesError::Read(e))
+            | Kind::Run(RunError::Ingest(e)) => Some(e),
+            _ => None,
+        }
+    }
+
     /// True when a recording could not be opened or read.
     pub fn is_recording(&self) -> bool {
         matches!(self.0.as_ref(), Kind::Recording(_) | Kind::Run(RunError::Ingest(_)))

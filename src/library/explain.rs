@@ -34,17 +34,37 @@ impl Model {
         Ok(Model { claim, plan: simulation, drivers, name: path.display().to_string() })
     }
 
+    /// The same model, simulated over another length.
+    #[must_use]
+    pub fn lasting(mut self, duration_s: f64) -> Model {
+        self.plan.duration_s = Some(duration_s);
+        self
+    }
+
     /// Makes a recording from the model, over the length that its file states. Equal seeds give equal recordings.
     ///
     /// # Errors
     /// [`Error::is_argument`] when the file states no length, or when an effect lacks a parameter or a column.
     pub fn simulate(&self, seed: u64) -> Result<Recording, Error> {
+        Recording::from_columns(self.simulate_columns(seed, &mut |_, _| {})?)
+    }
+
+    /// The columns of such a recording, by name; `progress` gets rows made and rows in all.
+    ///
+    /// # Errors
+    /// As [`Model::simulate`].
+    pub fn simulate_columns(
+        &self,
+        seed: u64,
+        progress: &mut dyn FnMut(u64, u64),
+    ) -> Result<Vec<(String, Vec<f64>)>, Error> {
         let Some(duration_s) = self.plan.duration_s else {
             return Err(Error::argument("simulate.no_duration"));
         };
         let over = Over::Duration { duration_s, start_s: self.plan.start_s, drivers: &self.drivers };
         let failed = |e: SimulateError| Error::argument(e.note().clone());
         let mut simulation = Simulation::begin(Order { claim: &self.claim, seed, over }).map_err(failed)?;
+        let rows_in_all = (duration_s * self.claim.sample_rate_hz).max(0.0) as u64;
         let mut all = Rows::default();
         while let Some(rows) = simulation.next_rows().map_err(failed)? {
             all.time_s.extend(rows.time_s);
@@ -52,11 +72,11 @@ impl Model {
             for (column, values) in rows.columns {
                 all.columns.entry(column).or_default().extend(values);
             }
+            progress((all.time_s.len() as u64).min(rows_in_all), rows_in_all);
         }
         let columns = [("time_s", all.time_s), ("rate_deg_h", all.rate_deg_h)];
-        Recording::from_columns(
-            columns.into_iter().chain(all.columns.into_iter().map(|(c, v)| (c.name(), v))),
-        )
+        let columns = columns.into_iter().map(|(name, values)| (name.to_owned(), values));
+        Ok(columns.chain(all.columns.into_iter().map(|(c, v)| (c.name().to_owned(), v))).collect())
     }
 
     /// The model as the text of a TOML file.

@@ -14,10 +14,10 @@ mod recording;
 
 pub use analysis::Analysis;
 pub use comparison::{Compared, compare};
-pub use data_sheet::data_sheet;
+pub use data_sheet::{SheetSource, data_sheet};
 pub use error::Error;
 pub use explain::{Explanation, Model, explain, explain_watched};
 pub use files::write_results;
-pub use noise::{AllanCurve, AllanPlan, Noise, allan, identify, identify_in_memory};
+pub use noise::{AllanCurve, AllanPlan, Noise, allan, draw, identify, identify_in_memory};
 pub use procedure::{Procedure, RunResult};
 pub use recording::{Rate, Recording};

@@ -1,7 +1,9 @@
 //! The noise of a gyro at rest, from its samples.
 
 use super::{Error, Rate};
+use crate::acceptance::figures::{allan_family, sigma_tau};
 use crate::estimate::Estimate;
+use crate::figure::Figure;
 use crate::i18n::Note;
 use crate::ingest::MemoryValues;
 use crate::measurand::{self, GyroEvidence, Options, Test};
@@ -168,6 +170,15 @@ pub fn allan(
     Ok(set.curves.iter().map(curve).collect())
 }
 
+/// Draws deviations with their intervals; the ordinate is in the unit of the samples.
+pub fn draw(curves: &[AllanCurve], sample_interval_s: f64) -> Figure {
+    let curve = |c: &AllanCurve| {
+        let points = c.points.iter().filter(|p| p.point.deviation > 0.0);
+        (c.estimator, points.map(|p| (p.point.m as f64 * sample_interval_s, *p)).collect())
+    };
+    allan_family::of_curves(&curves.iter().map(curve).collect::<Vec<_>>(), "", false, "")
+}
+
 /// A sample interval that can be used, s.
 pub(super) fn checked_interval(sample_interval_s: f64) -> Result<f64, Error> {
     if sample_interval_s > 0.0 && sample_interval_s.is_finite() {
@@ -214,6 +225,11 @@ impl Noise {
     /// Spectral lines, in order of frequency.
     pub fn lines(&self) -> &[SpectralLine] {
         &self.evidence.lines
+    }
+
+    /// The drawing of the Allan deviation with the identified terms.
+    pub fn figure(&self) -> Figure {
+        sigma_tau::figure(&self.evidence, &|_| None)
     }
 
     /// Any quantity of a gyro at rest by its id, for example `static_bias` or `russian_drift_100s` (see

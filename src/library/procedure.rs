@@ -172,6 +172,11 @@ impl RunResult {
         RunResult { outcome }
     }
 
+    /// A result of which only the record is known: no figures, no tables.
+    pub fn of_record(record: RunRecord) -> RunResult {
+        RunResult { outcome: Outcome { record, figures: vec![], tables: vec![] } }
+    }
+
     /// The same as results of any kind.
     pub fn into_results(self) -> Results {
         Results::Run(Box::new(self.outcome.into()))

@@ -126,7 +126,8 @@ impl Table for Memory {
             }
             start = end;
         }
-        Ok(Some(FileFacts { sha256: String::new(), bytes: 0, rows: rows as u64 }))
+        let bytes = bytes(rows as u64, self.columns.len());
+        Ok(Some(FileFacts { sha256: String::new(), bytes, rows: rows as u64 }))
     }
 }
 

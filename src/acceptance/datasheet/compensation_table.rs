@@ -15,13 +15,22 @@ impl Table {
     /// The tables beside a result file, in the order of their names.
     pub(super) fn beside(file: &Path) -> Vec<Table> {
         let folder = file.parent().filter(|p| !p.as_os_str().is_empty()).unwrap_or(Path::new("."));
-        let named = |name: &str| name.starts_with("compensation") && name.ends_with(".json");
         let mut paths: Vec<_> =
             std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path()).collect();
-        paths.retain(|p| p.file_name().is_some_and(|n| named(&n.to_string_lossy())));
+        paths.retain(|p| p.file_name().is_some_and(|n| is_table(&n.to_string_lossy())));
         paths.sort();
-        let table = |p: &std::path::PathBuf| serde_json::from_slice::<Table>(&std::fs::read(p).ok()?).ok();
-        paths.iter().filter_map(table).filter(Table::is_sound).collect()
+        paths.iter().filter_map(|p| Table::of_bytes(&std::fs::read(p).ok()?)).collect()
+    }
+
+    /// The tables among files by name, in the order of their names.
+    pub(super) fn among(files: &[(String, String)]) -> Vec<Table> {
+        let mut files: Vec<_> = files.iter().filter(|(name, _)| is_table(name)).collect();
+        files.sort();
+        files.iter().filter_map(|(_, text)| Table::of_bytes(text.as_bytes())).collect()
+    }
+
+    fn of_bytes(bytes: &[u8]) -> Option<Table> {
+        serde_json::from_slice::<Table>(bytes).ok().filter(Table::is_sound)
     }
 
     fn is_sound(&self) -> bool {
@@ -46,4 +55,9 @@ impl Table {
         let share = (temperature - t[after - 1]) / (t[after] - t[after - 1]);
         self.bias_deg_h[after - 1] + share * (self.bias_deg_h[after] - self.bias_deg_h[after - 1])
     }
+}
+
+/// Whether a file beside a result is a compensation table, by its name.
+fn is_table(name: &str) -> bool {
+    name.starts_with("compensation") && name.ends_with(".json")
 }

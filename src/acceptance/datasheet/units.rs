@@ -33,13 +33,25 @@ impl TestedUnit {
     /// A file that cannot be read, is no result, or names no unit.
     pub fn read(file: &Path) -> Result<TestedUnit, Note> {
         let bytes = read::bytes(file).map_err(|e| e.note(file))?;
-        let input: SheetInput = read::of_format(&bytes, RESULT_FORMAT).map_err(|e| e.note(file))?;
+        TestedUnit::of_record(&bytes, file, Table::beside(file))
+    }
+
+    /// The unit of a result in memory: the record as JSON, its name, and the files beside it by name.
+    ///
+    /// # Errors
+    /// As [`TestedUnit::read`].
+    pub fn in_memory(record: &[u8], name: &Path, files: &[(String, String)]) -> Result<TestedUnit, Note> {
+        TestedUnit::of_record(record, name, Table::among(files))
+    }
+
+    fn of_record(bytes: &[u8], file: &Path, tables: Vec<Table>) -> Result<TestedUnit, Note> {
+        let input: SheetInput = read::of_format(bytes, RESULT_FORMAT).map_err(|e| e.note(file))?;
         let path = file.display().to_string();
         let serial = input.unit_under_test.serial.as_deref().map(str::trim).unwrap_or_default().to_owned();
         if serial.is_empty() {
             return Err(Note::new("datasheet.refused.no_serial").with("path", path));
         }
-        Ok(TestedUnit { serial, path, sha256: sha256(&bytes), input, tables: Table::beside(file) })
+        Ok(TestedUnit { serial, path, sha256: sha256(bytes), input, tables })
     }
 
     /// Name of the lot; empty where none is named.

@@ -1,0 +1,81 @@
+"""Sagnac: analysis and acceptance tests of precision gyroscopes.
+
+>>> import numpy as np, sagnac
+>>> rate = np.random.default_rng(1).normal(scale=0.6, size=36_000)   # deg/h, one sample a second
+>>> noise = sagnac.identify(rate, tau0=1.0)
+>>> low, high = noise["angle_random_walk"].interval
+>>> low < 0.01 < high                                                # deg/sqrt(h)
+True
+"""
+
+from ._api import allan, analyze, compare, datasheet, explain, identify, inspect, read, run, simulate
+from ._errors import (
+    ArgumentError,
+    ConfigurationError,
+    NotEvaluableError,
+    OutputError,
+    RecordingError,
+    SagnacError,
+)
+from ._inputs import Samples, Source
+from ._native import __version__
+from ._results import (
+    Comparison,
+    DataSheet,
+    Deviations,
+    Effect,
+    Explanation,
+    Inspection,
+    Noise,
+    Parameter,
+    Result,
+    RunResult,
+    SheetBound,
+    SheetQuantity,
+    Simulation,
+)
+from ._values import AllanCurve, Bound, Column, Condition, Figure, Interval, Limit, Line, Measurand
+
+__all__ = [
+    "AllanCurve",
+    "ArgumentError",
+    "Bound",
+    "Column",
+    "Comparison",
+    "Condition",
+    "ConfigurationError",
+    "DataSheet",
+    "Deviations",
+    "Effect",
+    "Explanation",
+    "Figure",
+    "Inspection",
+    "Interval",
+    "Limit",
+    "Line",
+    "Measurand",
+    "Noise",
+    "NotEvaluableError",
+    "OutputError",
+    "Parameter",
+    "RecordingError",
+    "Result",
+    "RunResult",
+    "SagnacError",
+    "Samples",
+    "SheetBound",
+    "SheetQuantity",
+    "Simulation",
+    "Source",
+    "__version__",
+    "allan",
+    "analyze",
+    "compare",
+    "datasheet",
+    "explain",
+    "identify",
+    "inspect",
+    "read",
+    "run",
+    "simulate",
+]
