@@ -10,6 +10,7 @@ use crate::acceptance::datasheet::{Refusal, TestedUnit, apply, datasheet, select
 use crate::config::sheet;
 use crate::i18n::{Lang, Note};
 use crate::ingest::each_of;
+use crate::ingest::result_table::{TableResult, results_in, tables_at};
 use crate::lot::tolerance::Promise;
 use crate::output::Kind;
 use crate::report::datasheet::SheetView;
@@ -70,8 +71,8 @@ pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
     let now = Utc::now();
     let (files, mut broken) = args.files(lang)?;
     let mut read_units = vec![];
-    let read: Vec<Result<TestedUnit, Note>> = files.par_iter().map(|file| TestedUnit::read(file)).collect();
-    for unit in read {
+    let read: Vec<Vec<Result<TestedUnit, Note>>> = files.par_iter().map(|file| units_in(file)).collect();
+    for unit in read.into_iter().flatten() {
         match unit {
             Ok(unit) => read_units.push(unit),
             Err(note) => {
@@ -112,7 +113,7 @@ impl DatasheetArgs {
         let mut files = vec![];
         for named in &self.results {
             match each_of(named) {
-                Ok(found) => files.extend(found.into_iter().map(|p| result_file(&p))),
+                Ok(found) => files.extend(found.iter().flat_map(|p| result_files(p))),
                 Err(e) => return Err(crate::ingest::RecordingError::from(e).say(lang)),
             }
         }
@@ -141,7 +142,29 @@ impl DatasheetArgs {
     }
 }
 
-/// The result that a path stands for.
-fn result_file(path: &Path) -> PathBuf {
-    if path.is_dir() { path.join(Kind::Result.record_file()) } else { path.to_owned() }
+/// The results that a path stands for: those of a folder, a file of one, or tables of many.
+fn result_files(path: &Path) -> Vec<PathBuf> {
+    let record = path.join(Kind::Result.record_file());
+    match tables_at(path) {
+        tables if !tables.is_empty() && !record.is_file() => tables,
+        _ if path.is_dir() => vec![record],
+        _ => vec![path.to_owned()],
+    }
+}
+
+/// The units of a file: one of a result, those of all rows of a table.
+fn units_in(file: &Path) -> Vec<Result<TestedUnit, Note>> {
+    if tables_at(file).is_empty() {
+        return vec![TestedUnit::read(file)];
+    }
+    let rows = match results_in(file) {
+        Ok(rows) => rows,
+        Err(note) => return vec![Err(note)],
+    };
+    let unit = |row: Result<TableResult, Note>| {
+        let TableResult { name, record } = row?;
+        let nothing = || Note::new("result_table.no_result").with("recording", name.as_str());
+        TestedUnit::in_memory(record.ok_or_else(nothing)?.as_bytes(), Path::new(&name), &[])
+    };
+    rows.map(unit).collect()
 }

@@ -2,6 +2,9 @@
 
 use super::{exit, place};
 use crate::i18n::{Lang, Localize, Note};
+use crate::ingest::io_reason;
+use crate::ingest::result_table::{TableResult, results_in, tables_at};
+use crate::output::Kind;
 use crate::store::{self, Filter, RecordingSearch, Store, StoreError, result_folders};
 use chrono::{SecondsFormat, Utc};
 use clap::{Args, Subcommand};
@@ -24,12 +27,12 @@ enum What {
         #[arg(long)]
         shared_disk: bool,
     },
-    /// Add result folders that were made elsewhere, and find recordings that have moved
+    /// Add results that were made elsewhere: folders, or tables of an archive; and find recordings that have moved
     Import {
         /// Folder of the store
         #[arg(value_name = "STORE")]
         store: PathBuf,
-        /// Result folders, or folders that hold some
+        /// Result folders, Parquet tables of results, or folders that hold some
         #[arg(required = true, value_name = "DIR")]
         folders: Vec<PathBuf>,
         /// Folders in which recordings are looked for by their hashes
@@ -163,37 +166,84 @@ fn found(findings: &[store::Finding], note: &Note, lang: Lang) -> Result<u8, Str
     Ok(if findings.is_empty() { exit::PASS } else { exit::FAIL })
 }
 
+/// What came of an import.
+#[derive(Default)]
+struct Tally {
+    new: usize,
+    known: usize,
+    refused: usize,
+    /// Results without files that they list, with the names of these.
+    incomplete: Vec<(PathBuf, Vec<String>)>,
+}
+
+impl Tally {
+    fn add(&mut self, store: &mut Store, folder: &Path, lang: Lang) -> Result<(), String> {
+        let added = match store.add(folder) {
+            Ok(added) => added,
+            // What is no result is left out; a store that cannot be written ends the import.
+            Err(e @ (StoreError::Result { .. } | StoreError::NoTest(_))) => {
+                self.refuse(&e.note(), lang);
+                return Ok(());
+            }
+            Err(e) => return Err(place::error(&e.note(), lang)),
+        };
+        if !added.missing.is_empty() {
+            self.incomplete.push((folder.to_owned(), added.missing));
+        }
+        *if added.new { &mut self.new } else { &mut self.known } += 1;
+        Ok(())
+    }
+
+    /// Adds the results of a table: each becomes a folder with its record alone.
+    fn add_table(&mut self, store: &mut Store, table: &Path, lang: Lang) -> Result<(), String> {
+        let say = |note: &Note| place::error(note, lang);
+        for row in results_in(table).map_err(|note| say(&note))? {
+            let TableResult { name, record } = row.map_err(|note| say(&note))?;
+            let Some(record) = record else {
+                self.refuse(&Note::new("result_table.no_result").with("recording", name), lang);
+                continue;
+            };
+            let folder = tempfile::tempdir();
+            let folder = folder.and_then(|folder| {
+                std::fs::write(folder.path().join(Kind::Result.record_file()), record)?;
+                Ok(folder)
+            });
+            let folder =
+                folder.map_err(|e| say(&Note::new("store.no_scratch").with("reason", io_reason(&e))))?;
+            self.add(store, folder.path(), lang)?;
+        }
+        Ok(())
+    }
+
+    fn refuse(&mut self, note: &Note, lang: Lang) {
+        place::eprint_diagnostic(&place::warning(note, lang));
+        self.refused += 1;
+    }
+}
+
 fn import(store: &Path, folders: &[PathBuf], recordings: &[PathBuf], lang: Lang) -> Result<u8, String> {
     let say = |e: StoreError| place::error(&e.note(), lang);
     let mut opened = Store::open(store).map_err(say)?;
     for note in opened.notes() {
         place::eprint_diagnostic(&place::warning(note, lang));
     }
-    let (mut new, mut known, mut refused) = (0_usize, 0_usize, 0_usize);
-    let mut incomplete: Vec<(PathBuf, Vec<String>)> = vec![];
+    let mut tally = Tally::default();
     for named in folders {
-        let results = result_folders(named).map_err(say)?;
-        if results.is_empty() {
+        let is_table = !named.is_dir() && !tables_at(named).is_empty();
+        let results = if is_table { vec![] } else { result_folders(named).map_err(say)? };
+        let tables = if results.is_empty() { tables_at(named) } else { vec![] };
+        if results.is_empty() && tables.is_empty() {
             let note = Note::new("result_error.no_result_in").with("path", place::shown(named));
             return Err(place::error(&note, lang));
         }
         for folder in results {
-            let added = match opened.add(&folder) {
-                Ok(added) => added,
-                // What is no result is left out; a store that cannot be written ends the import.
-                Err(e @ (StoreError::Result { .. } | StoreError::NoTest(_))) => {
-                    place::eprint_diagnostic(&place::warning(&e.note(), lang));
-                    refused += 1;
-                    continue;
-                }
-                Err(e) => return Err(say(e)),
-            };
-            if !added.missing.is_empty() {
-                incomplete.push((folder, added.missing));
-            }
-            *if added.new { &mut new } else { &mut known } += 1;
+            tally.add(&mut opened, &folder, lang)?;
+        }
+        for table in tables {
+            tally.add_table(&mut opened, &table, lang)?;
         }
     }
+    let Tally { new, known, refused, incomplete } = tally;
     let note = Note::new("store.imported").with("new", new).with("known", known).with("refused", refused);
     done(&note, lang)?;
     if let Some((folder, names)) = incomplete.first() {

@@ -2,6 +2,7 @@
 
 pub mod lot;
 mod recording;
+pub mod result_table;
 pub mod serial;
 pub mod unit_data;
 

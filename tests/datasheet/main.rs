@@ -6,6 +6,7 @@ mod by_others;
 mod over_temperature;
 mod rows;
 mod samples;
+mod tables;
 
 #[path = "../support/mod.rs"]
 mod support;

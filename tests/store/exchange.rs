@@ -1,6 +1,8 @@
 //! Results from elsewhere, and tables for others.
 
-use crate::support::{files, limits, names, procedure, sagnac, sagnac_as_typed, sample, shipped};
+use crate::support::{
+    files, limits, names, procedure, result_table, sagnac, sagnac_as_typed, sample, shipped,
+};
 use crate::{kept, store, store_says, with_store, write_result, write_results};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::RowAccessor;
@@ -24,6 +26,20 @@ fn results_of_a_lot_come_in_once_and_go_out_as_they_came() {
     // Out of one store and into another: the same addresses.
     store(dir.path(), &["init", "other"]);
     store(dir.path(), &["import", "other", "store/results"]);
+    let addresses = |name: &str| -> Vec<String> {
+        kept(&dir.path().join(name)).into_iter().map(|(address, _)| address).collect()
+    };
+    assert_eq!(addresses("other"), addresses("store"));
+}
+
+#[test]
+fn results_of_a_table_come_in_as_those_of_folders() {
+    let dir = with_store();
+    result_table(&dir.path().join("t.parquet"));
+    let said = store(dir.path(), &["import", "store", "t.parquet"]);
+    assert!(said.out.contains("Added: 30; there already: 0; refused: 0"), "{said:?}");
+    store(dir.path(), &["init", "other"]);
+    store(dir.path(), &["import", "other", &shipped("samples/lot")]);
     let addresses = |name: &str| -> Vec<String> {
         kept(&dir.path().join(name)).into_iter().map(|(address, _)| address).collect()
     };

@@ -195,3 +195,21 @@ pub fn steady(report: &str, result: &Value) -> String {
     }
     text
 }
+
+/// Writes the results of the sample lot as a table: a row each, with the recording and the record.
+pub fn result_table(path: &std::path::Path) {
+    use sagnac::output::{Column, write_table};
+    type Row = (String, String);
+    let mut rows: Vec<Row> = std::fs::read_dir(root().join("samples/lot"))
+        .unwrap()
+        .flatten()
+        .filter_map(|e| {
+            let record = std::fs::read_to_string(e.path().join("result.json")).ok()?;
+            Some((format!("recordings/{}.csv", e.file_name().display()), record))
+        })
+        .collect();
+    rows.sort();
+    let columns: [(&str, Column<Row>); 2] =
+        [("uri", Column::Text(|r| r.0.clone())), ("result_json", Column::Text(|r| r.1.clone()))];
+    write_table(&rows, &columns, std::fs::File::create(path).unwrap()).unwrap();
+}

@@ -1,0 +1,87 @@
+//! Results that stand in Parquet tables, one row each: those of an archive. The column `result_json` holds the record, `uri` names the
+//! recording.
+
+use crate::i18n::{Arg, Note};
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::RowAccessor;
+use parquet::schema::types::Type;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+/// Column with the record, as the text of `result.json`; null where a recording gave none.
+const RECORD: &str = "result_json";
+
+/// Column with the place of the recording.
+const URI: &str = "uri";
+
+/// Folders in folders that are looked into.
+const DEEPEST: usize = 12;
+
+/// A result of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TableResult {
+    /// What the table calls its recording; the table and the row where it has no such column.
+    pub name: String,
+    /// The record, as the text of `result.json`; `None` where the recording gave none.
+    pub record: Option<String>,
+}
+
+/// The tables that a path stands for: itself, or those below a folder, in the order of their names; nothing where it is another kind
+/// of file.
+pub fn tables_at(path: &Path) -> Vec<PathBuf> {
+    let is_table = |p: &Path| p.extension().is_some_and(|e| e.eq_ignore_ascii_case("parquet"));
+    if !path.is_dir() {
+        return if is_table(path) { vec![path.to_owned()] } else { vec![] };
+    }
+    let mut found = vec![];
+    let mut open = vec![(path.to_owned(), 0)];
+    while let Some((folder, depth)) = open.pop() {
+        for entry in std::fs::read_dir(&folder).into_iter().flatten().flatten() {
+            let path = entry.path();
+            // A link could lead round in a circle.
+            let Ok(kind) = entry.file_type() else { continue };
+            if kind.is_dir() && depth < DEEPEST {
+                open.push((path, depth + 1));
+            } else if kind.is_file() && is_table(&path) {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The results of a table, in its order, a row at a time.
+///
+/// # Errors
+/// A sentence that names the file: it cannot be read, or has no column of records.
+pub fn results_in(path: &Path) -> Result<impl Iterator<Item = Result<TableResult, Note>> + use<>, Note> {
+    let shown = path.display().to_string();
+    let unreadable = {
+        let shown = shown.clone();
+        move |why: Arg| {
+            Note::new("result_table.unreadable").with("path", shown.as_str()).with("reason", why)
+        }
+    };
+    let file = File::open(path).map_err(|e| unreadable(sagnac_ingest::io_reason(&e).into()))?;
+    let reader = SerializedFileReader::new(file).map_err(|e| unreadable(e.to_string().into()))?;
+    let fields = reader.metadata().file_metadata().schema().get_fields().to_vec();
+    let has = |name: &str| fields.iter().any(|f| f.name() == name && f.is_primitive());
+    if !has(RECORD) {
+        return Err(Note::new("result_table.no_records").with("path", shown).with("column", RECORD));
+    }
+    let named = has(URI);
+    let wanted = fields.into_iter().filter(|f| f.name() == RECORD || (named && f.name() == URI)).collect();
+    let schema = Type::group_type_builder("results").with_fields(wanted).build();
+    let schema = schema.map_err(|e| unreadable(e.to_string().into()))?;
+    let rows = reader.into_iter().project(Some(schema)).map_err(|e| unreadable(e.to_string().into()))?;
+    Ok(rows.enumerate().map(move |(i, row)| {
+        let row = row.map_err(|e| unreadable(e.to_string().into()))?;
+        let text = |column: &str| {
+            let at = row.get_column_iter().position(|(name, _)| name == column)?;
+            row.get_string(at).ok().cloned()
+        };
+        let name = text(URI).unwrap_or_else(|| format!("{shown}:{}", i + 1));
+        Ok(TableResult { name, record: text(RECORD) })
+    }))
+}
