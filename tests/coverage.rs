@@ -1,6 +1,9 @@
 //! Monte Carlo of whole runs against simulated truth, in short: coverage of intervals, verdicts of units exactly at their
 //! limit. The studies are `cargo xtask validate whole-runs lines`.
 
+#[path = "support/long.rs"]
+mod long;
+
 use sagnac_studies::whole_runs::{Tally, line_study, mixes, study};
 
 /// Asserts a share of at least `least`, less three standard deviations of a count of this size.
@@ -26,6 +29,9 @@ fn assert_honest(tally: &Tally, coverage: f64, false_pass: f64) {
 
 #[test]
 fn intervals_hold_and_units_at_their_limit_rarely_pass() {
+    if !long::wanted("intervals_hold_and_units_at_their_limit_rarely_pass") {
+        return;
+    }
     for (i, mix) in mixes().into_iter().enumerate() {
         let tally = study(&mix, 10.0, 10.0, 40, 7_100_000 + 10_000 * i as u64);
         assert_honest(&tally, 0.92, 0.08);
@@ -34,12 +40,18 @@ fn intervals_hold_and_units_at_their_limit_rarely_pass() {
 
 #[test]
 fn intervals_hold_over_a_hundred_hours() {
+    if !long::wanted("intervals_hold_over_a_hundred_hours") {
+        return;
+    }
     let tally = study(&mixes()[1], 100.0, 10.0, 24, 7_200_000);
     assert_honest(&tally, 0.92, 0.08);
 }
 
 #[test]
 fn frequency_and_amplitude_of_a_line_hold() {
+    if !long::wanted("frequency_and_amplitude_of_a_line_hold") {
+        return;
+    }
     for (i, excess) in [20.0, 300.0].into_iter().enumerate() {
         let tally = line_study(excess, 36_000, 100, 7_300_000 + 10_000 * i as u64);
         assert!(tally.found >= 99, "{} of 100 lines of excess {excess} found", tally.found);

@@ -201,7 +201,7 @@ fn an_analysis_in_the_library_is_that_of_the_program() {
     let out = folder.path().join("out");
     assert_cmd::Command::cargo_bin("sagnac")
         .unwrap()
-        .args(["analyze", "samples/unit-indeterminate.csv", "--no-store", "--out"])
+        .args(["analyze", "samples/unit-indeterminate.csv", "--out"])
         .arg(&out)
         .assert()
         .code(0);

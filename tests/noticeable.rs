@@ -1,5 +1,8 @@
 //! Sizes that an explanation says would have been noticed, in short. The study is `cargo xtask validate noticeable-sizes`.
 
+#[path = "support/long.rs"]
+mod long;
+
 use sagnac_studies::noticeable::bench::Place;
 use sagnac_studies::noticeable::{AT_REST, Dose, ON_TABLE, run};
 use sagnac_studies::study::{Row, Verdict};
@@ -12,6 +15,9 @@ fn misses(rows: &[Row]) -> Vec<String> {
 
 #[test]
 fn an_effect_of_the_stated_size_is_noticed() {
+    if !long::wanted("an_effect_of_the_stated_size_is_noticed") {
+        return;
+    }
     let mut rows = run(Place::AtRest, &["temp_rate", "rate_ramp", "excess_arw"], &[Dose::Whole], 6, 1);
     rows.extend(run(Place::OnTable, &["sf_error"], &[Dose::Whole], 6, 1));
     assert_eq!(misses(&rows), Vec::<String>::new());

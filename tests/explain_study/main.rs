@@ -8,6 +8,8 @@
 
 mod generator;
 mod scoring;
+#[path = "../support/long.rs"]
+mod long;
 
 use sagnac_studies::explain::plan::Wish;
 use sagnac_studies::explain::run::How;
@@ -57,6 +59,9 @@ const FIRST_KINDS: &str = "excess_arw,excess_flicker,excess_rrw,rate_ramp,markov
 
 #[test]
 fn a_few_correct_claims_are_consistent_and_clear_effects_are_found() {
+    if !long::wanted("a_few_correct_claims_are_consistent_and_clear_effects_are_found") {
+        return;
+    }
     let nulls = run::all(&by_the_program, &[Wish::Null], 900..906, (60.0, 60.0), How::default());
     for row in &nulls {
         assert_eq!((row.score.verdict.as_str(), row.exit), ("consistent", Some(0)), "{}", row.name);

@@ -8,6 +8,8 @@ mod ambiguity;
 mod mistaken;
 mod samples;
 mod settling;
+#[path = "../support/long.rs"]
+mod long;
 
 use sagnac::estimate::Estimate;
 use sagnac_studies::chance::Chance;
@@ -19,6 +21,9 @@ use std::collections::BTreeMap;
 
 #[test]
 fn warm_up_intervals_hold_where_two_decays_are_nearly_one() {
+    if !long::wanted("warm_up_intervals_hold_where_two_decays_are_nearly_one") {
+        return;
+    }
     // Seeds of the study whose intervals missed while coefficients had a flat density.
     let (mut inside, seeds) = (0, [200_017, 200_031, 200_043, 200_051]);
     for seed in seeds {
@@ -32,6 +37,9 @@ fn warm_up_intervals_hold_where_two_decays_are_nearly_one() {
 
 #[test]
 fn a_few_intervals_hold() {
+    if !long::wanted("a_few_intervals_hold") {
+        return;
+    }
     let tallies = study(&[60.0, 20.0], 3600.0, 20, 700_001).tallies;
     let linear = ["bias_temperature_sensitivity", "bias_temperature_rate_sensitivity", "thermal_hysteresis"];
     let (inside, stated) =
@@ -53,6 +61,9 @@ fn rows_of(legs: &[Leg], start: f64) -> BTreeMap<&'static str, Estimate> {
 
 #[test]
 fn what_a_schedule_cannot_tell_apart_is_not_stated_singly() {
+    if !long::wanted("what_a_schedule_cannot_tell_apart_is_not_stated_singly") {
+        return;
+    }
     let single = ["bias_temperature_rate_sensitivity", "thermal_lag", "thermal_hysteresis"];
     // Up and down at one rate without rest: the sum alone.
     let rows = rows_of(&programme(&[20.0], 0.0), -40.0);
