@@ -59,9 +59,7 @@ pub fn results_in(path: &Path) -> Result<impl Iterator<Item = Result<TableResult
     let shown = path.display().to_string();
     let unreadable = {
         let shown = shown.clone();
-        move |why: Arg| {
-            Note::new("result_table.unreadable").with("path", shown.as_str()).with("reason", why)
-        }
+        move |why: Arg| Note::new("result_table.unreadable").with("path", shown.as_str()).with("reason", why)
     };
     let file = File::open(path).map_err(|e| unreadable(sagnac_ingest::io_reason(&e).into()))?;
     let reader = SerializedFileReader::new(file).map_err(|e| unreadable(e.to_string().into()))?;

@@ -5,10 +5,10 @@
 //! edges-temperature edges-tilts`.
 
 mod in_step;
-mod noise_source;
-mod tallies;
 #[path = "../support/long.rs"]
 mod long;
+mod noise_source;
+mod tallies;
 
 use sagnac::measurand::MEASURANDS;
 use sagnac::record::{MeasurandRecord, RunRecord};

@@ -7,9 +7,9 @@
 //! `KINDS` is a list of kinds, `null`, `pair`, `all`, `unknown` (for development), `held_out` (for the last judgement).
 
 mod generator;
-mod scoring;
 #[path = "../support/long.rs"]
 mod long;
+mod scoring;
 
 use sagnac_studies::explain::plan::Wish;
 use sagnac_studies::explain::run::How;

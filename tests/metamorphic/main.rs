@@ -7,9 +7,9 @@
 mod support;
 
 mod changes;
-mod pairs;
 #[path = "../support/long.rs"]
 mod long;
+mod pairs;
 
 use changes::Change;
 use pairs::{PAIRS, Pair};

@@ -5,11 +5,11 @@
 //! temperature-slow-noise warm-up-intervals`.
 
 mod ambiguity;
+#[path = "../support/long.rs"]
+mod long;
 mod mistaken;
 mod samples;
 mod settling;
-#[path = "../support/long.rs"]
-mod long;
 
 use sagnac::estimate::Estimate;
 use sagnac_studies::chance::Chance;
