@@ -11,8 +11,9 @@ use crate::noise::envelope::EnvelopeAccumulator;
 use crate::noise::identification::Identification;
 use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
 use crate::noise::motion::{Motion, motion, together};
-use crate::noise::spectral_record::identify_digest;
+use crate::noise::spectral_record::identify_terms;
 use crate::recording::{Channel, Role, SampleBlock, Sink};
+use rayon::prelude::*;
 
 /// Time over which temperatures are smoothed, s.
 const SMOOTHING_S: f64 = 60.0;
@@ -223,7 +224,7 @@ impl Pass {
         let with = |track: GyroTrack| {
             let name = channels.get(track.slot)?.id.clone();
             let digest = track.digest.finish();
-            let noise = identify_digest(&name, &digest, tau0_s, FALSE_ALARM_RATE, None);
+            let noise = identify_terms(&name, &digest, tau0_s, FALSE_ALARM_RATE);
             let quietest_deg_h = digest.quietest_deg_h;
             Some(Gyro {
                 slot: track.slot,
@@ -236,7 +237,7 @@ impl Pass {
                 angle: track.angle,
             })
         };
-        let mut gyros: Vec<Gyro> = self.gyros.into_iter().filter_map(with).collect();
+        let mut gyros: Vec<Gyro> = self.gyros.into_par_iter().filter_map(with).collect();
         together(gyros.iter_mut().map(|g| &mut g.motion).collect());
         gyros
     }

@@ -10,7 +10,9 @@ use super::data::{BlockSeries, WelchSpectrum};
 use super::digest::RateDigest;
 use super::evidence::{Evidence, Mask};
 use super::family::Estimator;
-use super::identification::{Options, RangedIdentification, describe_in_range, identify_over};
+use super::identification::{
+    Options, RangedIdentification, describe_in_range, identify_in_range, identify_over,
+};
 use super::lines::{SpectralLine, find_lines, retain};
 use super::sinusoids;
 use std::borrow::Cow;
@@ -73,6 +75,22 @@ pub fn identify_digest(
         curve.map(|c| c.points.iter().map(|p| (p.m, p.deviation)).collect()).unwrap_or_default();
     let rounded_above_hz = step_deg_h.and_then(|step| coarse::highest_hz(step, tau0_s, &points));
     SpectralRecord::of_digest(digest, &lines, tau0_s).identify_up_to(channel, rounded_above_hz)
+}
+
+/// A first look: lines, and N, B, K, Q and R alone, over the widest range of frequencies in which they describe the record. No process
+/// and no filter is searched for, which takes most of the time of [`identify_digest`]. The arguments are those of it.
+pub fn identify_terms(channel: &str, digest: &RateDigest, tau0_s: f64, line_false_alarm: f64) -> RecordNoise {
+    let lines = find_lines(&digest.welch.spectrum, tau0_s, line_false_alarm).lines;
+    let record = SpectralRecord::of_digest(digest, &lines, tau0_s);
+    let whole = record.evidence(&[]);
+    let mut coherent = retain(&lines, |l| is_coherent(&whole, l));
+    sinusoids::fit(record.blocks, tau0_s, &mut coherent);
+    // What is narrow and not coherent is left out of the fit too.
+    let evidence = record.evidence(&lines);
+    let ranged = identify_in_range(channel, &evidence, 0.5 / tau0_s, &Options::standard_terms());
+    let mut noise = RecordNoise { ranged, lines: coherent };
+    describe_lines(&mut noise.ranged.identification.described, &noise.lines);
+    noise
 }
 
 impl SpectralRecord<'_> {
