@@ -14,7 +14,7 @@ import sagnac
 def tested(path: Path) -> sagnac.RunResult | None:
     """Runs the static test on a recording; ``None``, and a sentence, where that is not possible."""
     try:
-        return sagnac.run("static-bias", path, limits="sample-unit", serial=path.stem)
+        return sagnac.run("static-bias", path, limits="sample-unit")
     except sagnac.SagnacError as error:
         print(f"{path.name}: {error}", file=sys.stderr)
         return None

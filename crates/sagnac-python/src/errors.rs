@@ -3,6 +3,7 @@
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use sagnac::Error;
+use sagnac::config::diagnostics::{Problem, Severity};
 
 /// The place that an error is about.
 #[derive(Default)]
@@ -13,9 +14,10 @@ struct Place {
 }
 
 impl Place {
-    /// Of the first problem of a file, or of the recording.
+    /// Of the first error in a file, or of the recording.
     fn of(error: &Error) -> Place {
-        if let Some(problem) = error.problems().first() {
+        let wrong = |p: &&Problem| p.severity == Severity::Error;
+        if let Some(problem) = error.problems().iter().find(wrong) {
             let known = |n: usize| (n > 0).then_some(n as u64);
             return Place {
                 file: Some(problem.file.clone()),

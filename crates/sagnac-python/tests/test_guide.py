@@ -39,7 +39,7 @@ def ran(page: str, folder: Path, check: str = "") -> str:
 def test_the_page_of_the_package(tmp_path: Path) -> None:
     pytest.importorskip("pandas")
     printed = ran("python.md", tmp_path)
-    assert "wrong.toml 3" in printed and "bias_step" in printed
+    assert "did you mean `angle_random_walk`" in printed and "bias_step" in printed
     assert (tmp_path / "report" / "report.html").is_file()
 
 
