@@ -94,7 +94,7 @@ pub async fn list(listing: &Listing, target: &Url) -> Result<usize> {
         return Err(DataFusionError::Configuration(text));
     }
     let mut found: Vec<ObjectMeta> = store.list(Some(&prefix)).try_collect().await?;
-    found.retain(|f| is_recording(&f.location, &listing.endings));
+    found.retain(|f| is_recording(&f.location, &prefix, &listing.endings));
     // The order of a store is not told; shards of one folder are to be the same each time.
     found.sort_by(|a, b| a.location.cmp(&b.location));
     for (number, some) in found.chunks(listing.rows.max(1)).enumerate() {
@@ -105,8 +105,9 @@ pub async fn list(listing: &Listing, target: &Url) -> Result<usize> {
     Ok(found.len())
 }
 
-fn is_recording(path: &Path, endings: &[String]) -> bool {
-    let hidden = path.parts().any(|p| p.as_ref().starts_with('.'));
+/// By its ending; what is hidden below the folder, or in it, is none.
+fn is_recording(path: &Path, folder: &Path, endings: &[String]) -> bool {
+    let hidden = path.prefix_match(folder).is_none_or(|mut below| below.any(|p| p.as_ref().starts_with('.')));
     let name = path.filename().unwrap_or_default().to_lowercase();
     !hidden && endings.iter().any(|e| name.strip_suffix(e).is_some_and(|n| n.ends_with('.')))
 }
@@ -177,8 +178,9 @@ mod tests {
     #[test]
     fn recordings_are_told_by_their_endings() {
         let endings = ["csv".to_owned(), "csv.gz".to_owned()];
-        let is = |path: &str| is_recording(&Path::from(path), &endings);
-        assert!(is("a/unit-1.csv") && is("a/UNIT-1.CSV") && is("a/unit.csv.gz"));
-        assert!(!is("a/csv") && !is("a/unit.json") && !is("a/.trash/unit.csv") && !is("a/.unit.csv"));
+        let is = |path: &str| is_recording(&Path::from(path), &Path::from(".share/a"), &endings);
+        assert!(is(".share/a/unit-1.csv") && is(".share/a/b/UNIT-1.CSV") && is(".share/a/unit.csv.gz"));
+        assert!(!is(".share/a/.trash/unit.csv") && !is(".share/a/.unit.csv"));
+        assert!(!is(".share/a/csv") && !is(".share/a/unit.json") && !is(".share/other/unit.csv"));
     }
 }

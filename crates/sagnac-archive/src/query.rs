@@ -5,9 +5,10 @@
 //! into portions, and sent to several machines.
 
 use crate::functions::{Function, Key};
+use datafusion::arrow::datatypes::DataType;
 use datafusion::common::tree_node::{TreeNode, TreeNodeRecursion};
 use datafusion::common::{Result, ScalarValue};
-use datafusion::logical_expr::{Expr, LogicalPlan, ScalarUDF, lit};
+use datafusion::logical_expr::{Expr, LogicalPlan, ScalarUDF, cast, lit};
 use datafusion::prelude::col;
 
 /// Columns of what is left to do, in their order: what the call of a query gave for a row, and the key of the job.
@@ -52,14 +53,16 @@ impl RowQuery {
     /// The columns [`PENDING`] from the rows; `at` is the time of evaluation where the query states none.
     pub fn pending(&self, at: &str) -> Vec<Expr> {
         let null = || Expr::Literal(ScalarValue::Utf8(None), None);
-        let argument = |place: usize| self.arguments.get(place).cloned().unwrap_or_else(null);
+        // A bare NULL has no type of its own.
+        let text = |expression: &Expr| cast(expression.clone(), DataType::Utf8);
+        let argument = |place: usize| self.arguments.get(place).map_or_else(null, text);
         let (procedure, limits, model, next) = match self.function {
             Function::Analyze => (null(), null(), null(), 1),
             Function::Run => (argument(1), argument(2), null(), 3),
             Function::Explain => (null(), null(), argument(1), 2),
         };
         let (uri, unit) = (argument(0), argument(next));
-        let at = self.arguments.get(next + 1).cloned().unwrap_or_else(|| lit(at));
+        let at = self.arguments.get(next + 1).map_or_else(|| lit(at), text);
         let identity = vec![
             lit(self.function.name()),
             uri.clone(),

@@ -32,7 +32,10 @@ pub fn runtime() -> Result<Arc<RuntimeEnv>> {
 ///
 /// # Errors
 /// As [`runtime`].
-pub fn state(config: SessionConfig) -> Result<SessionState> {
+pub fn state(mut config: SessionConfig) -> Result<SessionState> {
+    // It would put a call, volatile or not, in the place of each use of its result: a recording would be evaluated for every member
+    // that a query reads.
+    config.options_mut().optimizer.enable_leaf_expression_pushdown = false;
     let mut state = SessionStateBuilder::new()
         .with_config(config)
         .with_runtime_env(runtime()?)

@@ -128,7 +128,7 @@ pub fn fetch(named: &str) -> std::result::Result<Fetched, Failure> {
             Ok(path) => local(path, named),
             Err(()) => Err(Failure::new(FailureKind::Argument, format!("{named}: no path of this machine"))),
         },
-        _ => downloads()?.block_on(download(&url)),
+        _ => waited(download(url)),
     }
 }
 
@@ -153,10 +153,24 @@ fn downloads() -> std::result::Result<&'static tokio::runtime::Runtime, Failure>
     runtime.as_ref().map_err(|e| Failure::new(FailureKind::Access, format!("no thread for downloads: {e}")))
 }
 
-async fn download(url: &Url) -> std::result::Result<Fetched, Failure> {
+/// Waits for a download on any thread: one of DataFusion's may not wait for a future itself.
+fn waited(
+    download: impl Future<Output = std::result::Result<Fetched, Failure>> + Send + 'static,
+) -> std::result::Result<Fetched, Failure> {
+    let (done, answer) = std::sync::mpsc::sync_channel(1);
+    downloads()?.spawn(async move {
+        // Nobody waits any more only when the process ends.
+        let _ = done.send(download.await);
+    });
+    answer
+        .recv()
+        .unwrap_or_else(|e| Err(Failure::new(FailureKind::Program, format!("a download broke off: {e}"))))
+}
+
+async fn download(url: Url) -> std::result::Result<Fetched, Failure> {
     use futures::StreamExt;
     let access = |e: &dyn std::fmt::Display| Failure::new(FailureKind::Access, format!("{url}: {e}"));
-    let (store, path) = open(url).map_err(|e| Failure::new(FailureKind::Argument, e.to_string()))?;
+    let (store, path) = open(&url).map_err(|e| Failure::new(FailureKind::Argument, e.to_string()))?;
     let found = store.get(&path).await.map_err(|e| match e {
         object_store::Error::NotFound { .. } => {
             Failure::new(FailureKind::Missing, format!("{url}: there is no such object"))

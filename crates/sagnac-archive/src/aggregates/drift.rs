@@ -97,7 +97,7 @@ impl Finish for Course {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use datafusion::arrow::array::{Array, AsArray};
+    use datafusion::arrow::array::AsArray;
     use datafusion::arrow::datatypes::Float64Type;
 
     #[test]

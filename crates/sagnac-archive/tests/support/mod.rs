@@ -92,7 +92,7 @@ impl Archive {
 
 /// The program with some arguments.
 pub fn command(args: &[&str]) -> Command {
-    let mut command = Command::new(assert_cmd::cargo::cargo_bin!("sagnac-archive"));
+    let mut command = Command::new(env!("CARGO_BIN_EXE_sagnac-archive"));
     command.args(args);
     command
 }
