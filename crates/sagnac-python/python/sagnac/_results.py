@@ -49,6 +49,13 @@ def _shown(cell: object) -> str:
     return f"{cell:.6g}" if isinstance(cell, float) else str(cell)
 
 
+def _estimate(m: Measurand) -> str:
+    """The value, or the bound where the recording does not show one."""
+    if m.value is None and m.upper_limit is not None:
+        return f"< {m.upper_limit.value:.4g} ({100 * m.upper_limit.level:g} %)"
+    return _shown(m.value)
+
+
 def _span(interval: Interval | None) -> str:
     return "–" if interval is None else f"{interval[0]:.6g} … {interval[1]:.6g}"
 
@@ -220,7 +227,7 @@ class RunResult(Result):
 
     def _repr_html_(self) -> str:
         rows = [
-            (m.id, m.channel, m.value, m.unit, _span(m.interval), m.verdict) for m in self.measurands
+            (m.id, m.channel, _estimate(m), m.unit, _span(m.interval), m.verdict) for m in self.measurands
         ]
         heads = ("measurand", "channel", "value", "unit", "95 % interval", "verdict")
         summary = "".join(f"<p>{html.escape(line)}</p>" for line in self.summary)
@@ -327,7 +334,7 @@ class Noise:
         return "<Noise: " + "; ".join(map(str, self.terms)) + ">"
 
     def _repr_html_(self) -> str:
-        rows = [(m.id, m.value, m.unit, _span(m.interval)) for m in self.measurands]
+        rows = [(m.id, _estimate(m), m.unit, _span(m.interval)) for m in self.measurands]
         drawn = "".join(f"<div>{figure.svg}</div>" for figure in self._drawings)
         return _table(("measurand", "value", "unit", "95 % interval"), rows) + drawn
 
