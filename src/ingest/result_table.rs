@@ -63,14 +63,15 @@ pub fn results_in(path: &Path) -> Result<impl Iterator<Item = Result<TableResult
     };
     let file = File::open(path).map_err(|e| unreadable(sagnac_ingest::io_reason(&e).into()))?;
     let reader = SerializedFileReader::new(file).map_err(|e| unreadable(e.to_string().into()))?;
-    let fields = reader.metadata().file_metadata().schema().get_fields().to_vec();
+    let root = reader.metadata().file_metadata().schema();
+    let (name, fields) = (root.name().to_owned(), root.get_fields().to_vec());
     let has = |name: &str| fields.iter().any(|f| f.name() == name && f.is_primitive());
     if !has(RECORD) {
         return Err(Note::new("result_table.no_records").with("path", shown).with("column", RECORD));
     }
     let named = has(URI);
     let wanted = fields.into_iter().filter(|f| f.name() == RECORD || (named && f.name() == URI)).collect();
-    let schema = Type::group_type_builder("results").with_fields(wanted).build();
+    let schema = Type::group_type_builder(&name).with_fields(wanted).build();
     let schema = schema.map_err(|e| unreadable(e.to_string().into()))?;
     let rows = reader.into_iter().project(Some(schema)).map_err(|e| unreadable(e.to_string().into()))?;
     Ok(rows.enumerate().map(move |(i, row)| {

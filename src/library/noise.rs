@@ -1,5 +1,6 @@
 //! The noise of a gyro at rest, from its samples.
 
+use super::recording::checked_interval;
 use super::{Error, Rate};
 use crate::acceptance::figures::{allan_family, sigma_tau};
 use crate::estimate::Estimate;
@@ -177,15 +178,6 @@ pub fn draw(curves: &[AllanCurve], sample_interval_s: f64) -> Figure {
         (c.estimator, points.map(|p| (p.point.m as f64 * sample_interval_s, *p)).collect())
     };
     allan_family::of_curves(&curves.iter().map(curve).collect::<Vec<_>>(), "", false, "")
-}
-
-/// A sample interval that can be used, s.
-pub(super) fn checked_interval(sample_interval_s: f64) -> Result<f64, Error> {
-    if sample_interval_s > 0.0 && sample_interval_s.is_finite() {
-        return Ok(sample_interval_s);
-    }
-    let given = sample_interval_s.to_string();
-    Err(Error::argument(Note::new("library.interval").with("given", given)))
 }
 
 /// Hands samples on in blocks, with the index of the first of each.

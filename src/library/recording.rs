@@ -1,7 +1,6 @@
 //! A recording as a program holds it: files on disk, or columns in memory.
 
 use super::Error;
-use super::noise::checked_interval;
 use crate::acceptance::inspect::inspect_source;
 use crate::config::manifest::Manifest;
 use crate::i18n::{Lang, Note};
@@ -254,4 +253,13 @@ impl Rate {
     pub fn sample_interval_s(&self) -> f64 {
         self.sample_interval_s
     }
+}
+
+/// A sample interval that can be used, s.
+pub(super) fn checked_interval(sample_interval_s: f64) -> Result<f64, Error> {
+    if sample_interval_s > 0.0 && sample_interval_s.is_finite() {
+        return Ok(sample_interval_s);
+    }
+    let given = sample_interval_s.to_string();
+    Err(Error::argument(Note::new("library.interval").with("given", given)))
 }

@@ -80,15 +80,12 @@ pub fn identify_digest(
 /// A first look: lines, and N, B, K, Q and R alone, over the widest range of frequencies in which they describe the record. No process
 /// and no filter is searched for, which takes most of the time of [`identify_digest`]. The arguments are those of it.
 pub fn identify_terms(channel: &str, digest: &RateDigest, tau0_s: f64, line_false_alarm: f64) -> RecordNoise {
-    let lines = find_lines(&digest.welch.spectrum, tau0_s, line_false_alarm).lines;
-    let record = SpectralRecord::of_digest(digest, &lines, tau0_s);
-    let whole = record.evidence(&[]);
-    let mut coherent = retain(&lines, |l| is_coherent(&whole, l));
-    sinusoids::fit(record.blocks, tau0_s, &mut coherent);
-    // What is narrow and not coherent is left out of the fit too.
-    let evidence = record.evidence(&lines);
+    // A narrow peak counts as a line whether or not it stays coherent: only a process could take its place.
+    let mut lines = find_lines(&digest.welch.spectrum, tau0_s, line_false_alarm).lines;
+    sinusoids::fit(&digest.blocks, tau0_s, &mut lines);
+    let evidence = SpectralRecord::of_digest(digest, &lines, tau0_s).evidence(&lines);
     let ranged = identify_in_range(channel, &evidence, 0.5 / tau0_s, &Options::standard_terms());
-    let mut noise = RecordNoise { ranged, lines: coherent };
+    let mut noise = RecordNoise { ranged, lines };
     describe_lines(&mut noise.ranged.identification.described, &noise.lines);
     noise
 }
