@@ -138,7 +138,7 @@ fn a_recording_that_is_listed_twice_is_done_once() {
 fn what_is_out_of_reach_is_tried_again_later() {
     let archive = Archive::of(2, 300);
     // The server of the bucket is away.
-    let sql = "SELECT sagnac_analyze('s3://bucket/' || uri) FROM jobs";
+    let sql = "SELECT sagnac_analyze('s3://bucket' || uri) FROM jobs";
     let (jobs, out) = (archive.path("jobs"), archive.path("away"));
     let mut run = command(&["run", sql, "--jobs", &jobs, "--out", &out]);
     run.env("AWS_ENDPOINT", format!("http://127.0.0.1:{}", port())).env("AWS_ALLOW_HTTP", "true");

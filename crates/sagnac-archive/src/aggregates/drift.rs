@@ -1,11 +1,11 @@
 //! `sagnac_drift`: the course of a quantity of one unit.
 
-use super::numbers::{Finish, Kept, state_fields};
+use super::numbers::{Finish, Kept, Row, WIDTH, state_fields};
 use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Fields};
 use datafusion::common::scalar::ScalarStructBuilder;
 use datafusion::common::{Result, ScalarValue};
 use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
-use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, Signature, Volatility};
+use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, GroupsAccumulator, Signature, Volatility};
 use sagnac_core::lot::control_chart::Measured;
 use sagnac_core::lot::drift::drift;
 use std::sync::Arc;
@@ -17,9 +17,6 @@ use std::sync::Arc;
 pub struct Drift {
     signature: Signature,
 }
-
-/// Arguments: time, value, standard uncertainty.
-const WIDTH: usize = 3;
 
 impl Drift {
     /// The function.
@@ -55,11 +52,19 @@ impl AggregateUDFImpl for Drift {
     }
 
     fn accumulator(&self, _args: AccumulatorArgs) -> Result<Box<dyn Accumulator>> {
-        Ok(Box::new(Kept::new(WIDTH, Course)))
+        Ok(Box::new(Kept::new(Course)))
+    }
+
+    fn groups_accumulator_supported(&self, _args: AccumulatorArgs) -> bool {
+        true
+    }
+
+    fn create_groups_accumulator(&self, _args: AccumulatorArgs) -> Result<Box<dyn GroupsAccumulator>> {
+        Ok(Box::new(Kept::new(Course)))
     }
 
     fn state_fields(&self, _args: StateFieldsArgs) -> Result<Vec<FieldRef>> {
-        Ok(state_fields(WIDTH))
+        Ok(state_fields())
     }
 }
 
@@ -67,13 +72,11 @@ impl AggregateUDFImpl for Drift {
 struct Course;
 
 impl Finish for Course {
-    fn finish(&self, rows: &[Vec<f64>]) -> Result<ScalarValue> {
+    fn finish(&self, rows: &[Row]) -> Result<ScalarValue> {
         let (mut times, mut values) = (vec![], vec![]);
-        for row in rows {
-            if let [time, value, standard] = *row.as_slice() {
-                times.push(time);
-                values.push(Measured { value, standard });
-            }
+        for [time, value, standard] in rows.iter().copied() {
+            times.push(time);
+            values.push(Measured { value, standard });
         }
         let Some(found) = drift(&times, &values, 0.0) else {
             return ScalarValue::try_new_null(&DataType::Struct(fields()));
@@ -102,16 +105,18 @@ mod tests {
 
     #[test]
     fn a_line_is_found_whatever_the_order_of_its_rows() {
-        let rows = [vec![2.0, 5.0, 0.1], vec![0.0, 1.0, 0.1], vec![1.0, 3.0, 0.1]];
-        let mut kept = Kept::new(WIDTH, Course);
+        let rows: [Row; 3] = [[2.0, 5.0, 0.1], [0.0, 1.0, 0.1], [1.0, 3.0, 0.1]];
+        let mut kept = Kept::new(Course);
         for row in &rows {
             let columns: Vec<_> = row.iter().map(|v| ScalarValue::from(*v).to_array().unwrap()).collect();
-            kept.update_batch(&columns).unwrap();
+            Accumulator::update_batch(&mut kept, &columns).unwrap();
         }
-        let mut merged = Kept::new(WIDTH, Course);
-        let state: Vec<_> = kept.state().unwrap().into_iter().map(|s| s.to_array().unwrap()).collect();
-        merged.merge_batch(&state).unwrap();
-        let (own, other) = (kept.evaluate().unwrap(), merged.evaluate().unwrap());
+        let mut merged = Kept::new(Course);
+        let state: Vec<_> =
+            Accumulator::state(&mut kept).unwrap().into_iter().map(|s| s.to_array().unwrap()).collect();
+        Accumulator::merge_batch(&mut merged, &state).unwrap();
+        let (own, other) =
+            (Accumulator::evaluate(&mut kept).unwrap(), Accumulator::evaluate(&mut merged).unwrap());
         assert_eq!(own, other);
         let ScalarValue::Struct(found) = own else { panic!("no struct") };
         let number = |i: usize| found.column(i).as_primitive::<Float64Type>().value(0);
@@ -122,6 +127,6 @@ mod tests {
 
     #[test]
     fn one_value_has_no_course() {
-        assert!(Course.finish(&[vec![0.0, 1.0, 0.1]]).unwrap().is_null());
+        assert!(Course.finish(&[[0.0, 1.0, 0.1]]).unwrap().is_null());
     }
 }

@@ -1,11 +1,13 @@
 //! `sagnac_tolerance_upper`, `sagnac_tolerance_lower`: what the values of some units promise of all.
 
-use super::numbers::{Finish, Kept, state_fields};
+use super::numbers::{Finish, Kept, Row, WIDTH, state_fields};
 use datafusion::arrow::datatypes::{DataType, FieldRef};
 use datafusion::common::{DataFusionError, Result, ScalarValue};
 use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
-use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, Signature, Volatility};
+use datafusion::logical_expr::{Accumulator, AggregateUDFImpl, GroupsAccumulator, Signature, Volatility};
 use sagnac_core::lot::tolerance::{Promise, normal_factor};
+use std::collections::BTreeMap;
+use std::sync::{Mutex, PoisonError};
 
 /// The side on which a bound lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -24,9 +26,6 @@ pub struct Tolerance {
     side: Side,
     signature: Signature,
 }
-
-/// Arguments: value, proportion, confidence.
-const WIDTH: usize = 3;
 
 impl Tolerance {
     /// The function for one side.
@@ -52,18 +51,38 @@ impl AggregateUDFImpl for Tolerance {
     }
 
     fn accumulator(&self, _args: AccumulatorArgs) -> Result<Box<dyn Accumulator>> {
-        Ok(Box::new(Kept::new(WIDTH, self.side)))
+        Ok(Box::new(Kept::new(self.side)))
+    }
+
+    fn groups_accumulator_supported(&self, _args: AccumulatorArgs) -> bool {
+        true
+    }
+
+    fn create_groups_accumulator(&self, _args: AccumulatorArgs) -> Result<Box<dyn GroupsAccumulator>> {
+        Ok(Box::new(Kept::new(self.side)))
     }
 
     fn state_fields(&self, _args: StateFieldsArgs) -> Result<Vec<FieldRef>> {
-        Ok(state_fields(WIDTH))
+        Ok(state_fields())
     }
 }
 
+/// The factor of a sample of some size. It costs 1.5 ms, and a sheet of many lots asks for the same few sizes.
+fn factor(size: usize, promise: Promise) -> Option<f64> {
+    static KNOWN: Mutex<BTreeMap<[u64; 3], Option<f64>>> = Mutex::new(BTreeMap::new());
+    let key = [size as u64, promise.proportion.to_bits(), promise.confidence.to_bits()];
+    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(factor) = known().get(&key) {
+        return *factor;
+    }
+    let factor = normal_factor(size as f64, size as f64 - 1.0, promise);
+    known().insert(key, factor);
+    factor
+}
+
 impl Finish for Side {
-    fn finish(&self, rows: &[Vec<f64>]) -> Result<ScalarValue> {
-        let column = |i: usize| rows.iter().filter_map(move |row| row.get(i).copied());
-        let (Some(proportion), Some(confidence)) = (column(1).next(), column(2).next()) else {
+    fn finish(&self, rows: &[Row]) -> Result<ScalarValue> {
+        let Some([_, proportion, confidence]) = rows.first().copied() else {
             return Ok(ScalarValue::Float64(None));
         };
         let probability = |p: f64| p > 0.0 && p < 1.0;
@@ -72,9 +91,9 @@ impl Finish for Side {
             return Err(DataFusionError::Execution(text.to_owned()));
         }
         let size = rows.len() as f64;
-        let mean = column(0).sum::<f64>() / size;
-        let squares = column(0).map(|v| (v - mean).powi(2)).sum::<f64>();
-        let bound = normal_factor(size, size - 1.0, Promise { proportion, confidence }).map(|factor| {
+        let mean = rows.iter().map(|[v, ..]| v).sum::<f64>() / size;
+        let squares = rows.iter().map(|[v, ..]| (v - mean).powi(2)).sum::<f64>();
+        let bound = factor(rows.len(), Promise { proportion, confidence }).map(|factor| {
             let reach = factor * (squares / (size - 1.0)).sqrt();
             match self {
                 Side::Upper => mean + reach,
@@ -92,8 +111,8 @@ mod tests {
     #[test]
     fn bounds_are_those_of_the_tables() {
         // Ten values 1..=10: mean 5.5, s 3.0277; 95/95 has k = 2.91096.
-        let rows: Vec<Vec<f64>> = (1..=10).map(|v| vec![f64::from(v), 0.95, 0.95]).collect();
-        let bound = |side: Side, rows: &[Vec<f64>]| match side.finish(rows).unwrap() {
+        let rows: Vec<Row> = (1..=10).map(|v| [f64::from(v), 0.95, 0.95]).collect();
+        let bound = |side: Side, rows: &[Row]| match side.finish(rows).unwrap() {
             ScalarValue::Float64(bound) => bound,
             other => panic!("{other}"),
         };
@@ -102,6 +121,6 @@ mod tests {
         assert!((bound(Side::Lower, &rows).unwrap() - 5.5 + reach).abs() < 1e-4);
         assert_eq!(bound(Side::Upper, &rows[..1]), None);
         assert_eq!(bound(Side::Upper, &[]), None);
-        assert!(Side::Upper.finish(&[vec![1.0, 1.0, 0.95]]).is_err());
+        assert!(Side::Upper.finish(&[[1.0, 1.0, 0.95]]).is_err());
     }
 }
