@@ -1,6 +1,9 @@
 //! The comparison of Russian and Allan values against simulated truth, in short. The studies are
 //! `cargo xtask validate comparison published-devices`.
 
+#[path = "support/long.rs"]
+mod long;
+
 use sagnac::noise::composite::{Composite, Described, Line};
 use sagnac::noise::prediction::{Agreement, WindowPrediction};
 use sagnac::noise::simulate::{Setup, Simulator};
@@ -11,6 +14,9 @@ use sagnac_studies::comparison::{
 
 #[test]
 fn predicted_covers_observed_in_simulated_units() {
+    if !long::wanted("predicted_covers_observed_in_simulated_units") {
+        return;
+    }
     for (i, (name, model)) in mixes().into_iter().enumerate().filter(|(_, m)| m.0 != "N+R") {
         let t = study(&model, 10.0, 2.0, 60, 100 + i as u64);
         // 95 % of 60 is 57 with a standard deviation of 1.7.

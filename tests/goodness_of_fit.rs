@@ -1,6 +1,9 @@
 //! Goodness of fit on simulated records: correct models are called wrong as often as stated, and departures are found
 //! and placed. The study is `cargo xtask validate goodness-of-fit`.
 
+#[path = "support/long.rs"]
+mod long;
+
 use sagnac::noise::composite::{Composite, Damped, Described};
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::residual::{GoodnessOfFit, View};
@@ -8,6 +11,9 @@ use sagnac_studies::goodness_of_fit::{Record, false_alarms, p_value, simulated};
 
 #[test]
 fn correct_models_are_called_wrong_as_often_as_stated() {
+    if !long::wanted("correct_models_are_called_wrong_as_often_as_stated") {
+        return;
+    }
     // At 5 %: in 60 records of each mix, 11 or more come with a probability of 1e-4.
     for (name, shares) in false_alarms(60, 4_000_000, [0.05]) {
         for (view, share) in View::ALL.iter().zip(shares[0]) {
