@@ -144,12 +144,13 @@ impl DatasheetArgs {
 
 /// The results that a path stands for: those of a folder, a file of one, or tables of many.
 fn result_files(path: &Path) -> Vec<PathBuf> {
-    let record = path.join(Kind::Result.record_file());
-    match tables_at(path) {
-        tables if !tables.is_empty() && !record.is_file() => tables,
-        _ if path.is_dir() => vec![record],
-        _ => vec![path.to_owned()],
+    if !path.is_dir() {
+        return vec![path.to_owned()];
     }
+    let record = path.join(Kind::Result.record_file());
+    // The folder of a result is not searched.
+    let tables = if record.is_file() { vec![] } else { tables_at(path) };
+    if tables.is_empty() { vec![record] } else { tables }
 }
 
 /// The units of a file: one of a result, those of all rows of a table.
