@@ -102,7 +102,7 @@ pub fn explain(recording: &Recording, model: &Model) -> Result<Explanation, Erro
     explain_watched(recording, model, &Options::default(), &mut |_| {})
 }
 
-/// The same with options; `progress` is told how far the work is.
+/// The same with options; `progress` receives each step of the work.
 ///
 /// # Errors
 /// As [`explain`].

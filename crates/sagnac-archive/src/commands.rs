@@ -1,4 +1,4 @@
-//! What the program is told to do.
+//! The commands of the program and their options.
 
 use clap::{Args, Subcommand};
 use datafusion::arrow::csv::WriterBuilder;

@@ -85,7 +85,7 @@ impl Job {
         if problems.is_empty() { Ok(job) } else { Err(problems) }
     }
 
-    /// The query that the job stands for. Files that it names stand beside it, in `base`, where they are no whole paths.
+    /// The query of the job. Relative paths in it are resolved against `base`, the folder of the job file.
     pub fn sql(&self, base: &Path) -> String {
         let argument = |value: &Option<Spanned<String>>, column: &str| match value {
             Some(text) => format!("'{}'", beside(base, text.get_ref()).replace('\'', "''")),
