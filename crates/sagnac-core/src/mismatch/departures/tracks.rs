@@ -10,6 +10,7 @@ use crate::estimate::ln_chi_square_tail;
 use crate::mismatch::spectral_data::SpectralData;
 use rayon::prelude::*;
 use sagnac_fft::real_forward;
+use std::ops::Range;
 
 /// Numbers of segments that the record is cut into.
 const SEGMENTS: [usize; 2] = [16, 64];
@@ -21,6 +22,8 @@ const SHORTEST: usize = 32;
 const PART: usize = 4;
 /// Frequencies at the lower end that are left out: the mean of a segment and what leaks from it.
 const LEFT_OUT: usize = 4;
+/// Tracks that are followed together.
+const SIDE_BY_SIDE: usize = 64;
 
 /// The best part of a track of some number of segments.
 #[derive(Clone, Copy)]
@@ -65,38 +68,17 @@ fn over(series: &[f64], segments: usize) -> Option<(Best, usize, f64)> {
     let bins = length;
     let reach = (MAX_TRACKS / (2 * bins)).clamp(1, bins);
     let parts = parts(segments);
-    let lengths: Vec<usize> = {
-        let mut all: Vec<usize> = parts.iter().map(|(from, to)| to - from).collect();
-        all.sort_unstable();
-        all.dedup();
-        all
-    };
-    let place = |n: usize| lengths.binary_search(&n).unwrap_or(0);
-    let of_start = |first: usize| {
-        let mut best = vec![NONE; lengths.len()];
-        let mut sums = vec![0.0; segments + 1];
-        let (low, high) = (first.saturating_sub(reach).max(LEFT_OUT), (first + reach).min(bins - 1));
-        for last in low..=high {
-            let step = (last as f64 - first as f64) / (segments - 1) as f64;
-            for s in 0..segments {
-                let bin = (first as f64 + step * s as f64 + 0.5) as usize;
-                sums[s + 1] = sums[s] + powers[s * bins + bin];
-            }
-            for (from, to) in &parts {
-                let power = sums[*to] - sums[*from];
-                let slot = &mut best[place(to - from)];
-                if power > slot.power {
-                    let bin = |s: usize| (first as f64 + step * s as f64 + 0.5) as usize;
-                    *slot = Best { power, segments: (*from, *to), bins: (bin(*from), bin(to - 1)) };
-                }
-            }
-        }
-        best
-    };
+    let mut lengths: Vec<usize> = parts.iter().map(|p| p.len()).collect();
+    lengths.sort_unstable();
+    lengths.dedup();
+    let place = |part: &Range<usize>| lengths.binary_search(&part.len()).unwrap_or(0);
+    let placed: Vec<(Range<usize>, usize)> = parts.iter().map(|p| (p.clone(), place(p))).collect();
+    let slopes = -(reach as isize)..=reach as isize;
+    let best = slopes.into_par_iter().map(|change| of_slope(change, &powers, segments, bins, &placed));
     let larger = |a: Vec<Best>, b: Vec<Best>| {
         a.into_iter().zip(b).map(|(a, b)| if b.power > a.power { b } else { a }).collect::<Vec<Best>>()
     };
-    let best = (LEFT_OUT..bins).into_par_iter().map(of_start).reduce(|| vec![NONE; lengths.len()], larger);
+    let best = best.reduce(|| vec![NONE; lengths.len()], larger);
     let trials = ((bins * (2 * reach).min(bins) * parts.len()) as f64).ln();
     let rated = lengths.iter().zip(best).map(|(n, best)| {
         (best, length, (ln_chi_square_tail(2.0 * best.power, 2.0 * *n as f64) + trials).min(0.0))
@@ -104,13 +86,63 @@ fn over(series: &[f64], segments: usize) -> Option<(Best, usize, f64)> {
     rated.min_by(|a, b| a.2.total_cmp(&b.2))
 }
 
+/// The best tracks that rise by `change` bins over the record, one a place of the parts. Many are followed side by side.
+fn of_slope(
+    change: isize,
+    powers: &[f64],
+    segments: usize,
+    bins: usize,
+    parts: &[(Range<usize>, usize)],
+) -> Vec<Best> {
+    // There are no more places than parts.
+    let mut best = vec![NONE; parts.len()];
+    let mut sums = vec![[0.0; SIDE_BY_SIDE]; segments + 1];
+    let step = change as f64 / (segments - 1) as f64;
+    let offsets: Vec<isize> = (0..segments).map(|s| (step * s as f64 + 0.5).floor() as isize).collect();
+    let (lowest, highest) = (LEFT_OUT as isize, bins as isize - 1);
+    // Both ends are among the bins that are looked at.
+    let (low, high) = (lowest.max(lowest - change), highest.min(highest - change));
+    for first in (low..=high).step_by(SIDE_BY_SIDE) {
+        let width = SIDE_BY_SIDE.min((high - first + 1) as usize);
+        for (s, offset) in offsets.iter().enumerate() {
+            let begin = s * bins + (first + offset) as usize;
+            let (before, after) = sums.split_at_mut(s + 1);
+            let (before, after) = (&before[s], &mut after[0]);
+            let terms = before.iter().zip(&powers[begin..begin + width]);
+            after.iter_mut().zip(terms).for_each(|(sum, (before, power))| *sum = before + power);
+            after[width..].fill(0.0);
+        }
+        for (part, place) in parts {
+            let mut part_powers = sums[part.end];
+            part_powers.iter_mut().zip(&sums[part.start]).for_each(|(power, before)| *power -= before);
+            let most = largest(&part_powers);
+            if most > best[*place].power {
+                let at = part_powers.iter().position(|p| *p >= most).unwrap_or(0) as isize;
+                let bin = |s: usize| (first + at + offsets[s]) as usize;
+                let bins = (bin(part.start), bin(part.end - 1));
+                best[*place] = Best { power: most, segments: (part.start, part.end), bins };
+            }
+        }
+    }
+    best
+}
+
+/// The largest of some powers.
+fn largest(powers: &[f64; SIDE_BY_SIDE]) -> f64 {
+    let mut lanes = [0.0; 8];
+    for chunk in powers.chunks_exact(lanes.len()) {
+        lanes.iter_mut().zip(chunk).for_each(|(most, p)| *most = if *p > *most { *p } else { *most });
+    }
+    lanes.into_iter().fold(0.0, f64::max)
+}
+
 /// Dyadic parts of a track, overlapping by half, and the whole of it.
-fn parts(segments: usize) -> Vec<(usize, usize)> {
+fn parts(segments: usize) -> Vec<Range<usize>> {
     let mut out = vec![];
     let mut length = segments;
     while length >= PART {
         let step = (length / 2).max(1);
-        out.extend((0..=segments - length).step_by(step).map(|from| (from, from + length)));
+        out.extend((0..=segments - length).step_by(step).map(|from| from..from + length));
         length /= 2;
     }
     out
@@ -175,6 +207,6 @@ mod tests {
 
     #[test]
     fn parts_cover_a_track_in_dyadic_lengths() {
-        assert_eq!(parts(8), [(0, 8), (0, 4), (2, 6), (4, 8)]);
+        assert_eq!(parts(8), [0..8, 0..4, 2..6, 4..8]);
     }
 }
