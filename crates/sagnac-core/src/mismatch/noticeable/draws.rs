@@ -7,11 +7,25 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Spectra that are drawn.
 const DRAWS: usize = 400;
+/// Of them in a group.
+const SIDE_BY_SIDE: usize = 16;
+/// Largest share of the variance of a gain that bins have together which are held at their means.
+const QUIET: f64 = 1e-3;
 /// Seed of the spectra: a report is a function of recording and claim alone.
 const SEED: u64 = 0x5a67_6e61_6320_0008;
 
-/// Mean squares of the modes over what is expected of them: for each bin those of all spectra side by side.
-pub(super) struct Draws(Vec<Vec<f64>>);
+/// Mean squares of the modes over what is expected of them, of the spectra of a group side by side.
+struct Group {
+    /// One entry a bin.
+    bins: Vec<[f64; SIDE_BY_SIDE]>,
+}
+
+/// Spectra drawn from one that is 1 everywhere.
+pub(super) struct Draws {
+    groups: Vec<Group>,
+    /// Degrees of freedom of each bin.
+    weights: Vec<f64>,
+}
 
 /// A spectrum that may be the true one: its densities, and what stands beside them in the log-likelihood.
 pub(super) struct Rival {
@@ -19,41 +33,73 @@ pub(super) struct Rival {
     pub prior: f64,
 }
 
+/// What a bin does to the gains of all rivals.
+struct Telling {
+    bin: usize,
+    /// Gain of each rival for a mean square of 1 in this bin.
+    factors: Vec<f64>,
+}
+
 impl Draws {
     pub fn new(spectral: &SpectralData) -> Draws {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
-        let one = |bin| {
-            let weight = spectral.weight(bin);
-            let law = ChiSquared::new(weight).ok();
-            (0..DRAWS).map(|_| law.map_or(1.0, |l| l.sample(&mut rng) / weight)).collect()
-        };
-        Draws(spectral.bins.iter().map(one).collect())
+        let weights: Vec<f64> = spectral.bins.iter().map(|b| spectral.weight(b)).collect();
+        let mut groups: Vec<Group> = (0..DRAWS / SIDE_BY_SIDE).map(|_| Group { bins: vec![] }).collect();
+        for weight in &weights {
+            let law = ChiSquared::new(*weight).ok();
+            for group in &mut groups {
+                group.bins.push(std::array::from_fn(|_| law.map_or(1.0, |l| l.sample(&mut rng) / weight)));
+            }
+        }
+        Draws { groups, weights }
     }
 
     /// Twice the gain of the best of some rivals over another, which 95 of 100 spectra drawn from `truth` exceed.
-    pub fn lowest(&self, truth: &[f64], rivals: &[Rival], over: &Rival, spectral: &SpectralData) -> f64 {
-        let weights: Vec<f64> = spectral.bins.iter().map(|b| spectral.weight(b)).collect();
+    pub fn lowest(&self, truth: &[f64], rivals: &[Rival], over: &Rival) -> f64 {
         // Linear in the mean squares: a constant and a factor for each bin.
-        let of = |rival: &Rival| {
-            let terms = rival.densities.iter().zip(&over.densities).zip(&weights);
-            let constant: f64 = terms.clone().map(|((s, o), n)| n * (o / s).ln()).sum();
-            let factors: Vec<f64> =
-                terms.zip(truth).map(|(((s, o), n), t)| n * t * (1.0 / o - 1.0 / s)).collect();
-            (constant + 2.0 * (rival.prior - over.prior), factors)
+        let constant = |rival: &Rival| {
+            let terms = rival.densities.iter().zip(&over.densities).zip(&self.weights);
+            terms.map(|((s, o), n)| n * (o / s).ln()).sum::<f64>() + 2.0 * (rival.prior - over.prior)
         };
-        let rivals: Vec<(f64, Vec<f64>)> = rivals.iter().map(of).collect();
-        let mut each: Vec<Vec<f64>> = rivals.iter().map(|(constant, _)| vec![*constant; DRAWS]).collect();
-        // Bin by bin, so that the spectra of a bin are read once for all rivals.
-        for (bin, drawn) in self.0.iter().enumerate() {
-            for (gains, (_, factors)) in each.iter_mut().zip(&rivals) {
-                let factor = factors.get(bin).copied().unwrap_or(0.0);
-                gains.iter_mut().zip(drawn).for_each(|(g, x)| *g += factor * x);
+        let mut constants: Vec<f64> = rivals.iter().map(constant).collect();
+        let telling = self.telling(truth, rivals, over, &mut constants);
+        let mut gains = Vec::with_capacity(DRAWS);
+        for group in &self.groups {
+            let mut best = [f64::NEG_INFINITY; SIDE_BY_SIDE];
+            for (rival, constant) in constants.iter().enumerate() {
+                let mut gain = [*constant; SIDE_BY_SIDE];
+                for Telling { bin, factors } in &telling {
+                    let factor = factors[rival];
+                    gain.iter_mut().zip(&group.bins[*bin]).for_each(|(g, x)| *g += factor * x);
+                }
+                best.iter_mut().zip(gain).for_each(|(b, g)| *b = b.max(g));
             }
+            gains.extend(best);
         }
-        let best =
-            |draw: usize| each.iter().filter_map(|g| g.get(draw)).copied().fold(f64::NEG_INFINITY, f64::max);
-        let mut gains: Vec<f64> = (0..DRAWS).map(best).collect();
         gains.sort_by(f64::total_cmp);
         gains.get(DRAWS / 20).copied().unwrap_or(f64::NAN)
+    }
+
+    /// The bins whose scatter makes that of a gain. What the others gain on average is added to the constants.
+    fn telling(&self, truth: &[f64], rivals: &[Rival], over: &Rival, constants: &mut [f64]) -> Vec<Telling> {
+        let factor = |rival: &Rival, bin: usize| {
+            self.weights[bin] * truth[bin] * (1.0 / over.densities[bin] - 1.0 / rival.densities[bin])
+        };
+        let variance = |factor: f64, bin: usize| 2.0 * factor * factor / self.weights[bin];
+        let all: Vec<Vec<f64>> =
+            (0..self.weights.len()).map(|bin| rivals.iter().map(|r| factor(r, bin)).collect()).collect();
+        let of_rival = |rival: usize| all.iter().enumerate().map(|(bin, f)| variance(f[rival], bin)).sum();
+        let totals: Vec<f64> = (0..rivals.len()).map(of_rival).collect();
+        let share = QUIET / all.len().max(1) as f64;
+        let mut telling = vec![];
+        for (bin, factors) in all.into_iter().enumerate() {
+            let tells = |(f, total): (&f64, &f64)| variance(*f, bin) > share * total;
+            if factors.iter().zip(&totals).any(tells) {
+                telling.push(Telling { bin, factors });
+            } else {
+                constants.iter_mut().zip(&factors).for_each(|(c, f)| *c += f);
+            }
+        }
+        telling
     }
 }

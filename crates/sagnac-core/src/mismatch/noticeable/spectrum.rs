@@ -74,7 +74,7 @@ impl<'a> Expected<'a> {
         fit_expected(&mut without, self.spectral(), &densities);
         let over = Rival { densities: without.densities(self.spectral()), prior: without.prior() };
         let rivals: Vec<Rival> = SIZES.into_iter().map(at).collect();
-        let lowest = self.draws.lowest(&densities, &rivals, &over, self.spectral());
+        let lowest = self.draws.lowest(&densities, &rivals, &over);
         // The noise without the effect is fitted to each record as well.
         lowest + parameters.saturating_sub(1) as f64 - ONE_SIDED_95.powi(2) * (1.0 - spread * spread)
     }
