@@ -76,7 +76,7 @@ impl MeanModel for DriftingLine {
         let plan = real_forward(padded);
         let (mut even, mut odd) = (plan.make_input_vec(), plan.make_input_vec());
         let (mut with_cos, mut with_sin) = (plan.make_output_vec(), plan.make_output_vec());
-        let mut turns = [(0.0, 0.0); BLOCK];
+        let (mut cosine, mut sine) = ([0.0; BLOCK], [0.0; BLOCK]);
         let (middle, step) = (middle_s(drivers), step(drivers));
         let cell = 1.0 / (padded as f64 * drivers.dt_s);
         let Bounds { low, high } = self.bounds(drivers)[0];
@@ -90,8 +90,9 @@ impl MeanModel for DriftingLine {
             let blocks =
                 even[..n].chunks_mut(BLOCK).zip(odd[..n].chunks_mut(BLOCK)).zip(context.score.chunks(BLOCK));
             for (b, ((even, odd), score)) in blocks.enumerate() {
-                swept.turns(b * BLOCK, &mut turns[..score.len()]);
-                for (i, (x, (c, s))) in score.iter().zip(&turns).enumerate() {
+                let (cosine, sine) = (&mut cosine[..score.len()], &mut sine[..score.len()]);
+                swept.turns(b * BLOCK, cosine, sine);
+                for (i, (x, (c, s))) in score.iter().zip(cosine.iter().zip(&*sine)).enumerate() {
                     (even[i], odd[i]) = (x * c, x * s);
                 }
             }

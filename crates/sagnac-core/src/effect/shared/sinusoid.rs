@@ -9,6 +9,8 @@ const SHARE: usize = 1 << 14;
 
 /// Samples through which a sinusoid is rotated from one to the next. A share holds whole blocks of them.
 const ROTATED: usize = 64;
+/// Samples that are rotated side by side.
+const LANES: usize = 8;
 
 /// What a mean over so many cycles leaves of a sinusoid.
 pub(in crate::effect) fn averaged(cycles: f64) -> f64 {
@@ -50,48 +52,109 @@ impl Sweep {
         averaged((self.frequency_hz + self.drift_hz_s * self.time_s(i)) * self.dt_s)
     }
 
-    /// Cosine and sine of the phase, which is 0 at time 0, for the samples from `first` on. By rotation, which starts anew
-    /// from the phase itself before its rounding tells.
-    pub fn turns(&self, first: usize, out: &mut [(f64, f64)]) {
-        let cis = |cycles: f64| {
-            let (s, c) = (2.0 * PI * cycles.fract()).sin_cos();
-            (c, s)
-        };
-        let turned = |a: (f64, f64), b: (f64, f64)| (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0);
-        let (f, drift, dt) = (self.frequency_hz, self.drift_hz_s, self.dt_s);
-        let faster = cis(drift * dt * dt);
-        for (b, block) in out.chunks_mut(ROTATED).enumerate() {
-            let t = self.time_s(first + b * ROTATED);
-            let mut at = cis(f * t + 0.5 * drift * t * t);
-            let mut step = cis(f * dt + drift * dt * (t + 0.5 * dt));
-            for place in block {
-                *place = at;
-                at = turned(at, step);
-                step = turned(step, faster);
-            }
+    /// Cosine and sine of the phase, which is 0 at time 0, for the samples from `first` on: as many as both slices hold.
+    pub fn turns(&self, first: usize, cosine: &mut [f64], sine: &mut [f64]) {
+        let bend = self.bend();
+        let blocks = cosine.chunks_mut(ROTATED).zip(sine.chunks_mut(ROTATED)).enumerate();
+        for (b, (cosine, sine)) in blocks {
+            let turns = self.block(first + b * ROTATED, bend.as_ref());
+            cosine.copy_from_slice(&turns.cosine[..cosine.len()]);
+            sine.copy_from_slice(&turns.sine[..sine.len()]);
         }
     }
 
     /// Cosine and sine of the phase of each sample, with what the sample's own mean leaves of them.
     pub fn pair(&self, samples: usize) -> Vec<Vec<f64>> {
         let (mut cosine, mut sine) = (vec![0.0; samples], vec![0.0; samples]);
+        let bend = self.bend();
         let shares = cosine.par_chunks_mut(SHARE).zip(sine.par_chunks_mut(SHARE)).enumerate();
         shares.for_each(|(share, (cosine, sine))| {
-            let mut turns = [(0.0, 0.0); ROTATED];
             let blocks = cosine.chunks_mut(ROTATED).zip(sine.chunks_mut(ROTATED)).enumerate();
             for (b, (cosine, sine)) in blocks {
-                let (first, n) = (share * SHARE + b * ROTATED, cosine.len());
-                self.turns(first, &mut turns[..n]);
+                let first = share * SHARE + b * ROTATED;
+                let turns = self.block(first, bend.as_ref());
                 // Within a block it changes evenly.
-                let (from, to) = (self.left(first), self.left(first + n));
-                for (i, (c, s)) in turns[..n].iter().enumerate() {
-                    let left = from + (to - from) * i as f64 / n as f64;
-                    (cosine[i], sine[i]) = (left * c, left * s);
+                let from = self.left(first);
+                let each = (self.left(first + ROTATED) - from) / ROTATED as f64;
+                let outputs = cosine.iter_mut().zip(sine).zip(turns.cosine.iter().zip(&turns.sine));
+                for (i, ((c, s), (turned_c, turned_s))) in outputs.enumerate() {
+                    let left = from + each * i as f64;
+                    (*c, *s) = (left * turned_c, left * turned_s);
                 }
             }
         });
         vec![cosine, sine]
     }
+
+    /// What the change of the frequency turns the samples of a block by; `None` for a steady frequency.
+    fn bend(&self) -> Option<Turns> {
+        let cycles = self.drift_hz_s * self.dt_s * self.dt_s;
+        (cycles != 0.0).then(|| {
+            let mut bend = Turns::default();
+            for i in 1..ROTATED {
+                bend.set(i, cis(cycles * (i * (i - 1) / 2) as f64));
+            }
+            bend
+        })
+    }
+
+    /// Cosine and sine of the phase of a block of samples: powers of one step, begun anew in each block before their rounding
+    /// tells. Powers that are [`LANES`] apart do not wait for each other.
+    fn block(&self, first: usize, bend: Option<&Turns>) -> Turns {
+        let (f, drift, dt) = (self.frequency_hz, self.drift_hz_s, self.dt_s);
+        let t = self.time_s(first);
+        let step = cis(f * dt + drift * dt * (t + 0.5 * dt));
+        let mut out = Turns::default();
+        let mut at = cis(f * t + 0.5 * drift * t * t);
+        let mut far = (1.0, 0.0);
+        for i in 0..LANES {
+            out.set(i, at);
+            (at, far) = (turned(at, step), turned(far, step));
+        }
+        for from in (0..ROTATED - LANES).step_by(LANES) {
+            for i in from..from + LANES {
+                let (c, s) = (out.cosine[i], out.sine[i]);
+                out.cosine[i + LANES] = c * far.0 - s * far.1;
+                out.sine[i + LANES] = c * far.1 + s * far.0;
+            }
+        }
+        if let Some(bend) = bend {
+            for i in 0..ROTATED {
+                let at = (out.cosine[i], out.sine[i]);
+                out.set(i, turned(at, (bend.cosine[i], bend.sine[i])));
+            }
+        }
+        out
+    }
+}
+
+/// Cosines and sines of the samples of a block.
+struct Turns {
+    cosine: [f64; ROTATED],
+    sine: [f64; ROTATED],
+}
+
+impl Default for Turns {
+    fn default() -> Turns {
+        Turns { cosine: [1.0; ROTATED], sine: [0.0; ROTATED] }
+    }
+}
+
+impl Turns {
+    fn set(&mut self, i: usize, (cosine, sine): (f64, f64)) {
+        (self.cosine[i], self.sine[i]) = (cosine, sine);
+    }
+}
+
+/// Cosine and sine of a phase in cycles.
+fn cis(cycles: f64) -> (f64, f64) {
+    let (s, c) = (2.0 * PI * cycles.fract()).sin_cos();
+    (c, s)
+}
+
+/// One turn and another after it.
+fn turned(a: (f64, f64), b: (f64, f64)) -> (f64, f64) {
+    (a.0 * b.0 - a.1 * b.1, a.0 * b.1 + a.1 * b.0)
 }
 
 /// Cosine and sine of a frequency; the phase counts from `time_s` = 0.
