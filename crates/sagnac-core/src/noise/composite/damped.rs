@@ -52,19 +52,27 @@ impl Modes {
         let sums = |turn: Complex<f64>| {
             let z = self.rho * turn;
             let last = self.last * turn.conj() * sign;
-            let inverse = one / (one - z);
+            let inverse = inverted(one - z);
             let plain = turn * (one - last) * inverse;
             let weighted = turn * (one - last * m + last * z * (m - 1.0)) * inverse * inverse;
             (plain, weighted)
         };
         let turn = Complex::new(cos, sin);
-        let ((up, up_d), (down, down_d)) = (sums(turn), sums(turn.conj()));
+        let (up, up_d) = sums(turn);
+        // Of a Markov process all but the turn is real: the other direction gives the conjugates.
+        let is_real = self.rho.im == 0.0 && self.last.im == 0.0;
+        let (down, down_d) = if is_real { (up.conj(), up_d.conj()) } else { sums(turn.conj()) };
         let cosine = 0.5 * (up + down);
         let cosine_d = 0.5 * (up_d + down_d);
         let sine = (up - down) / Complex::new(0.0, 2.0);
         let tail = cosine - cosine_d / m - sine / (m * sin);
         (self.scale * (self.gamma0 + 2.0 * (self.first * tail).re)).max(0.0)
     }
+}
+
+/// 1/z, with one division.
+fn inverted(z: Complex<f64>) -> Complex<f64> {
+    z.conj() * (1.0 / z.norm_sqr())
 }
 
 fn expm1_c(z: Complex<f64>) -> Complex<f64> {
@@ -196,7 +204,7 @@ impl Windowed {
                 let z = self.rho * u;
                 // A turn by a whole bin is none after L samples.
                 let last = self.last * round * u.conj();
-                let inverse = one / (one - z);
+                let inverse = inverted(one - z);
                 let plain = u * (one - last) * inverse;
                 let weighted = u * (one - last * l + last * z * (l - 1.0)) * inverse * inverse;
                 sum += (plain - weighted / l) * even + plain * Complex::new(0.0, odd);
