@@ -5,6 +5,7 @@ mod support;
 
 use std::path::Path;
 use std::process::Output;
+use support::synthetic::white;
 use support::{program, root, sample};
 use tempfile::tempdir;
 
@@ -233,11 +234,7 @@ fn init_copies_the_layout_of_a_raw_file_to_where_its_procedure_finds_it() {
     let layout = "format = \"layout/1\"\nrecord_bytes = 8\nsample_rate = \"100 Hz\"\n\n\
         [[field]]\nname = \"rate_deg_h\"\noffset = 0\ntype = \"f64\"\n";
     std::fs::write(at.join("logger.toml"), layout).unwrap();
-    let bytes: Vec<u8> = (0..60_000u64)
-        .flat_map(|i| {
-            ((i.wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 11) as f64 / 2f64.powi(53) - 0.5).to_le_bytes()
-        })
-        .collect();
+    let bytes: Vec<u8> = (0..60_000u64).flat_map(|i| white(3, i).to_le_bytes()).collect();
     std::fs::write(at.join("raw.bin"), bytes).unwrap();
     let done = printed(at, "80", &[], &["init", "raw.bin", "--layout", "logger.toml", "--out", "o"]);
     assert_eq!(done.status.code(), Some(0), "{}", text_of(&done));

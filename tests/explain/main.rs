@@ -2,6 +2,8 @@
 
 mod columns;
 mod in_run;
+#[path = "../support/long.rs"]
+mod long;
 mod on_table;
 mod several;
 mod simulation;
@@ -203,13 +205,16 @@ fn filters_are_named_alone(forms: &[(u8, u8)]) {
 
 #[test]
 fn every_form_of_output_filter_is_named_alone() {
-    filters_are_named_alone(&[(1, 7), (2, 7), (3, 7), (5, 7), (6, 7)]);
+    let forms = [(2, 7), (5, 7), (1, 7), (3, 7), (6, 7)];
+    filters_are_named_alone(&long::cases("every_form_of_output_filter_is_named_alone", &forms, 2));
 }
 
 /// A moving average (4) and the second-order recursion (7) leave modes of which a record holds little but its ends.
 #[test]
 fn filters_that_hide_the_noise_before_them_are_named_alone() {
-    filters_are_named_alone(&[(4, 7), (4, 8), (7, 7), (7, 9)]);
+    let forms = [(4, 7), (7, 7), (4, 8), (7, 9)];
+    let name = "filters_that_hide_the_noise_before_them_are_named_alone";
+    filters_are_named_alone(&long::cases(name, &forms, 1));
 }
 
 #[test]
@@ -223,7 +228,7 @@ fn slow_jumps_beside_flicker_are_told_from_a_slow_process() {
     );
     std::fs::write(dir.path().join("model.toml"), claim).unwrap();
     std::fs::write(dir.path().join("jumps.toml"), jumps).unwrap();
-    for seed in ["1", "6"] {
+    for seed in long::cases("slow_jumps_beside_flicker_are_told_from_a_slow_process", &["1", "6"], 1) {
         let simulate = ["simulate", "jumps.toml", "--out", "r.csv", "--seed", seed, "--duration", "80000s"];
         assert_eq!(sagnac(dir.path(), &simulate).code, 0);
         let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);

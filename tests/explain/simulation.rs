@@ -2,6 +2,7 @@
 
 use super::support::sagnac;
 use super::support::synthetic::white;
+use crate::long;
 use serde_json::Value;
 use std::f64::consts::TAU;
 use std::fmt::Write;
@@ -98,7 +99,7 @@ fn compared(folder: &Path, recording: &str, simulation: &str) -> (i32, Value, St
 #[test]
 fn a_recording_is_consistent_with_itself() {
     let dir = tempdir().unwrap();
-    for process in PROCESSES {
+    for process in long::cases("a_recording_is_consistent_with_itself", &PROCESSES, 3) {
         draw(process, &dir.path().join("x.csv"), 11);
         let (code, all, out) = compared(dir.path(), "x.csv", "x.csv");
         assert_eq!((code, all["verdict"].as_str()), (0, Some("consistent")), "{process}: {out}");
@@ -115,7 +116,7 @@ fn two_draws_of_one_process_are_consistent() {
     let dir = tempdir().unwrap();
     let mut false_alarms = vec![];
     for process in PROCESSES {
-        for seed in [21, 31] {
+        for seed in long::cases("two_draws_of_one_process_are_consistent", &[21, 31], 1) {
             draw(process, &dir.path().join("s.csv"), seed);
             draw(process, &dir.path().join("x.csv"), seed + 100);
             let (code, all, _) = compared(dir.path(), "x.csv", "s.csv");

@@ -3,6 +3,8 @@
 mod conditions;
 mod exact;
 mod files;
+#[path = "../support/long.rs"]
+mod long;
 mod precision;
 #[path = "../support/mod.rs"]
 mod support;

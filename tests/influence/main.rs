@@ -3,6 +3,8 @@
 //!
 //! `cargo test --release --test influence -- --ignored write_the_samples` writes the samples anew.
 
+#[path = "../support/long.rs"]
+mod long;
 mod study;
 
 use sagnac_studies::influence::generator::{Recorded, Series, Turns, linear, squared};

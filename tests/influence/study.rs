@@ -1,5 +1,6 @@
 //! Intervals against simulated truth, in short. The study is `cargo xtask validate influence-intervals`.
 
+use crate::long;
 use sagnac_studies::coverage::Coverage;
 use sagnac_studies::influence::evaluation::repeated;
 use sagnac_studies::influence::generator::Series;
@@ -10,7 +11,7 @@ use sagnac_studies::influence::{KINDS, comparisons, repeatability, sensitivities
 fn intervals_hold_the_truth() {
     // Of 16 runs at 95 %, fewer than 12 come about less than once in 1000.
     let hold = |name: &str, count: &Coverage| assert!(count.share() >= 12.0 / 16.0, "{name}: {count:?}");
-    for (kind, noise) in KINDS {
+    for (kind, noise) in long::cases("intervals_hold_the_truth", &KINDS, 1) {
         if noise.k == 0.0 {
             let [scatter, trend] = repeatability(noise, 0.03, 16, 500_000);
             hold(&format!("bias_repeatability {kind}"), &scatter);
@@ -27,7 +28,7 @@ fn intervals_hold_the_truth() {
 #[test]
 fn levels_on_a_line_are_not_said_to_be_off_it() {
     // Of 40 at one in a hundred, four come about once in 1000.
-    for (kind, noise) in KINDS {
+    for (kind, noise) in long::cases("levels_on_a_line_are_not_said_to_be_off_it", &KINDS, 1) {
         for of in sensitivities(noise) {
             let off = comparisons(&of, 40, 530_000).off;
             assert!(off < 4, "{kind} {}: {off}", of.id);

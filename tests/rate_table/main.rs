@@ -1,6 +1,8 @@
 //! Tests on a rate table against a table made of geometry (`sagnac_studies::rate_table::bench`), which imports nothing of the
 //! program. The studies are `cargo xtask validate scale-factor misalignment`.
 
+#[path = "../support/long.rs"]
+mod long;
 mod motion;
 mod pauses;
 mod positions;

@@ -1,5 +1,6 @@
 //! Recordings over temperature and of the warm-up that are not what they seem: by their sign, their Earth rate, their start.
 
+use crate::long;
 use crate::samples::{root, row, run};
 use serde_json::Value;
 
@@ -38,9 +39,10 @@ fn unmet(result: &Value) -> String {
 
 #[test]
 fn a_reversed_sign_or_an_earth_rate_taken_out_is_named_over_temperature_and_in_the_warm_up() {
-    for (files, sample) in
-        [(RAMP, "temperature-pass.csv"), (SOAK, "temperature-soak-pass.csv"), (WARM, "warm-up-pass.csv")]
-    {
+    let name = "a_reversed_sign_or_an_earth_rate_taken_out_is_named_over_temperature_and_in_the_warm_up";
+    let samples =
+        [(WARM, "warm-up-pass.csv"), (RAMP, "temperature-pass.csv"), (SOAK, "temperature-soak-pass.csv")];
+    for (files, sample) in long::cases(name, &samples, 1) {
         let (code, result) = altered(files, sample, |t, r| Some((t, -r)));
         assert!(code == 3 && unmet(&result).contains("the sign is reversed"), "{sample}: {}", unmet(&result));
         let (code, result) = altered(files, sample, |t, r| Some((t, r - 12.467)));
