@@ -18,7 +18,7 @@ const TAU0_S: f64 = 0.01;
 /// Each is measured so often, in turn; the least counts.
 const ROUNDS: usize = 3;
 /// Largest ratio that is no loss of speed.
-const MOST: f64 = 4.0;
+const MOST: f64 = 6.5;
 /// Samples of a segment of the Welch spectrum.
 const SEGMENT: usize = 1 << 16;
 /// Terms of the Allan deviation that are summed for all averaging times before the next ones.
