@@ -5,21 +5,21 @@ use std::io::Write as _;
 /// True where long tests are wanted (`SAGNAC_LONG_TESTS` is set); else a visible line tells that one is skipped.
 #[allow(dead_code, reason = "each test program uses its part")]
 pub fn wanted(name: &str) -> bool {
-    asked() || tell("SKIPPED", name)
+    asked_or("SKIPPED", name)
 }
 
 /// All cases of a test where long tests are wanted, else some of them and a visible line.
 #[allow(dead_code, reason = "each test program uses its part")]
 pub fn cases<T: Copy>(name: &str, all: &[T], some: usize) -> Vec<T> {
-    let count = if asked() || tell("SHORTENED", name) { all.len() } else { some };
+    let count = if asked_or("SHORTENED", name) { all.len() } else { some };
     all.iter().copied().take(count).collect()
 }
 
-fn asked() -> bool {
-    std::env::var_os("SAGNAC_LONG_TESTS").is_some()
-}
-
-fn tell(what: &str, name: &str) -> bool {
-    let _ = writeln!(std::io::stderr(), "{what}: {name}: SAGNAC_LONG_TESTS is not set");
-    false
+/// Whether long tests are asked for; else says what becomes of this one.
+fn asked_or(otherwise: &str, name: &str) -> bool {
+    let asked = std::env::var_os("SAGNAC_LONG_TESTS").is_some();
+    if !asked {
+        let _ = writeln!(std::io::stderr(), "{otherwise}: {name}: SAGNAC_LONG_TESTS is not set");
+    }
+    asked
 }
