@@ -22,7 +22,7 @@ use crate::message::Note;
 use crate::series::Series;
 use std::collections::BTreeMap;
 
-/// Rounds of setting samples aside that a course bends within, and of finding it without them.
+/// Rounds of setting samples aside that a course bends within, of drawing what is not there, and of finding the course again.
 const ROUNDS: usize = 3;
 
 /// Explains a recording against a claim.
@@ -53,7 +53,8 @@ pub fn explain(
     let mut moved = with_table_courses(&base, &problem.spectra, options);
     for _ in 0..ROUNDS {
         // What is drawn for them follows the course as it was found with them, so it is found again.
-        if !problem.without_bends(&moved) {
+        let bent = problem.without_bends(&moved);
+        if !problem.settle(&moved) && !bent {
             break;
         }
         base = problem.refitted(&base);
@@ -74,6 +75,15 @@ pub fn explain(
     }
     let mut selection = select::select(&start, &problem, options);
     if problem.impute_edges(&selection.best, &selection.best) {
+        base = problem.refitted(&base);
+        held_base = Halves::new(&problem).judge(&base);
+        start = problem.refitted(&start);
+        selection = select::select(&start, &problem, options);
+    }
+    for _ in 0..ROUNDS {
+        if !problem.settle(&selection.best) {
+            break;
+        }
         base = problem.refitted(&base);
         held_base = Halves::new(&problem).judge(&base);
         start = problem.refitted(&start);

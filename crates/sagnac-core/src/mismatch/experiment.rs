@@ -198,7 +198,7 @@ mod tests {
     fn spectra(samples: usize) -> SpectralDataSet {
         let drivers = Drivers { dt_s: 1.0, samples, averaged: 1, ..Drivers::default() };
         let full = SpectralData::new(drivers, &vec![0.0; samples], &[]);
-        SpectralDataSet { full, slow: None, grid_step_arcsec: None, rows: samples }
+        SpectralDataSet { full, slow: None, grid_step_arcsec: None, rows: samples, repeated_share: 0.0 }
     }
 
     fn tried(noise: Noise, courses: Vec<CourseIn>, parameters: usize, spectra: &SpectralDataSet) -> Tried {

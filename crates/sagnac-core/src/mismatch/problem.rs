@@ -27,6 +27,11 @@ const AVERAGES: usize = 12_288;
 /// Seed of imputed places: a report is a function of recording and claim alone.
 const SEED: u64 = 0x5a67_6e61_6320_0005;
 
+/// Square of the error of a size, by the places where its course was not drawn, from which they are drawn anew, over its variance.
+const MATTERS: f64 = 0.1;
+/// Turns of drawing and fitting at most. Each leaves of the error the share of the places without a sample.
+const TURNS: usize = 12;
+
 /// Recording and claim.
 pub struct Problem {
     /// The grid of the recording.
@@ -176,9 +181,10 @@ impl Problem {
     }
 
     fn retransform(&mut self) {
-        let SpectralDataSet { grid_step_arcsec, rows, .. } = self.spectra;
+        let SpectralDataSet { grid_step_arcsec, rows, repeated_share, .. } = self.spectra;
         self.spectra =
             spectra(&self.drivers, &self.claim, &self.residual, &self.filters, grid_step_arcsec, rows);
+        self.spectra.repeated_share = repeated_share;
     }
 
     /// The same with more samples set aside and the noise of a hypothesis for what is filled in.
@@ -186,6 +192,50 @@ impl Problem {
         aside.iter().for_each(|i| self.usable[*i] = false);
         self.residual = self.drawn(tried, &tried.hypothesis.noise, &self.usable);
         self.retransform();
+    }
+
+    /// Draws the places without a sample anew about a hypothesis, and fits it again, until both agree; true where they moved.
+    ///
+    /// They were drawn about the claim. A course is then missing from them, and so many samples speak against it: its size
+    /// comes out too small by their share, and where it is large the noise too large and other effects too small.
+    pub fn settle(&mut self, tried: &Tried) -> bool {
+        let missing: Vec<usize> = (0..self.usable.len()).filter(|i| !self.usable[*i]).collect();
+        if missing.is_empty() || tried.hypothesis.courses.is_empty() {
+            return false;
+        }
+        let before = inverse_dct2(&self.spectra.full.modes);
+        let left = inverse_dct2(&tried.residual(&self.spectra));
+        let of_course = before.iter().zip(&left).map(|(b, l)| b - l).collect::<Vec<f64>>();
+        let share = missing.len() as f64 / self.usable.len() as f64;
+        let error = |problem: &Problem, course: &[f64], tried: &Tried| {
+            2.0 * share * problem.nats(&missing, course, tried)
+        };
+        if error(self, &of_course, tried) < MATTERS {
+            return false;
+        }
+        self.spectra.repeated_share = share;
+        let mut moved = false;
+        let mut tried = tried.clone();
+        for _ in 0..TURNS {
+            let drawn = self.drawn(&tried, &tried.hypothesis.noise, &self.usable);
+            let change: Vec<f64> = drawn.iter().zip(&self.residual).map(|(d, r)| d - r).collect();
+            if error(self, &change, &tried) < 0.1 * MATTERS {
+                break;
+            }
+            moved = true;
+            self.residual = drawn;
+            self.retransform();
+            tried = self.refitted(&tried);
+        }
+        moved
+    }
+
+    /// What a course says in some samples against the white part of a fitted noise, nats.
+    fn nats(&self, samples: &[usize], course: &[f64], tried: &Tried) -> f64 {
+        let powers = tried.powers(&self.spectra);
+        let upper = &powers[powers.len() / 2..];
+        let variance = upper.iter().sum::<f64>() / upper.len().max(1) as f64;
+        samples.iter().map(|i| course[*i].powi(2)).sum::<f64>() / (2.0 * variance)
     }
 
     /// Sets the samples aside of which the columns do not tell the courses of a hypothesis; true where there are any.
@@ -327,7 +377,7 @@ fn spectra(
         slow.truncate(n);
         SpectralData::new(slow, &crate::effect::averages(residual, m)[..n], &deviations).with_states(claim)
     });
-    SpectralDataSet { full, slow, grid_step_arcsec, rows }
+    SpectralDataSet { full, slow, grid_step_arcsec, rows, repeated_share: 0.0 }
 }
 
 pub(super) fn drivers(regular: &Regular, claim: &Claim) -> Drivers {

@@ -16,6 +16,8 @@ pub struct SpectralDataSet {
     pub grid_step_arcsec: Option<f64>,
     /// Rows of the recording.
     pub rows: usize,
+    /// Share of the samples that were drawn about a fitted course, and so repeat what the others say.
+    pub repeated_share: f64,
 }
 
 impl SpectralDataSet {

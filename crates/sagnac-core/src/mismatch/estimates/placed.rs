@@ -29,7 +29,10 @@ impl<'a> Placed<'a> {
         spectra: &'a SpectralDataSet,
     ) -> Placed<'a> {
         let spectral = spectra.of(course.resolution());
-        let powers = spectral.powers(&best.hypothesis.noise.densities(spectral));
+        // A coefficient is that of the rows alone, and scatters with what was drawn beside: both widen it.
+        let wider = (1.0 - spectra.repeated_share).powi(-2);
+        let mut powers = spectral.powers(&best.hypothesis.noise.densities(spectral));
+        powers.iter_mut().for_each(|p| *p *= wider);
         let parts = spectra.part_modes(course.resolution(), &best.hypothesis.courses);
         let mut data = spectral.modes.clone();
         let mut columns: Vec<(Vec<f64>, f64)> =

@@ -31,7 +31,7 @@ fn spectra(deviation: f64) -> SpectralDataSet {
     };
     let deviations = [(Nuisance::TemperatureCoefficient, deviation)];
     let full = SpectralData::new(drivers, &vec![0.0; SAMPLES], &deviations);
-    SpectralDataSet { full, slow: None, grid_step_arcsec: None, rows: SAMPLES }
+    SpectralDataSet { full, slow: None, grid_step_arcsec: None, rows: SAMPLES, repeated_share: 0.0 }
 }
 
 fn white(spectra: &SpectralDataSet) -> Tried {
