@@ -62,7 +62,7 @@ pub fn explain(
     }
     let mut held_base = Halves::new(&problem).judge(&base);
     let filtered = filtered::behind(&problem, &moved, options);
-    let filtered = filtered.filter(|f| problem.impute_edges(&moved, f)).map(|f| problem.refitted(&f));
+    let filtered = filtered.filter(|f| problem.impute_edges(f, f)).map(|f| problem.refitted(&f));
     if let Some(filtered) = filtered {
         base = problem.refitted(&base);
         held_base = Halves::new(&problem).judge(&base);

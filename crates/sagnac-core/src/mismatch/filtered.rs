@@ -11,9 +11,11 @@ use super::problem::Problem;
 use super::select;
 use super::spectral_data::SpectralData;
 use super::terms::SpectrumIn;
-use super::tried::Tried;
+use super::tried::{Candidate, Tried};
 use crate::effect::{EFFECTS, Effect, Model, SpectralContext, Spectrum, SpectrumAct};
 
+/// Courses that are taken before a filter at most.
+const COURSES: usize = 3;
 /// Times that the ends are drawn for one filter, each for what was fitted before.
 const TURNS: usize = 2;
 /// Observed over claimed power, times the samples, below which the ends of a record matter in a bin.
@@ -35,20 +37,46 @@ struct Judged {
     powers: Vec<f64>,
 }
 
-/// The claim behind the filter that it leaves out, where there is one and the ends of the record matter; fitted to what is
-/// seen behind it.
-pub fn behind(problem: &Problem, base: &Tried, options: &Options) -> Option<Tried> {
+/// The filter that explains most beside a hypothesis, where the ends of the record matter and it passes the gates.
+fn leading_filter(problem: &Problem, tried: &Tried, options: &Options) -> Option<Candidate> {
     let spectral = &problem.spectra.full;
-    let ratios = spectral.bins.iter().zip(base.fit.observed.iter().zip(&base.fit.densities));
+    let ratios = spectral.bins.iter().zip(tried.fit.observed.iter().zip(&tried.fit.densities));
     let faint = |share: f64| share * (spectral.length as f64) < FAINT;
     if !ratios.filter(|(b, _)| b.modes >= SEEN).any(|(_, (seen, claimed))| faint(seen / claimed)) {
         return None;
     }
     let wanted = |e: &dyn Effect| filter(e).is_some() && options.allows(e.kind());
-    let leader = candidates::among(base, &problem.spectra, wanted).into_iter().next()?;
-    if !select::passes(&leader, EFFECTS.len() as f64, options.alpha) {
-        return None;
+    let leader = candidates::among(tried, &problem.spectra, wanted).into_iter().next()?;
+    select::passes(&leader, EFFECTS.len() as f64, options.alpha).then_some(leader)
+}
+
+/// The hypothesis with the course that explains more than a filter does, where there is one. Noise that was fitted too large in its
+/// place looks as if a filter had taken the rest of it away.
+fn with_better_course(
+    problem: &Problem,
+    tried: &Tried,
+    filter: &Candidate,
+    options: &Options,
+) -> Option<Tried> {
+    let wanted = |e: &dyn Effect| matches!(e.model(), Model::Mean(_)) && options.allows(e.kind());
+    let leader = candidates::among(tried, &problem.spectra, wanted).into_iter().next()?;
+    let better = leader.tried.rank(problem.spectra.rows) < filter.tried.rank(problem.spectra.rows);
+    (better && select::passes(&leader, EFFECTS.len() as f64, options.alpha)).then_some(leader.tried)
+}
+
+/// The claim behind the filter that it leaves out, where there is one and the ends of the record matter; fitted to what is
+/// seen behind it, with the courses that explain more than the filter.
+pub fn behind(problem: &Problem, base: &Tried, options: &Options) -> Option<Tried> {
+    let mut base = base.clone();
+    let mut leader = leading_filter(problem, &base, options)?;
+    for _ in 0..COURSES {
+        let Some(with) = with_better_course(problem, &base, &leader, options) else { break };
+        base = with;
+        leader = leading_filter(problem, &base, options)?;
     }
+    let base = &base;
+    let spectral = &problem.spectra.full;
+    let wanted = |e: &dyn Effect| filter(e).is_some() && options.allows(e.kind());
     let context = SpectralContext {
         bins: &spectral.bins,
         observed: &base.fit.observed,
