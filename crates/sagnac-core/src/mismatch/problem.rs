@@ -194,12 +194,14 @@ impl Problem {
         self.retransform();
     }
 
-    /// Draws the places without a sample anew about a hypothesis, and fits it again, until both agree; true where they moved.
+    /// Draws the places of missing rows anew about a hypothesis, and fits it again, until both agree; true where they moved. Samples
+    /// that were set aside beside them are drawn anew too, but do not ask for it: what they stand in is often known badly.
     ///
     /// They were drawn about the claim. A course is then missing from them, and so many samples speak against it: its size
     /// comes out too small by their share, and where it is large the noise too large and other effects too small.
     pub fn settle(&mut self, tried: &Tried) -> bool {
-        let missing: Vec<usize> = (0..self.usable.len()).filter(|i| !self.usable[*i]).collect();
+        let in_gaps = self.grid.gaps.iter().flat_map(|(first, count)| *first..first + count);
+        let missing: Vec<usize> = in_gaps.filter(|i| self.usable.get(*i) == Some(&false)).collect();
         if missing.is_empty() || tried.hypothesis.courses.is_empty() {
             return false;
         }
