@@ -415,10 +415,10 @@ fn an_effect_many_times_the_noise_has_no_step_beside_it() {
         }
         std::fs::write(dir.path().join("r.csv"), text).unwrap();
         std::fs::write(dir.path().join("model.toml"), MODEL).unwrap();
-        let said =
-            sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e", "--force"]);
+        let out = format!("e{seed}");
+        let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", &out]);
         assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
-        let all = json(&dir.path().join("e/explain.json"));
+        let all = json(&dir.path().join(out).join("explain.json"));
         let kinds: Vec<&str> =
             all["effects"].as_array().unwrap().iter().filter_map(|e| e["kind"].as_str()).collect();
         assert_eq!(kinds, ["temp_linear"], "{seed}: {all}");
