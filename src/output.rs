@@ -18,7 +18,9 @@ mod part;
 mod partial;
 
 pub use addressed::AddressedFolder;
-pub use checksums::{CHECKSUMS_FILE, checksums, read_checksums, sha256};
+pub use checksums::{
+    CHECKSUMS_FILE, UNREAD, checksums, read_checksums, sha256, sha256_of_file, sha256_of_several,
+};
 pub use csv::quoted;
 pub use error::OutputError;
 pub use file::StagedFile;
@@ -33,6 +35,7 @@ use error::io;
 use partial::Partial;
 use schemars::JsonSchema;
 use serde::Serialize;
+use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::Write;
@@ -59,12 +62,28 @@ pub struct StagedFolder {
 pub struct Order {
     /// The inputs: their names, such as `recording`, and what tells each from others, such as a hash.
     pub inputs: BTreeMap<String, String>,
+    /// Inputs that are files, by their names. A long recording is not read for its hash alone: reading it gives the hash. Only where a
+    /// result stands at the place is it needed before.
+    pub files: BTreeMap<String, Vec<PathBuf>>,
     /// Files and folders that are read, which the result must not take away.
     pub read: Vec<PathBuf>,
     /// Replaces a result of other inputs too.
     pub force: bool,
     /// The place was named by the program, not by the user: whatever stands there stays, and the next free name is taken.
     pub fresh: bool,
+}
+
+impl Order {
+    /// Identifies the inputs that are files by their hashes, of which those of files that were read are known.
+    pub fn identify_files(&mut self, known: &BTreeMap<PathBuf, String>) {
+        for (name, paths) in std::mem::take(&mut self.files) {
+            let hash = |path: &PathBuf| {
+                let read = path.canonicalize().ok().and_then(|p| known.get(&p).cloned());
+                read.or_else(|| sha256_of_file(path)).unwrap_or_else(|| UNREAD.to_owned())
+            };
+            self.inputs.insert(name, sha256_of_several(paths.iter().map(hash)));
+        }
+    }
 }
 
 /// A record with what it was made from and the files of its folder.
@@ -90,7 +109,7 @@ impl StagedFolder {
     ///
     /// # Errors
     /// [`OutputError`] when the place cannot be written or is taken.
-    pub fn begin(target: &Path, kind: Kind, order: Order) -> Result<StagedFolder, OutputError> {
+    pub fn begin(target: &Path, kind: Kind, mut order: Order) -> Result<StagedFolder, OutputError> {
         let Some(name) = target.file_name() else {
             return Err(OutputError::NoName(target.to_owned()));
         };
@@ -100,6 +119,7 @@ impl StagedFolder {
         }
         let replaces = match target.symlink_metadata() {
             Ok(_) if !order.fresh => {
+                order.identify_files(&BTreeMap::new());
                 replaceable(target, kind, &order)?.filter(|e| e.inputs != order.inputs).map(|e| e.what())
             }
             _ => None,
@@ -124,6 +144,12 @@ impl StagedFolder {
         let what = self.replaces.clone()?;
         let path = self.target.display().to_string();
         Some(Note::new("output_error.replaces").with("path", path).with("what", what))
+    }
+
+    /// Takes the hashes of files that were read, as they were read, for those of the inputs.
+    pub fn were_read(&mut self, files: impl IntoIterator<Item = (PathBuf, String)>) {
+        let place = |(path, hash): (PathBuf, String)| Some((path.canonicalize().ok()?, hash));
+        self.order.identify_files(&files.into_iter().filter_map(place).collect());
     }
 
     /// Writes one file into the folder; `name` may hold sub-folders.
@@ -160,7 +186,11 @@ impl StagedFolder {
     pub fn record_with(&self, record: impl Serialize, still: &[&str]) -> Result<Vec<u8>, OutputError> {
         let written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
         let names = written.keys().map(String::as_str).chain(still.iter().copied());
-        listed(record, &self.order.inputs, names, self.kind.record_file())
+        let mut order = Cow::Borrowed(&self.order);
+        if !order.files.is_empty() {
+            order.to_mut().identify_files(&BTreeMap::new());
+        }
+        listed(record, &order.inputs, names, self.kind.record_file())
     }
 
     /// Writes the record with the list of everything that the folder holds, and the hashes of all of it; puts the folder in its place in one step
@@ -169,7 +199,8 @@ impl StagedFolder {
     /// # Errors
     /// [`OutputError::Io`] when the place cannot be written, [`OutputError::InTheWay`] or [`OutputError::Other`] when
     /// it was taken meanwhile.
-    pub fn publish(self, record: impl Serialize) -> Result<PathBuf, OutputError> {
+    pub fn publish(mut self, record: impl Serialize) -> Result<PathBuf, OutputError> {
+        self.order.identify_files(&BTreeMap::new());
         let marks = self.kind.record_file();
         let json = self.record_with(record, &[])?;
         self.write(marks, &json)?;

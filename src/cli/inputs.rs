@@ -7,14 +7,11 @@ use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::lot::stated_serial_of;
 use crate::ingest::unit_data::UnitData;
 use crate::ingest::{ReadOptions, Source, files_read};
-use crate::output::{Kind, Order, StagedFolder};
+use crate::output::{Kind, Order, StagedFolder, UNREAD, sha256, sha256_of_file, sha256_of_several};
 use crate::record::UnitUnderTest;
 use serde::Serialize;
-use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
 use std::fmt::Debug;
-use std::fs::File;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// The inputs of one call of the program.
@@ -33,10 +30,16 @@ impl Inputs {
         self
     }
 
-    /// The recording, whatever files it is of.
+    /// The recording, whatever files it is of. They are identified when they were read, if not before.
     #[must_use]
-    pub fn recording(self, named: &[PathBuf], options: &ReadOptions) -> Inputs {
-        self.files("recording", &files_read(named, options))
+    pub fn recording(mut self, named: &[PathBuf], options: &ReadOptions) -> Inputs {
+        let files = files_read(named, options);
+        if files.is_empty() || !files.iter().all(|p| p.is_file()) {
+            return self.files("recording", &files);
+        }
+        self.0.read.extend_from_slice(&files);
+        self.0.files.insert("recording".to_owned(), files);
+        self
     }
 
     /// A file, identified by its hash.
@@ -49,15 +52,10 @@ impl Inputs {
     /// Files in their order, identified by their hashes.
     #[must_use]
     pub fn files(mut self, name: &str, paths: &[PathBuf]) -> Inputs {
-        let identity = match paths {
-            [] => return self,
-            [one] => hash(one),
-            several => {
-                let all: Vec<String> = several.iter().map(|p| hash(p)).collect();
-                hex(Sha256::digest(all.join("\n")))
-            }
-        };
-        self.0.inputs.insert(name.to_owned(), identity);
+        if paths.is_empty() {
+            return self;
+        }
+        self.0.inputs.insert(name.to_owned(), sha256_of_several(paths.iter().map(|p| hash(p))));
         self.0.read.extend_from_slice(paths);
         self
     }
@@ -81,12 +79,13 @@ impl Inputs {
     /// Whatever else decides, by the hash of its form.
     #[must_use]
     pub fn options(mut self, options: &dyn Debug) -> Inputs {
-        self.0.inputs.insert("options".to_owned(), hex(Sha256::digest(format!("{options:?}"))));
+        self.0.inputs.insert("options".to_owned(), sha256(format!("{options:?}").as_bytes()));
         self
     }
 
     /// What identifies the inputs, by their names.
-    pub fn identities(self) -> BTreeMap<String, String> {
+    pub fn identities(mut self) -> BTreeMap<String, String> {
+        self.0.identify_files(&BTreeMap::new());
         self.0.inputs
     }
 
@@ -97,7 +96,7 @@ impl Inputs {
             .iter()
             .flat_map(|u| ["recording", "unit"].map(|n| u.get(n).map_or("", String::as_str)))
             .collect();
-        self.0.inputs.insert("recording".to_owned(), hex(Sha256::digest(identities.join("\n"))));
+        self.0.inputs.insert("recording".to_owned(), sha256(identities.join("\n").as_bytes()));
         self.0.read.extend(read);
         self
     }
@@ -172,24 +171,8 @@ pub fn publish(folder: StagedFolder, record: impl Serialize, lang: Lang) -> Resu
     Ok(place)
 }
 
-fn hex(bytes: impl AsRef<[u8]>) -> String {
-    bytes.as_ref().iter().map(|byte| format!("{byte:02x}")).collect()
-}
-
-/// SHA-256 of a file. What is no file, or cannot be read, has none: opening it says why.
+/// SHA-256 of a file, or of one that the program holds. What is neither, or cannot be read, has none.
 fn hash(path: &Path) -> String {
-    let none = || "unread".to_owned();
-    if !path.is_file() {
-        return shipped::find(path).map_or_else(none, |s| hex(Sha256::digest(s.text)));
-    }
-    let Ok(mut file) = File::open(path) else { return none() };
-    let (mut hash, mut block) = (Sha256::new(), vec![0; 1 << 16]);
-    loop {
-        match file.read(&mut block) {
-            Ok(0) => return hex(hash.finalize()),
-            Ok(n) => hash.update(block.get(..n).unwrap_or_default()),
-            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
-            Err(_) => return none(),
-        }
-    }
+    let shipped = || shipped::find(path).map(|s| sha256(s.text.as_bytes()));
+    sha256_of_file(path).or_else(shipped).unwrap_or_else(|| UNREAD.to_owned())
 }

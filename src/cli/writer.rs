@@ -126,7 +126,8 @@ impl Writer {
     ///
     /// # Errors
     /// The diagnostic, in words.
-    pub fn publish(&self, results: &Results, folder: StagedFolder) -> Result<PathBuf, String> {
+    pub fn publish(&self, results: &Results, mut folder: StagedFolder) -> Result<PathBuf, String> {
+        folder.were_read(results.files_read());
         self.files(results, &folder)?;
         inputs::publish(folder, results.whole(self.lang).record(), self.lang)
     }

@@ -2,13 +2,46 @@
 
 use sha2::{Digest, Sha256};
 use std::collections::BTreeMap;
+use std::fs::File;
+use std::io::Read;
+use std::path::Path;
 
 /// Name of the file that holds the hashes of all others in its folder.
 pub const CHECKSUMS_FILE: &str = "SHA256SUMS";
 
 /// SHA-256 of some bytes, hexadecimal.
 pub fn sha256(bytes: &[u8]) -> String {
-    Sha256::digest(bytes).iter().map(|byte| format!("{byte:02x}")).collect()
+    hexadecimal(&Sha256::digest(bytes))
+}
+
+/// What stands for the hash of a file that cannot be read: opening it says why.
+pub const UNREAD: &str = "unread";
+
+/// SHA-256 of a file, hexadecimal; `None` for what is no file or cannot be read.
+pub fn sha256_of_file(path: &Path) -> Option<String> {
+    let mut file = path.is_file().then(|| File::open(path).ok()).flatten()?;
+    let (mut hash, mut block) = (Sha256::new(), vec![0; 1 << 16]);
+    loop {
+        match file.read(&mut block) {
+            Ok(0) => return Some(hexadecimal(&hash.finalize())),
+            Ok(n) => hash.update(block.get(..n).unwrap_or_default()),
+            Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
+            Err(_) => return None,
+        }
+    }
+}
+
+/// What identifies files in their order: the hash of one, that of the hashes of several.
+pub fn sha256_of_several(hashes: impl Iterator<Item = String>) -> String {
+    let mut all: Vec<String> = hashes.collect();
+    match all.as_slice() {
+        [_] => all.swap_remove(0),
+        several => sha256(several.join("\n").as_bytes()),
+    }
+}
+
+fn hexadecimal(bytes: &[u8]) -> String {
+    bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
 /// The text of the file: a line for each file, in the order of their names.

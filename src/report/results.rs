@@ -147,6 +147,13 @@ impl Results {
         Results::DataSheet(Box::new(record), figures, vec![("limits.toml".into(), limits)])
     }
 
+    /// The files of the recording that were read, with the SHA-256 of what was read.
+    pub fn files_read(&self) -> Vec<(PathBuf, String)> {
+        let Results::Run(results) = self else { return vec![] };
+        let files = results.outcome.record.recording.iter();
+        files.map(|f| (PathBuf::from(&f.path), f.sha256.clone())).collect()
+    }
+
     /// What the folder of the results holds.
     pub fn kind(&self) -> Kind {
         match self {
