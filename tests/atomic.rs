@@ -240,7 +240,7 @@ fn a_result_of_other_inputs_is_replaced_by_force_only() {
         let said = typed(dir.path(), &other);
         assert_eq!(said.code, 2, "{differs}: {said:?}");
         for part in
-            ["result pass of unit SN-1", &format!("made from different inputs: {differs};"), "--force"]
+            ["result `pass` of unit SN-1", &format!("made from different inputs: {differs};"), "--force"]
         {
             assert!(said.err.contains(part), "{part}: {}", said.err);
         }
@@ -250,7 +250,7 @@ fn a_result_of_other_inputs_is_replaced_by_force_only() {
     forced.push("--force");
     let said = typed(dir.path(), &forced);
     assert!(
-        said.code == 1 && said.err.contains("replaced the result pass of unit SN-1, evaluated 20"),
+        said.code == 1 && said.err.contains("replaced the result `pass` of unit SN-1, evaluated 20"),
         "{said:?}"
     );
     assert_eq!(result(&dir.path().join("out"))["verdict"], "fail");
@@ -258,7 +258,7 @@ fn a_result_of_other_inputs_is_replaced_by_force_only() {
     let analysed = ["analyze", &pass, "--out", "a"];
     assert_eq!(typed(dir.path(), &analysed).code, 0);
     let said = typed(dir.path(), &["analyze", &fail, "--out", "a"]);
-    assert!(said.code == 2 && said.err.contains("result no limits of unit"), "{said:?}");
+    assert!(said.code == 2 && said.err.contains("a result (`no limits`, no serial number)"), "{said:?}");
     let compared = ["compare", &pass, "--out", "c"];
     assert_eq!(typed(dir.path(), &compared).code, 0);
     assert_eq!(typed(dir.path(), &compared).code, 0);

@@ -81,11 +81,12 @@ impl Earlier {
         let note = |key| Note::new(key).with("made", made.as_str());
         match self.kind {
             Kind::Result => {
-                let serial = text("/unit_under_test/serial").unwrap_or_else(|| "–".to_owned());
                 let verdict = text("/verdict").unwrap_or_default();
-                note("output_error.what.result")
-                    .with("verdict", Arg::key("verdict", &verdict))
-                    .with("serial", serial)
+                let result = match text("/unit_under_test/serial") {
+                    Some(serial) => note("output_error.what.result").with("serial", serial),
+                    None => note("output_error.what.result_of_no_unit"),
+                };
+                result.with("verdict", Arg::key("verdict", &verdict))
             }
             Kind::Comparison => note("output_error.what.comparison"),
             Kind::Joint => {
