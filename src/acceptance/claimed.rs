@@ -1,7 +1,7 @@
 //! What a result shows of a unit, as a claim that later recordings are held against.
 
 use crate::claim::{Claim, Coefficient, Stated, Uncertainty};
-use crate::effect::ClaimedMean;
+use crate::effect::{ClaimedMean, Model, SpectrumAct};
 use crate::estimate::normal_quantile;
 use crate::i18n::Note;
 use crate::measurand;
@@ -101,11 +101,22 @@ const LASTING: [&str; 24] = [
     "temp_response",
 ];
 
-/// A claim that was identified, with the effects of an augmented one that belong to the unit. Noise and mean are those beside the
-/// effects, if all of these are kept.
-pub fn with_lasting(claim: Claim, augmented: &Claim) -> Claim {
-    let lasts = |stated: &&Stated| LASTING.contains(&stated.effect.kind());
+/// A claim that was identified, with the effects of an augmented one that belong to the unit, and with the third standardised moment
+/// that its noise may have. Noise and mean are those beside the effects, if all of these are kept.
+pub fn with_lasting(claim: Claim, augmented: &Claim, skewness: f64) -> Claim {
+    let spectrum = |stated: &Stated| match stated.effect.model() {
+        Model::Spectrum(s) => Some(s),
+        _ => None,
+    };
+    // Beside a process a filter is one of several shapes that describe a spectrum, and is not known by itself: a claim of a filter
+    // that is not there weighs what a later recording shows behind it far too much.
+    let beside_process = augmented.effects.iter().filter_map(spectrum).any(|s| s.has_course());
+    let filters = |stated: &Stated| spectrum(stated).is_some_and(|s| s.act() == SpectrumAct::Filters);
+    let lasts =
+        |stated: &&Stated| LASTING.contains(&stated.effect.kind()) && !(beside_process && filters(stated));
     let effects: Vec<Stated> = augmented.effects.iter().filter(lasts).cloned().collect();
+    let uncertainty = Uncertainty { skewness, ..claim.uncertainty };
+    let claim = Claim { uncertainty, ..claim };
     if effects.len() < augmented.effects.len() {
         return Claim { effects, ..claim };
     }
@@ -154,10 +165,14 @@ mod tests {
         let mut augmented = identified.clone();
         augmented.noise.n = 0.5;
         augmented.effects = vec![stated("bandwidth_filter")];
-        let kept = with_lasting(identified.clone(), &augmented);
+        let kept = with_lasting(identified.clone(), &augmented, 0.02);
         assert_eq!((kinds(&kept), kept.noise.n), (vec!["bandwidth_filter"], 0.5));
+        assert_eq!(kept.uncertainty.skewness, 0.02);
         augmented.effects.push(stated("bias_step"));
-        let kept = with_lasting(identified.clone(), &augmented);
+        let kept = with_lasting(identified.clone(), &augmented, 0.0);
         assert_eq!((kinds(&kept), kept.noise.n), (vec!["bandwidth_filter"], identified.noise.n));
+        // Beside a process no filter is known.
+        augmented.effects.push(stated("quasi_periodic"));
+        assert_eq!(kinds(&with_lasting(identified, &augmented, 0.0)), ["quasi_periodic"]);
     }
 }

@@ -120,7 +120,8 @@ fn of_recording(args: &ModelArgs, lang: Lang) -> Result<Claim, String> {
     let claim = mismatch::identify(&series, &mut |p| progress.explaining(p));
     let claim = claim.and_then(|claim| {
         let found = mismatch::explain(series, &claim, &Options::default(), &mut |p| progress.explaining(p));
-        Ok(claimed::with_lasting(claim, &found?.augmented))
+        let found = found?;
+        Ok(claimed::with_lasting(claim, &found.augmented, found.skewness))
     });
     progress.finish();
     claim.map_err(say)

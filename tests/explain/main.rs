@@ -1,5 +1,6 @@
 //! The verb `explain`, as a user runs it.
 
+mod clock;
 mod columns;
 mod in_run;
 #[path = "../support/long.rs"]

@@ -93,6 +93,7 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> ModelFile {
             bias_deg_h: known("bias_deg_h"),
             temperature_coefficient_deg_h_per_degc: known("temperature_coefficient_deg_h_per_degC"),
             scale_factor_ppm: known("scale_factor_ppm"),
+            skewness: known("skewness"),
         },
         effects: root.tables("effect").iter().filter_map(|s| stated(s, reader)).collect(),
     };

@@ -207,6 +207,14 @@ static UNCERTAINTY: TableSpec = TableSpec {
             "2.0",
             "Of the scale factor, ppm.",
         ),
+        with_default(
+            "skewness",
+            Kind::Number(COEFFICIENT),
+            "0.0",
+            "0.02",
+            "Largest skewness of the noise of single samples, of either sign: the third central moment over the cube of \
+             the standard deviation. 0: the law is even.",
+        ),
     ],
 };
 

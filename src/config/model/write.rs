@@ -66,8 +66,13 @@ pub fn write(claim: &Claim) -> String {
             ("scale_factor_ppm", u.scale_factor_ppm),
         ],
     );
-    let bounds = [("N_deg_rt_h", u.n_deg_rt_h), ("B_deg_h", u.b_deg_h), ("K_deg_h_rt_h", u.k_deg_h_rt_h)];
-    for (key, value) in bounds.into_iter().filter(|(_, value)| *value > 0.0) {
+    let where_stated = [
+        ("N_deg_rt_h", u.n_deg_rt_h),
+        ("B_deg_h", u.b_deg_h),
+        ("K_deg_h_rt_h", u.k_deg_h_rt_h),
+        ("skewness", u.skewness),
+    ];
+    for (key, value) in where_stated.into_iter().filter(|(_, value)| *value > 0.0) {
         let _ = writeln!(out, "{key} = {}", float(value));
     }
     for stated in &claim.effects {

@@ -7,7 +7,7 @@ mod profile;
 pub use coefficient::Coefficient;
 pub use profile::{Profile, SimulationPlan};
 
-use crate::effect::{ClaimedMean, Column, Effect, Values};
+use crate::effect::{ClaimedMean, Column, Effect, Model, StatedLine, Values};
 use crate::local_text::LocalText;
 use crate::noise::model::NoiseModel;
 
@@ -39,6 +39,15 @@ impl Claim {
     pub fn states(&self, effect: &dyn Effect) -> bool {
         self.effects.iter().any(|e| e.effect.kind() == effect.kind())
     }
+
+    /// The lines that it states.
+    pub fn lines(&self) -> Vec<StatedLine> {
+        let of = |stated: &Stated| match stated.effect.model() {
+            Model::Mean(course) => course.stated_line(&stated.values),
+            _ => None,
+        };
+        self.effects.iter().filter_map(of).collect()
+    }
 }
 
 /// One standard deviation of the author's knowledge; 0 is exact.
@@ -62,6 +71,8 @@ pub struct Uncertainty {
     pub temperature_coefficient_deg_h_per_degc: f64,
     /// ppm.
     pub scale_factor_ppm: f64,
+    /// Largest third standardised moment, of either sign, that the noise of single samples may have; 0 for noise of an even law.
+    pub skewness: f64,
 }
 
 /// An effect with its parameters.

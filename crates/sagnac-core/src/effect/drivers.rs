@@ -34,6 +34,17 @@ pub struct ClaimedMean {
     pub earth: Option<Earth>,
 }
 
+/// A line that a claim states.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StatedLine {
+    /// Hz.
+    pub frequency_hz: f64,
+    /// deg/h.
+    pub amplitude_deg_h: f64,
+    /// Of its cosine at `time_s` = 0, deg.
+    pub phase_deg: f64,
+}
+
 /// A column without a role of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OtherDriver {
@@ -72,6 +83,8 @@ pub struct Drivers {
     pub others: Vec<OtherDriver>,
     /// The mean that the claim expects.
     pub claim: ClaimedMean,
+    /// The lines that the claim states.
+    pub lines: Vec<StatedLine>,
 }
 
 impl Drivers {
@@ -93,6 +106,7 @@ impl Drivers {
             samples: self.samples,
             averaged: self.averaged,
             claim: self.claim,
+            lines: self.lines.clone(),
             ..Drivers::default()
         }
     }
@@ -190,6 +204,7 @@ impl Drivers {
                 })
                 .collect(),
             claim: self.claim,
+            lines: self.lines.clone(),
         }
     }
 }

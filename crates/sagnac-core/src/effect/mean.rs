@@ -1,6 +1,6 @@
 //! Effects on the mean: what a parameter and the recorded columns add to the rate.
 
-use super::{Drivers, Place, Sizing, Values};
+use super::{Drivers, Place, Sizing, StatedLine, Values};
 use crate::numeric::range::Bounds;
 
 /// A nuisance of the claim: a value that it states with an uncertainty.
@@ -176,6 +176,11 @@ pub trait MeanModel: Sync {
     /// Columns that are fitted when a claim states the effect: a state before the record that no claim can know.
     fn nuisance_columns(&self, _values: &Values, _drivers: &Drivers) -> Vec<Vec<f64>> {
         vec![]
+    }
+
+    /// The line that stated parameters describe, for an effect that is one.
+    fn stated_line(&self, _values: &Values) -> Option<StatedLine> {
+        None
     }
 
     /// How large it is and where that is asked, to tell which size would have been noticed; one entry for each column that

@@ -29,7 +29,7 @@ mod spectral;
 
 pub use column::{Column, OtherColumn};
 pub use domain::{Domain, Place};
-pub use drivers::{ClaimedMean, Drivers, Earth, OtherDriver, Temperature, averages};
+pub use drivers::{ClaimedMean, Drivers, Earth, OtherDriver, StatedLine, Temperature, averages};
 pub use kinds::{EFFECTS, find, parameter};
 pub use mean::{MeanModel, Nuisance, Regressors, Resolution, SearchContext, Starts};
 pub use model::{

@@ -147,7 +147,8 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     };
     let figures = draw::all(problem, &drawn);
     let correction = correction.map(|c| on_rows(&c, problem));
-    Outcome { explanation, correction, augmented, alternatives, figures }
+    let skewness = departures::skewness_shown(spectra, best);
+    Outcome { explanation, correction, augmented, skewness, alternatives, figures }
 }
 
 /// A series with another one added, where there is one; of none with another, that one.

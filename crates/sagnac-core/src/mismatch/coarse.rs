@@ -58,6 +58,7 @@ pub fn averaged(regular: &Regular, m: usize) -> Regular {
         start_s: fine.start_s + 0.5 * (m - 1) as f64 * fine.dt_s,
         present: fine.present.chunks_exact(m).map(|c| c.iter().all(|p| *p)).collect(),
         gaps: fine.gaps.clone(),
+        averaged: fine.averaged * m,
         disordered: fine.disordered,
     };
     Regular { grid, rate: means(&regular.rate), columns }
@@ -74,7 +75,14 @@ mod tests {
             r.columns[&Column::TableAngle].iter().map(|a| 13.0 * a.to_radians().cos()).collect()
         };
         let mut regular = Regular {
-            grid: Grid { dt_s: 2.0, start_s: 0.0, present: vec![true; 400], gaps: vec![], disordered: 0 },
+            grid: Grid {
+                dt_s: 2.0,
+                start_s: 0.0,
+                present: vec![true; 400],
+                gaps: vec![],
+                averaged: 1,
+                disordered: 0,
+            },
             rate: vec![],
             columns: std::collections::BTreeMap::from([(Column::TableAngle, angles)]),
         };
@@ -84,5 +92,18 @@ mod tests {
             assert!((rate - expected).abs() < 1e-9, "{rate} {expected}");
         }
         assert_eq!(out.rate.len(), 100);
+    }
+
+    #[test]
+    fn missing_rows_stay_where_they_were_recorded() {
+        let mut present = vec![true; 400];
+        present[10..13].fill(false);
+        let grid = Grid { dt_s: 0.5, start_s: 3.0, present, gaps: vec![(10, 3)], averaged: 1, disordered: 0 };
+        let regular = Regular { grid, rate: vec![0.0; 400], columns: Default::default() };
+        let out = averaged(&regular, 4).grid;
+        // Places 2 and 3 hold samples 8 to 15; in time the first missing row is at 8 s, as before.
+        assert_eq!(out.places_in_gaps(), [2, 3]);
+        assert_eq!((out.rows(&[]).time_s(10), regular.rows().time_s(10)), (8.0, 8.0));
+        assert_eq!(out.missing(), 3);
     }
 }

@@ -74,14 +74,10 @@ pub fn explain(
         start = samples::take_level(&problem, start, &moved, &mut found, options);
     }
     let mut selection = select::select(&start, &problem, options);
-    if problem.impute_edges(&selection.best, &selection.best) {
-        base = problem.refitted(&base);
-        held_base = Halves::new(&problem).judge(&base);
-        start = problem.refitted(&start);
-        selection = select::select(&start, &problem, options);
-    }
-    for _ in 0..ROUNDS {
-        if !problem.settle(&selection.best) {
+    // The ends for the filters that were selected, then missing rows about the courses: each asks for the selection anew.
+    let mut ends_drawn = problem.impute_edges(&selection.best, &selection.best);
+    for _ in 0..=ROUNDS {
+        if !std::mem::take(&mut ends_drawn) && !problem.settle(&selection.best) {
             break;
         }
         base = problem.refitted(&base);
@@ -120,7 +116,7 @@ pub(super) fn on_grid(series: Series, claim: &Claim, options: &Options) -> Resul
 
 /// What departs from a hypothesis.
 fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departure> {
-    departures::all(&problem.spectra, tried, level, &problem.usable)
+    departures::all(&problem.spectra, tried, level, &problem.usable, problem.claim.uncertainty.skewness)
 }
 
 /// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does

@@ -30,6 +30,11 @@ fn filter(effect: &dyn Effect) -> Option<&'static dyn Spectrum> {
     }
 }
 
+/// True for an effect that filters and is thought of.
+fn wanted(effect: &dyn Effect, options: &Options) -> bool {
+    filter(effect).is_some() && options.allows(effect.kind())
+}
+
 /// One filter, fitted to what is seen behind it.
 struct Judged {
     tried: Tried,
@@ -45,8 +50,7 @@ fn leading_filter(problem: &Problem, tried: &Tried, options: &Options) -> Option
     if !ratios.filter(|(b, _)| b.modes >= SEEN).any(|(_, (seen, claimed))| faint(seen / claimed)) {
         return None;
     }
-    let wanted = |e: &dyn Effect| filter(e).is_some() && options.allows(e.kind());
-    let leader = candidates::among(tried, &problem.spectra, wanted).into_iter().next()?;
+    let leader = candidates::among(tried, &problem.spectra, |e| wanted(e, options)).into_iter().next()?;
     select::passes(&leader, EFFECTS.len() as f64, options.alpha).then_some(leader)
 }
 
@@ -76,7 +80,6 @@ pub fn behind(problem: &Problem, base: &Tried, options: &Options) -> Option<Trie
     }
     let base = &base;
     let spectral = &problem.spectra.full;
-    let wanted = |e: &dyn Effect| filter(e).is_some() && options.allows(e.kind());
     let context = SpectralContext {
         bins: &spectral.bins,
         observed: &base.fit.observed,
@@ -85,7 +88,7 @@ pub fn behind(problem: &Problem, base: &Tried, options: &Options) -> Option<Trie
     };
     let judged: Vec<Judged> = EFFECTS
         .iter()
-        .filter(|e| wanted(**e))
+        .filter(|e| wanted(**e, options))
         .filter_map(|e| Some((*e, filter(*e)?)))
         .flat_map(|(effect, spectrum)| {
             let fitted = spectrum.starts(&context).into_iter();

@@ -81,6 +81,7 @@ fn claim(series: &Series, mean: &mean::Fitted, noise: &noise::Found) -> Claim {
             bias_deg_h: deviation(mean.bias_sd),
             temperature_coefficient_deg_h_per_degc: deviation(mean.temperature_sd),
             scale_factor_ppm: deviation(mean.scale_factor_sd),
+            skewness: 0.0,
         },
         effects: noise.effects.clone(),
     }

@@ -14,6 +14,9 @@ pub struct Outcome {
     pub correction: Option<Vec<(f64, f64)>>,
     /// The claim with re-estimated nuisances and the effects found.
     pub augmented: Claim,
+    /// Third standardised moment, of either sign, that single samples of the noise may have by this recording: what it shows and
+    /// twice its deviation; 0 where the recording shows none.
+    pub skewness: f64,
     /// For each cause that has equivalents, what would explain the recording as well: the chosen explanation and the others,
     /// each with its parameters.
     pub alternatives: Vec<Alternative>,

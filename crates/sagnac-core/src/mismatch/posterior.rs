@@ -1,7 +1,6 @@
 //! How probable each name of a finding is, given that one of the catalogue's effects is there.
 
 use super::tried::Candidate;
-use crate::effect::UNKNOWN;
 
 /// A name with its probability.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,9 +42,14 @@ pub fn probabilities(names: impl IntoIterator<Item = (&'static str, f64)>) -> Ve
     out
 }
 
-/// The name of a candidate in reports, and what it is worth over a hypothesis without it, nats.
-pub fn name_of(candidate: &Candidate, rows: usize, bic_without: f64) -> (&'static str, f64) {
-    let kind = if candidate.effect.in_format() { candidate.effect.reported_kind() } else { UNKNOWN };
+/// The name of a candidate in reports, that of its law where it takes one, and what it is worth over a hypothesis without it, nats.
+pub fn name_of(
+    candidate: &Candidate,
+    law: Option<&Candidate>,
+    rows: usize,
+    bic_without: f64,
+) -> (&'static str, f64) {
+    let kind = law.map_or(candidate.effect, |law| law.effect).reported_kind();
     (kind, 0.5 * (bic_without - candidate.tried.rank(rows)))
 }
 

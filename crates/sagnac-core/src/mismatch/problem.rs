@@ -13,8 +13,7 @@ use super::tried::{SpectralDataSet, Tried};
 use super::usable::unusable;
 use crate::claim::{Claim, Stated};
 use crate::effect::{
-    Column, Detector, Drivers, Effect, JumpDetector, Model, Nuisance, OtherDriver, Param, Rows, Values,
-    number,
+    Column, Detector, Drivers, Effect, JumpDetector, Model, Nuisance, OtherDriver, Param, Values, number,
 };
 use crate::noise::model::NoiseModel;
 use crate::numeric::cosine::{fast_length, inverse_dct2};
@@ -125,12 +124,6 @@ impl Problem {
         (!known).then_some((detector, &stated.values))
     }
 
-    /// The grid as detectors of missing rows look at it.
-    pub fn rows(&self) -> Rows<'_> {
-        let Grid { present, gaps, .. } = &self.grid;
-        Rows { rate: &[], present, gaps, start_s: self.drivers.start_s, dt_s: self.drivers.dt_s }
-    }
-
     /// A hypothesis fitted to what the problem has become.
     pub fn refitted(&self, tried: &Tried) -> Tried {
         let mut hypothesis = tried.hypothesis.clone();
@@ -200,14 +193,14 @@ impl Problem {
     /// They were drawn about the claim. A course is then missing from them, and so many samples speak against it: its size
     /// comes out too small by their share, and where it is large the noise too large and other effects too small.
     pub fn settle(&mut self, tried: &Tried) -> bool {
-        let in_gaps = self.grid.gaps.iter().flat_map(|(first, count)| *first..first + count);
+        let in_gaps = self.grid.places_in_gaps().into_iter();
         let missing: Vec<usize> = in_gaps.filter(|i| self.usable.get(*i) == Some(&false)).collect();
         if missing.is_empty() || tried.hypothesis.courses.is_empty() {
             return false;
         }
-        let before = inverse_dct2(&self.spectra.full.modes);
-        let left = inverse_dct2(&tried.residual(&self.spectra));
-        let of_course = before.iter().zip(&left).map(|(b, l)| b - l).collect::<Vec<f64>>();
+        let left = tried.residual(&self.spectra);
+        let taken: Vec<f64> = self.spectra.full.modes.iter().zip(&left).map(|(b, l)| b - l).collect();
+        let of_course = inverse_dct2(&taken);
         let share = missing.len() as f64 / self.usable.len() as f64;
         let error = |problem: &Problem, course: &[f64], tried: &Tried| {
             2.0 * share * problem.nats(&missing, course, tried)
@@ -215,7 +208,6 @@ impl Problem {
         if error(self, &of_course, tried) < MATTERS {
             return false;
         }
-        self.spectra.repeated_share = share;
         let mut moved = false;
         let mut tried = tried.clone();
         for _ in 0..TURNS {
@@ -225,6 +217,7 @@ impl Problem {
                 break;
             }
             moved = true;
+            self.spectra.repeated_share = share;
             self.residual = drawn;
             self.retransform();
             tried = self.refitted(&tried);
@@ -235,7 +228,8 @@ impl Problem {
     /// What a course says in some samples against the white part of a fitted noise, nats.
     fn nats(&self, samples: &[usize], course: &[f64], tried: &Tried) -> f64 {
         let powers = tried.powers(&self.spectra);
-        let upper = &powers[powers.len() / 2..];
+        // Modes that a filter leaves next to nothing are not judged.
+        let upper: Vec<f64> = powers[powers.len() / 2..].iter().copied().filter(|p| p.is_finite()).collect();
         let variance = upper.iter().sum::<f64>() / upper.len().max(1) as f64;
         samples.iter().map(|i| course[*i].powi(2)).sum::<f64>() / (2.0 * variance)
     }
@@ -403,6 +397,7 @@ pub(super) fn drivers(regular: &Regular, claim: &Claim) -> Drivers {
             .map(|(c, values)| OtherDriver { column: *c, smooth: smoothed(values), values: values.clone() })
             .collect(),
         claim: claim.mean,
+        lines: claim.lines(),
     }
 }
 

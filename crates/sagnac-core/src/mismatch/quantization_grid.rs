@@ -153,7 +153,14 @@ mod tests {
                 ((4.0 * x / step).round() * step / digit).round() * digit
             };
             let rate: Vec<f64> = (0..4000).map(value).collect();
-            let grid = Grid { dt_s, start_s: 0.0, present: vec![true; 4000], gaps: vec![], disordered: 0 };
+            let grid = Grid {
+                dt_s,
+                start_s: 0.0,
+                present: vec![true; 4000],
+                gaps: vec![],
+                averaged: 1,
+                disordered: 0,
+            };
             super::of(&Regular { grid, rate, columns: std::collections::BTreeMap::new() }).expect("a lattice")
         };
         assert!(of(0.1, 0.1).gain(4000, 0.1) < 1e-6);

@@ -24,8 +24,10 @@ pub struct Grid {
     pub start_s: f64,
     /// True where a row was.
     pub present: Vec<bool>,
-    /// Runs of missing rows: first, count.
+    /// Runs of missing rows, in places of the grid of the recording: first, count.
     pub gaps: Vec<(usize, usize)>,
+    /// Samples of the recording that each place averages.
+    pub averaged: usize,
     /// Rows whose stamp stands still or falls.
     pub disordered: usize,
 }
@@ -49,13 +51,29 @@ impl Grid {
     pub fn missing(&self) -> usize {
         self.gaps.iter().map(|g| g.1).sum()
     }
+
+    /// Places of the grid that want a missing row, ascending.
+    pub fn places_in_gaps(&self) -> Vec<usize> {
+        let of =
+            |(first, count): &(usize, usize)| first / self.averaged..=(first + count - 1) / self.averaged;
+        let mut places: Vec<usize> = self.gaps.iter().filter(|g| g.1 > 0).flat_map(of).collect();
+        places.dedup();
+        places.retain(|i| *i < self.present.len());
+        places
+    }
+
+    /// The rows as they were recorded, as detectors of missing ones look at them.
+    pub fn rows<'a>(&'a self, rate: &'a [f64]) -> Rows<'a> {
+        let dt_s = self.dt_s / self.averaged as f64;
+        let start_s = self.start_s - 0.5 * (self.averaged - 1) as f64 * dt_s;
+        Rows { rate, present: &self.present, gaps: &self.gaps, start_s, dt_s }
+    }
 }
 
 impl Regular {
     /// The rows as detectors look at them.
     pub fn rows(&self) -> Rows<'_> {
-        let Grid { dt_s, start_s, present, gaps, .. } = &self.grid;
-        Rows { rate: &self.rate, present, gaps, start_s: *start_s, dt_s: *dt_s }
+        self.grid.rows(&self.rate)
     }
 
     /// Puts rows on the grid of `sample_rate_hz`. An interval counts as the nearest whole number of sample intervals, so
@@ -118,7 +136,7 @@ impl Regular {
             out
         };
         Ok(Regular {
-            grid: Grid { dt_s, start_s, present, gaps, disordered },
+            grid: Grid { dt_s, start_s, present, gaps, averaged: 1, disordered },
             rate: spread(rate_deg_h),
             columns: columns.iter().map(|(c, v)| (*c, spread(v))).collect(),
         })

@@ -213,7 +213,7 @@ pub fn missing(problem: &Problem, claim: &Claim) -> Vec<(&'static dyn Effect, De
         if claim.states(*effect) {
             return None;
         }
-        detector.find(&problem.rows()).map(|found| (*effect, found.detection))
+        detector.find(&problem.grid.rows(&[])).map(|found| (*effect, found.detection))
     };
     EFFECTS.iter().filter_map(one).collect()
 }

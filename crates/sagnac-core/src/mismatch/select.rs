@@ -298,6 +298,12 @@ fn laws<'a>(effect: &dyn Effect, rivals: &'a [Candidate]) -> Vec<&'a Candidate> 
     laws
 }
 
+/// What a candidate is named by: itself, or the best law of a response; `None` for one without a name.
+fn named<'a>(candidate: &'a Candidate, rivals: &'a [Candidate]) -> Option<&'a Candidate> {
+    let law = self::laws(candidate.effect, rivals).into_iter().next();
+    law.or_else(|| candidate.effect.in_format().then_some(candidate))
+}
+
 /// How probable the names of a chosen effect are: its own and those of its rivals in its place, or of the laws of a response.
 fn names(
     effect: &'static dyn Effect,
@@ -312,7 +318,8 @@ fn names(
     }
     let own = 0.5 * (rank_without - best.rank(rows));
     let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind());
-    let others = others.map(|c| name_of(c, rows, rank_without));
+    let others =
+        others.map(|c| name_of(c, self::laws(c.effect, rivals).first().copied(), rows, rank_without));
     probabilities([(effect.reported_kind(), own)].into_iter().chain(others))
 }
 
@@ -335,9 +342,9 @@ fn chosen(best: &Tried, base: &Tried, first: &[Candidate], search: &Search<'_>) 
             };
             let laws = laws(effect, &rivals);
             let equivalents = if laws.is_empty() {
-                let others =
-                    rivals.iter().filter(|c| c.effect.kind() != effect.kind() && c.effect.in_format());
-                others.filter(|c| near(c)).take(MOST_EQUIVALENTS).cloned().collect()
+                let others = rivals.iter().filter(|c| near(c)).filter_map(|c| named(c, &rivals));
+                let others = others.filter(|c| c.effect.kind() != effect.kind());
+                others.take(MOST_EQUIVALENTS).cloned().collect()
             } else {
                 laws.iter().skip(1).take(MOST_EQUIVALENTS).map(|c| (*c).clone()).collect()
             };

@@ -69,6 +69,7 @@ pub(super) fn of_recording(series: &Series, claim: &Claim, dt_s: f64) -> Drivers
         samples,
         averaged: 1,
         claim: claim.mean,
+        lines: claim.lines(),
         ..Drivers::default()
     };
     for (column, values) in &series.columns {

@@ -170,6 +170,7 @@ impl<'a> Simulation<'a> {
                 samples,
                 averaged: 1,
                 claim: claim.mean,
+                lines: claim.lines(),
                 ..Drivers::default()
             }),
             Over::Like(series) => (of_recording(series, claim, self.dt_s), BTreeMap::new()),

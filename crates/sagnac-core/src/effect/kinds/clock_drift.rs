@@ -1,10 +1,12 @@
-//! A delay between the gyro and the columns beside it that grows.
+//! A delay between the gyro and the columns beside it that grows: its clock runs at another rate. A line that the claim states,
+//! as that of the mains, shows it too, at another frequency.
 
 use crate::effect::shared::delay::{follow, moves, regressors, shifted};
 use crate::effect::shared::search::best_of;
+use crate::effect::shared::stated_lines;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values,
-    number,
+    list, number,
 };
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::range::Bounds;
@@ -13,9 +15,18 @@ pub struct ClockDrift;
 
 static PARAMS: [Param; 1] = [Param::reported("drift_ppm", "ppm", -1e5, 1e5).signed()];
 
+/// Amplitudes of the lines of the claim as the drifting clock shows them.
+const AMPLITUDES: &str = "line_amplitudes_deg_h";
+/// Their phases at `time_s` = 0, with the frequencies as they are shown.
+const PHASES: &str = "line_phases_deg";
+
 describe! {
     ClockDrift, "clock_drift", Mean in Lag, needs [],
-    confusers ["time_offset", "sf_error", "dropped_samples"]
+    confusers ["time_offset", "sf_error", "dropped_samples", "line"],
+    lists [
+        Param::inner(AMPLITUDES, "deg/h", 0.0, 1e6),
+        Param::inner(PHASES, "deg", -360.0, 360.0)
+    ]
 }
 
 /// Lag of a sample in samples, for 1 ppm.
@@ -29,19 +40,24 @@ impl MeanModel for ClockDrift {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        moves(drivers)
+        moves(drivers) || stated_lines::any(drivers)
     }
 
     /// A drift is found by following it: from a stretch at the beginning, where the delay is still small, to the whole
-    /// record.
+    /// record. Or by a line as large as the stated one at another place.
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if !moves(drivers) || context.modes.len() != n || context.powers.len() != n {
+        if !self.applies(drivers) || context.modes.len() != n || context.powers.len() != n {
             return Starts { points: vec![], trials: 1.0 };
+        }
+        let Bounds { low, high } = self.bounds(drivers)[0];
+        let (by_lines, places) = stated_lines::starts(drivers, context, (low, high));
+        if !moves(drivers) {
+            let points = by_lines.into_iter().map(|d| vec![d]);
+            return Starts { points: best_of(self, points, 3, drivers, context), trials: places.max(1.0) };
         }
         let mean = drivers.claimed_mean();
         let residual = inverse_dct2(context.modes);
-        let Bounds { low, high } = self.bounds(drivers)[0];
         let track = |from: usize| {
             let (mut drift, mut until) = (0.0f64, from);
             loop {
@@ -58,8 +74,8 @@ impl MeanModel for ClockDrift {
             }
         };
         let begun = [1usize, 4, 16, 64, 256].map(|part| (n / part).clamp(32, n));
-        let points = begun.into_iter().map(track).filter(|d| *d != 0.0).map(|d| vec![d]);
-        let trials = (1e-6 * (high - low) * n as f64).max(1.0);
+        let points = begun.into_iter().map(track).filter(|d| *d != 0.0).chain(by_lines).map(|d| vec![d]);
+        let trials = (1e-6 * (high - low) * n as f64).max(1.0) + places;
         Starts { points: best_of(self, points, 3, drivers, context), trials }
     }
 
@@ -69,7 +85,30 @@ impl MeanModel for ClockDrift {
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         let Some(drift) = nonlinear_parameters.first() else { return Regressors::default() };
-        regressors(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers))
+        let mut parts = Regressors::default();
+        if moves(drivers) {
+            parts = regressors(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers));
+        }
+        if stated_lines::any(drivers) {
+            let stated = stated_lines::taken_away(drivers);
+            let fixed = parts.offset.get_or_insert_with(|| vec![0.0; drivers.samples]);
+            fixed.iter_mut().zip(stated).for_each(|(f, s)| *f += s);
+            parts.columns = stated_lines::drifted(*drift, drivers);
+        }
+        parts
+    }
+
+    fn lists(
+        &self,
+        _nonlinear_parameters: &[f64],
+        coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<(&'static str, Vec<f64>)> {
+        if coefficients.is_empty() {
+            return vec![];
+        }
+        let (amplitudes, phases) = stated_lines::polars(coefficients);
+        vec![(AMPLITUDES, amplitudes), (PHASES, phases)]
     }
 
     fn parameters(
@@ -82,6 +121,10 @@ impl MeanModel for ClockDrift {
     }
 
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        // Of lines alone its size says nothing: one place is as far as another.
+        if !moves(drivers) {
+            return vec![];
+        }
         let Bounds { low, high } = self.bounds(drivers)[0];
         let begin = 0.1 / per_ppm(drivers.samples.max(2) - 1, drivers).max(1e-12);
         let beside = self.regressors(&[begin], drivers).nuisance.len();
@@ -91,7 +134,10 @@ impl MeanModel for ClockDrift {
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let drift = number(values, PARAMS[0].name)?;
-        Some(shifted(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers)).0)
+        let mut course = shifted(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers)).0;
+        let lines = stated_lines::course(drift, list(values, AMPLITUDES), list(values, PHASES), drivers);
+        course.iter_mut().zip(lines).for_each(|(c, l)| *c += l);
+        Some(course)
     }
 
     fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
@@ -103,7 +149,8 @@ impl MeanModel for ClockDrift {
             return vec![];
         };
         let lag = Place { domain: Domain::Lag, from: last.min(0.0), to: last.max(0.0) };
-        [vec![lag], crate::effect::shared::reach::record(drivers)].concat()
+        let line = nonlinear_parameters.first().and_then(|d| stated_lines::place(*d, drivers));
+        [vec![lag], crate::effect::shared::reach::record(drivers), line.into_iter().collect()].concat()
     }
 
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {

@@ -8,7 +8,7 @@ use crate::effect::shared::sinusoid::{averaged, columns, polar, wave};
 use crate::effect::sizing::numbers;
 use crate::effect::{
     Domain, Drivers, Effect, Family, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing,
-    Starts, Values, number,
+    Starts, StatedLine, Values, number,
 };
 use crate::numeric::cosine::sinusoid_modes;
 use crate::numeric::optimize::parabolic_peak;
@@ -102,9 +102,16 @@ impl MeanModel for Line {
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let frequency = number(values, PARAMS[0].name)?;
-        let phase = number(values, PARAMS[2].name).unwrap_or(0.0);
-        Some(wave(number(values, PARAMS[1].name)?, phase, &columns(frequency, drivers)))
+        let StatedLine { frequency_hz, amplitude_deg_h, phase_deg } = self.stated_line(values)?;
+        Some(wave(amplitude_deg_h, phase_deg, &columns(frequency_hz, drivers)))
+    }
+
+    fn stated_line(&self, values: &Values) -> Option<StatedLine> {
+        Some(StatedLine {
+            frequency_hz: number(values, PARAMS[0].name)?,
+            amplitude_deg_h: number(values, PARAMS[1].name)?,
+            phase_deg: number(values, PARAMS[2].name).unwrap_or(0.0),
+        })
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

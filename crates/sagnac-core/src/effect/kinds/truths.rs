@@ -58,6 +58,7 @@ pub fn drivers() -> Drivers {
             })
             .into_iter()
             .collect(),
+        lines: vec![],
         claim: ClaimedMean {
             bias_deg_h: -3.0,
             temperature: Some(Temperature { coefficient_deg_h_per_degc: 0.02, reference_degc: 20.0 }),

@@ -17,6 +17,7 @@ pub(super) mod reach;
 pub(super) mod response;
 pub(super) mod search;
 pub(super) mod sinusoid;
+pub(super) mod stated_lines;
 pub(super) mod step;
 pub(super) mod table_angle;
 pub(super) mod thermal;

@@ -61,12 +61,14 @@ impl Scan {
     }
 }
 
-/// Every test of the residual of a fit. `level` is the local deviation of the noise, 1 where it is as the spectrum says.
+/// Every test of the residual of a fit. `level` is the local deviation of the noise, 1 where it is as the spectrum says;
+/// `allowed_skewness` the third standardised moment that single samples may have.
 pub fn all(
     spectra: &SpectralDataSet,
     tried: &Tried,
     level: Option<&[f64]>,
     usable: &[bool],
+    allowed_skewness: f64,
 ) -> Vec<Departure> {
     let spectral = &spectra.full;
     let mut white = White::of(tried, spectra);
@@ -89,7 +91,7 @@ pub fn all(
         off_lattice(spectral, &white, spectra.grid_step_arcsec)
             .and_then(|values| tails(spectral, &values, usable)),
     );
-    out.extend(skewness(spectral, &white));
+    out.extend(skewness(spectral, &white, allowed_skewness));
     out.extend(columns::all(spectral, &white));
     out
 }
@@ -225,19 +227,36 @@ fn tails(spectral: &SpectralData, series: &[f64], usable: &[bool]) -> Option<Dep
     Some(found)
 }
 
-/// Third moment of the whitened series at the sample rate and averaged.
-fn skewness(spectral: &SpectralData, white: &White) -> Option<Departure> {
+/// Third standardised moment of the means of so many samples, and its deviation where their law is even.
+fn third_moment(series: &[f64], m: usize) -> (f64, f64) {
+    let means = crate::effect::averages(series, m);
+    let n = means.len() as f64;
+    let variance = means.iter().map(|e| e * e).sum::<f64>() / n;
+    let third = means.iter().map(|e| e.powi(3)).sum::<f64>() / n;
+    // The law has heavier tails than the normal one for few values; a tenth more spread covers them.
+    (third / variance.powf(1.5), (6.0 / n).sqrt() * (1.0 + 8.0 / n.sqrt()))
+}
+
+/// Third standardised moment, of either sign, that single samples may have by what a hypothesis leaves: what they show and twice
+/// its deviation; 0 where they show none.
+pub fn skewness_shown(spectra: &SpectralDataSet, tried: &Tried) -> f64 {
+    /// Deviations from which a moment is shown.
+    const SHOWN: f64 = 2.0;
+    let white = White::of(tried, spectra);
+    let (moment, deviation) = third_moment(&white.series, 1);
+    if moment.abs() > SHOWN * deviation { moment.abs() + 2.0 * deviation } else { 0.0 }
+}
+
+/// Third moment of the whitened series at the sample rate and averaged, beyond that which single samples may have: that of a mean
+/// of m independent ones is smaller by the root of m.
+fn skewness(spectral: &SpectralData, white: &White, allowed: f64) -> Option<Departure> {
     let mut scan = Scan::new();
     let mut m = 1;
     while white.series.len() / m >= 256 {
-        let means = crate::effect::averages(&white.series, m);
-        let n = means.len() as f64;
-        let variance = means.iter().map(|e| e * e).sum::<f64>() / n;
-        let third = means.iter().map(|e| e.powi(3)).sum::<f64>() / n;
-        let z = third / variance.powf(1.5) * (n / 6.0).sqrt();
-        // The law has heavier tails than the normal one for few values; a tenth more spread covers them.
+        let (moment, deviation) = third_moment(&white.series, m);
+        let beyond = (moment.abs() - allowed / (m as f64).sqrt()).max(0.0);
         scan.see(
-            ln_normal_two_sided(z / (1.0 + 8.0 / n.sqrt())),
+            ln_normal_two_sided(beyond / deviation),
             spectral.drivers.start_s,
             spectral.drivers.start_s + spectral.drivers.length_s(),
         );
@@ -307,6 +326,25 @@ mod tests {
         // A law that ends at two deviations has too few beyond.
         let short: Vec<f64> = even.iter().map(|e| e.clamp(-1.9, 1.9)).collect();
         assert!(tails(&spectral, &short, &usable).unwrap().p_value() < 1e-12);
+    }
+
+    #[test]
+    fn a_law_that_is_not_even_departs_by_what_the_claim_does_not_allow() {
+        let n = 4096;
+        // Quantiles of a χ² law of 100 degrees of freedom in a scattered order: a third moment of √(8/100).
+        let cube = |z: f64| (1.0 - 2.0 / 900.0 + z * (2.0f64 / 900.0).sqrt()).powi(3);
+        let chi =
+            |i: usize| cube(crate::estimate::normal_quantile((((i * 1597) % n) as f64 + 0.5) / n as f64));
+        let mean = (0..n).map(chi).sum::<f64>() / n as f64;
+        let deviation = ((0..n).map(|i| (chi(i) - mean).powi(2)).sum::<f64>() / n as f64).sqrt();
+        let white = white((0..n).map(|i| (chi(i) - mean) / deviation).collect());
+        let (moment, spread) = third_moment(&white.series, 1);
+        assert!((moment - 0.08f64.sqrt()).abs() < 0.01, "{moment}");
+        let ln_p = |allowed: f64| skewness(&spectral(n), &white, allowed).unwrap().ln_p;
+        assert!(ln_p(0.0) < -20.0 && ln_p(moment) > -0.1, "{} {}", ln_p(0.0), ln_p(moment));
+        // Of what is allowed only in part, the rest is judged.
+        let rest = ln_normal_two_sided(3.0) + 2f64.ln();
+        assert!((ln_p(moment - 3.0 * spread) - rest).abs() < 0.5, "{}", ln_p(moment - 3.0 * spread));
     }
 
     #[test]
