@@ -343,8 +343,13 @@ fn chosen(best: &Tried, base: &Tried, first: &[Candidate], search: &Search<'_>) 
             let laws = laws(effect, &rivals);
             let equivalents = if laws.is_empty() {
                 let others = rivals.iter().filter(|c| near(c)).filter_map(|c| named(c, &rivals));
-                let others = others.filter(|c| c.effect.kind() != effect.kind());
-                others.take(MOST_EQUIVALENTS).cloned().collect()
+                let mut kinds = vec![effect.kind()];
+                let new = |c: &&Candidate| {
+                    let new = !kinds.contains(&c.effect.kind());
+                    kinds.push(c.effect.kind());
+                    new
+                };
+                others.filter(new).take(MOST_EQUIVALENTS).cloned().collect()
             } else {
                 laws.iter().skip(1).take(MOST_EQUIVALENTS).map(|c| (*c).clone()).collect()
             };

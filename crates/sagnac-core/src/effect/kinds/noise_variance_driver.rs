@@ -1,7 +1,10 @@
 //! The level of the noise follows a recorded column.
 
+use crate::effect::shared::chance::{is_chance, moved};
 use crate::effect::shared::knots::Knots;
-use crate::effect::shared::variance::{between, by_value, contrast, fit, overdispersion, raised, thinned};
+use crate::effect::shared::variance::{
+    GammaFit, Group, between, by_value, contrast, fit, overdispersion, raised, thinned,
+};
 use crate::effect::{
     Column, Detector, Domain, Drivers, FlatResidual, Knot, Law, Level, LevelDetector, LevelLaw, Param, Place,
     Samples, Value, Values, list, text,
@@ -72,22 +75,22 @@ impl LevelDetector for NoiseVarianceDriver {
     }
 }
 
-/// The law over the values of a column that the level follows.
-fn over_column(
-    column: Column,
-    values: &[f64],
-    residual: &FlatResidual<'_>,
-    samples: &[usize],
-) -> Option<LevelLaw> {
-    let domain = match column {
-        Column::Temperature => Domain::Temperature,
-        Column::Supply => Domain::Supply,
-        Column::OuterRate => Domain::OuterRate,
-        Column::Other(_) => Domain::Driver,
-        // The input rate is an effect of its own, and averages hold no angles.
-        Column::TableRate | Column::TableAngle => return None,
-    };
-    let (groups, means) = by_value(|i| values[i], residual, samples);
+/// Gain of a shifted column, nats, over the dispersion of the groups, up to which it is that of an even level.
+const NOTHING: f64 = 8.0;
+
+/// A level fitted over the values of a column.
+struct Over {
+    groups: Vec<Group>,
+    /// Mean value of each group.
+    means: Vec<f64>,
+    /// What the logarithm of the level is linear in.
+    columns: Vec<Vec<f64>>,
+    best: GammaFit,
+}
+
+/// The level of `flat` over the values of a column: a line or a parabola in its logarithm.
+fn over(values: &[f64], flat: &[f64], samples: &[usize]) -> Option<Over> {
+    let (groups, means) = by_value(|i| values[i], flat, samples);
     let Bounds { low, high } = ends(&means);
     if !ends(&means).is_wide() {
         return None;
@@ -102,13 +105,42 @@ fn over_column(
         let score = |f: &f64, p: usize| 2.0 * f - p as f64 * rows;
         score(&a.0.gain, a.1.len()).total_cmp(&score(&b.0.gain, b.1.len()))
     })?;
+    Some(Over { groups, means, columns, best })
+}
+
+/// The law over the values of a column that the level follows; `None` where the level that it leaves follows the same column shifted
+/// in time about as well.
+fn over_column(
+    column: Column,
+    values: &[f64],
+    residual: &FlatResidual<'_>,
+    samples: &[usize],
+) -> Option<LevelLaw> {
+    let domain = match column {
+        Column::Temperature => Domain::Temperature,
+        Column::Supply => Domain::Supply,
+        Column::OuterRate => Domain::OuterRate,
+        Column::Other(_) => Domain::Driver,
+        // The input rate is an effect of its own, and averages hold no angles.
+        Column::TableRate | Column::TableAngle => return None,
+    };
+    let Over { groups, means, columns, best } = over(values, &residual.flat, samples)?;
     let (ratio, ci95) = contrast(&best.log_squares, &best.covariance, &columns);
     let knots: Vec<Knot> =
         means.iter().zip(&best.log_squares).map(|(v, l)| Knot { at: *v, value: (0.5 * l).exp() }).collect();
     let Bounds { low: from, high: to } = raised(&means, &best.log_squares);
     let free = columns.len();
+    let profile: Vec<f64> = values.iter().map(|v| between(&knots, *v)).collect();
+    let left: Vec<f64> = residual.flat.iter().zip(&profile).map(|(e, g)| e / g).collect();
+    let worth = |o: &Over| o.best.gain / overdispersion(&o.groups, &o.best.log_squares, o.columns.len() + 1);
+    let of_slide = |slide: usize| over(&moved(values, slide), &left, samples).as_ref().map_or(0.0, worth);
+    let own = Over { groups, means, columns, best };
+    if is_chance(worth(&own), NOTHING, of_slide) {
+        return None;
+    }
+    let Over { groups, best, .. } = own;
     Some(LevelLaw {
-        profile: values.iter().map(|v| between(&knots, *v)).collect(),
+        profile,
         law: Law::Column(column, thinned(&knots)),
         gain: best.gain,
         trials: 2.0,
@@ -143,5 +175,42 @@ mod tests {
         assert_eq!(rate, [1.0, 2.0, 3.0]);
         NoiseVarianceDriver.apply(&stated("field_uT"), &drivers, 1, &mut rate, &mut [true; 3]);
         assert_eq!(rate, [1.0, 2.0, 3.0], "a column that is not there changes nothing");
+    }
+
+    #[test]
+    fn a_level_that_follows_something_else_follows_no_column() {
+        let n = 20_000;
+        let mut state = 7u64;
+        let mut normal = || {
+            let mut uniform = || {
+                state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+                (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
+            };
+            (0..12).map(|_| uniform()).sum::<f64>()
+        };
+        let at = |i: usize, periods: f64| (std::f64::consts::TAU * periods * i as f64 / n as f64).sin();
+        let column: Vec<f64> = (0..n).map(|i| at(i, 3.0)).collect();
+        let drivers =
+            Drivers { dt_s: 1.0, samples: n, temperature: Some(column.clone()), ..Drivers::default() };
+        let usable = vec![true; n];
+        let mut law = |level: &dyn Fn(usize) -> f64| {
+            let flat = (0..n).map(|i| level(i) * normal()).collect();
+            let residual = FlatResidual {
+                white: vec![],
+                flat,
+                per_deg_h: 1.0,
+                ends: 0,
+                usable: &usable,
+                drivers: &drivers,
+                rounding_step: 0.0,
+            };
+            let samples: Vec<usize> = (0..n).collect();
+            over_column(Column::Temperature, &column, &residual, &samples)
+        };
+        // By the column itself: a ratio of e^0.6.
+        let follows = law(&|i| (0.3 * column[i]).exp()).unwrap();
+        assert!((follows.ratio.ln() - 0.6).abs() < 0.1 && follows.gain > 100.0, "{}", follows.ratio);
+        // By something at a pace of its own that goes partly with it.
+        assert!(law(&|i| (0.3 * at(i, 3.3)).exp()).is_none());
     }
 }

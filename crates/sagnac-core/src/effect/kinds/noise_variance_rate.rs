@@ -53,7 +53,7 @@ impl LevelDetector for NoiseVarianceRate {
 
 /// The law over the size of the rate.
 fn over_rate(rate: &[f64], residual: &FlatResidual<'_>, samples: &[usize]) -> Option<LevelLaw> {
-    let (groups, sizes) = by_value(|i| rate[i].abs(), residual, samples);
+    let (groups, sizes) = by_value(|i| rate[i].abs(), &residual.flat, samples);
     let largest = rate.iter().fold(0.0, |a: f64, r| a.max(r.abs()));
     if !ends(&sizes).is_wide() {
         return None;

@@ -46,13 +46,17 @@ pub(in crate::effect) fn follows_by_chance(
 }
 
 /// True where columns shifted in time gain more than `nothing`, and no small part of what they gain in their own place.
-pub(super) fn is_chance(gain: f64, nothing: f64, of_slide: impl Fn(usize) -> f64 + Sync + Send) -> bool {
+pub(in crate::effect) fn is_chance(
+    gain: f64,
+    nothing: f64,
+    of_slide: impl Fn(usize) -> f64 + Sync + Send,
+) -> bool {
     let by_chance = (1..=SLIDES).into_par_iter().map(of_slide).reduce(|| 0.0, f64::max);
     by_chance > nothing && gain < OVER_CHANCE * by_chance
 }
 
 /// A column in the place of one of the slides, counted from 1.
-pub(super) fn moved(values: &[f64], slide: usize) -> Vec<f64> {
+pub(in crate::effect) fn moved(values: &[f64], slide: usize) -> Vec<f64> {
     mirrored_shift(values, slide * 2 * values.len() / (SLIDES + 1))
 }
 

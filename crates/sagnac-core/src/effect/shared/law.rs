@@ -114,6 +114,11 @@ impl Term {
         [Some(self.first), self.second].into_iter().flatten()
     }
 
+    /// Whether it is made of a column, alone or with another.
+    fn has(self, column: Column) -> bool {
+        self.factors().any(|f| f.column == column)
+    }
+
     /// Its course for a coefficient of 1.
     pub fn course(self, columns: &Columns<'_>, drivers: &Drivers) -> Option<Vec<f64>> {
         let mut out: Option<Vec<f64>> = None;
@@ -228,14 +233,17 @@ impl<'a> Columns<'a> {
         Some(column.values.iter().map(|v| column.scale.scaled(*v)).collect())
     }
 
-    /// All of them moved in time by the same shift.
-    fn shifted(&self, slide: usize) -> Columns<'static> {
-        let one = |c: &Scaled<'_>| Scaled {
+    /// One of them, or all, moved in time by the same shift.
+    fn shifted(&self, slide: usize, only: Option<Column>) -> Columns<'_> {
+        let moved = self.0.iter().map(|c| Scaled {
             column: c.column,
-            values: moved(&c.values, slide).into(),
+            values: match only.is_none_or(|only| only == c.column) {
+                true => moved(&c.values, slide).into(),
+                false => std::borrow::Cow::Borrowed(&*c.values),
+            },
             scale: c.scale,
-        };
-        Columns(self.0.iter().map(one).collect())
+        });
+        Columns(moved.collect())
     }
 
     /// Every term: each form of a column, and the product of any two forms but squares of different columns, or of value and rate of one.
@@ -285,32 +293,106 @@ fn whitened(modes: &[f64], roots: &[f64]) -> Vec<f64> {
     modes.iter().zip(roots).skip(1).map(|(x, r)| if r.is_finite() { x / r } else { 0.0 }).collect()
 }
 
-/// The law that the residual follows; `None` where it follows none, or columns shifted in time do about as well.
+/// What a law is searched on.
+struct Search<'a> {
+    columns: Columns<'a>,
+    terms: Vec<Term>,
+    /// The terms in whitened modes.
+    modes: Vec<Vec<f64>>,
+    residual: Vec<f64>,
+    drivers: &'a Drivers,
+    roots: Vec<f64>,
+    /// Logarithm of the number of terms.
+    many: f64,
+}
+
+impl Search<'_> {
+    fn pursue(&self, modes: &[Vec<f64>], allowed: impl Fn(usize) -> bool, residual: &[f64]) -> Pursued {
+        pursue(modes, allowed, residual, MAX_TERMS, self.many + PRICE)
+    }
+
+    /// What some terms leave of the residual.
+    fn left(&self, found: &Pursued) -> Vec<f64> {
+        let own = found.terms.iter().filter_map(|i| self.modes.get(*i).cloned()).collect();
+        let mut left = self.residual.clone();
+        orthonormal(own).iter().for_each(|d| remove(&mut left, d));
+        left
+    }
+
+    /// The columns of a law, each once.
+    fn columns_of(&self, found: &Pursued) -> Vec<Column> {
+        let mut out: Vec<Column> =
+            found.terms.iter().flat_map(|i| self.terms[*i].factors()).map(|f| f.column).collect();
+        out.sort_unstable();
+        out.dedup();
+        out
+    }
+
+    /// True where the columns of a law, moved in time, gain on what it leaves no small part of what it gains.
+    fn is_chance(&self, found: &Pursued) -> bool {
+        let left = self.left(found);
+        let of_slide = |slide: usize| {
+            let modes =
+                whitened_terms(&self.columns.shifted(slide, None), &self.terms, self.drivers, &self.roots);
+            self.pursue(&modes, |_| true, &left).gain
+        };
+        is_chance(found.gain, self.many + NOTHING, of_slide)
+    }
+
+    /// The column of a law of several that, moved in time by itself, gains on what the law leaves no small part of what it adds to
+    /// the others: it stands in the law by chance. `allowed` are the terms that the law was chosen from.
+    fn column_by_chance(&self, found: &Pursued, allowed: impl Fn(usize) -> bool) -> Option<Column> {
+        let columns = self.columns_of(found);
+        if columns.len() < 2 {
+            return None;
+        }
+        let left = self.left(found);
+        columns.into_iter().find(|column| {
+            let with = |i: usize| self.terms[i].has(*column);
+            let others = self.pursue(&self.modes, |i| allowed(i) && !with(i), &self.residual);
+            let terms: Vec<Term> =
+                (0..self.terms.len()).filter(|i| allowed(*i) && with(*i)).map(|i| self.terms[i]).collect();
+            let of_slide = |slide: usize| {
+                let columns = self.columns.shifted(slide, Some(*column));
+                let modes = whitened_terms(&columns, &terms, self.drivers, &self.roots);
+                self.pursue(&modes, |_| true, &left).gain
+            };
+            is_chance(found.gain - others.gain, self.many + NOTHING, of_slide)
+        })
+    }
+}
+
+/// The law that the residual follows; `None` where it follows none, or columns shifted in time do about as well. A column that
+/// does about as well shifted by itself is no part of it.
 pub(in crate::effect) fn search(drivers: &Drivers, context: &SearchContext<'_>) -> Option<LawFound> {
     let columns = Columns::of(drivers);
     let terms = columns.terms(drivers);
     let roots: Vec<f64> = context.powers.iter().map(|p| p.sqrt()).collect();
     let modes = whitened_terms(&columns, &terms, drivers, &roots);
     let many = (terms.len().max(1) as f64).ln();
-    let chosen =
-        |modes: &[Vec<f64>], residual: &[f64]| pursue(modes, |_| true, residual, MAX_TERMS, many + PRICE);
-    let mut left = whitened(context.modes, &roots);
-    let found: Pursued = chosen(&modes, &left);
-    if !found.terms.iter().any(|i| terms[*i].second.is_some()) {
+    let residual = whitened(context.modes, &roots);
+    let search = Search { columns, terms, modes, residual, drivers, roots, many };
+    let mut barred: Vec<Column> = vec![];
+    let found = loop {
+        let allowed = |i: usize| !barred.iter().any(|c| search.terms[i].has(*c));
+        let found = search.pursue(&search.modes, allowed, &search.residual);
         // Of one column each there are kinds.
-        return None;
-    }
-    let own = found.terms.iter().filter_map(|i| modes.get(*i).cloned()).collect();
-    orthonormal(own).iter().for_each(|d| remove(&mut left, d));
-    drop(modes);
-    let of_slide = |slide: usize| {
-        let modes = whitened_terms(&columns.shifted(slide), &terms, drivers, &roots);
-        chosen(&modes, &left).gain
+        if !found.terms.iter().any(|i| search.terms[*i].second.is_some()) {
+            return None;
+        }
+        // What is chance as a whole is not looked at column by column.
+        if barred.is_empty() && search.is_chance(&found) {
+            return None;
+        }
+        match search.column_by_chance(&found, allowed) {
+            Some(column) => barred.push(column),
+            None => break found,
+        }
     };
-    if is_chance(found.gain, many + NOTHING, of_slide) {
+    if !barred.is_empty() && search.is_chance(&found) {
         return None;
     }
-    let trials = choices(terms.len(), found.terms.len());
+    let trials = choices(search.terms.len(), found.terms.len());
     Some(LawFound { terms: found.terms, trials })
 }
 
@@ -338,13 +420,18 @@ mod tests {
         }
     }
 
-    fn found(added: &[f64], drivers: &Drivers) -> Option<Vec<Term>> {
+    /// A course in noise of a deviation of 1.
+    fn noisy(added: &[f64]) -> Vec<f64> {
         let mut state = 11u64;
         let mut uniform = || {
             state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
             (state >> 11) as f64 / (1u64 << 53) as f64 - 0.5
         };
-        let residual: Vec<f64> = added.iter().map(|a| a + (0..12).map(|_| uniform()).sum::<f64>()).collect();
+        added.iter().map(|a| a + (0..12).map(|_| uniform()).sum::<f64>()).collect()
+    }
+
+    fn found(added: &[f64], drivers: &Drivers) -> Option<Vec<Term>> {
+        let residual = noisy(added);
         let modes = dct2(&residual);
         let mut powers = vec![1.0; residual.len()];
         powers[0] = f64::INFINITY;
@@ -368,6 +455,32 @@ mod tests {
         // What follows one column alone has a kind of its own.
         let single: Vec<f64> = t.iter().map(|t| t - 20.0).collect();
         assert!(found(&single, &drivers).is_none());
+    }
+
+    #[test]
+    fn a_column_that_only_fills_what_is_unexplained_is_no_part_of_a_law() {
+        let mut drivers = drivers();
+        let (t, p) = (drivers.temperature.clone().unwrap(), drivers.others[0].values.clone());
+        let decoy = moved(&p, 3);
+        let column = Column::of_name("decoy");
+        drivers.others.push(OtherDriver { column, smooth: decoy.clone(), values: decoy });
+        // A law of temperature and pressure, and beside it a course that nothing recorded explains.
+        let added: Vec<f64> = (0..1440)
+            .map(|i| {
+                let law = 60.0 * (p[i] - p[i.max(1) - 1]) * (t[i] - 20.0) / 4.0;
+                let x = i as f64;
+                law + 0.5 * (x / 97.0).sin() + 0.5 * (x / 61.0 + 1.0).cos()
+            })
+            .collect();
+        let columns = Columns::of(&drivers);
+        let terms = columns.terms(&drivers);
+        let modes = whitened_terms(&columns, &terms, &drivers, &[1.0; 1440]);
+        let residual = whitened(&dct2(&noisy(&added)), &[1.0; 1440]);
+        let plain = pursue(&modes, |_| true, &residual, MAX_TERMS, (terms.len() as f64).ln() + PRICE);
+        assert!(plain.terms.iter().any(|i| terms[*i].has(column)), "{:?}", plain.terms);
+        let law = found(&added, &drivers).unwrap();
+        assert!(law.iter().all(|t| !t.has(column)), "{law:?}");
+        assert!(law.iter().any(|t| t.second.is_some()));
     }
 
     #[test]

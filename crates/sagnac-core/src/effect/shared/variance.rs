@@ -1,6 +1,6 @@
 //! Levels of noise by regression: mean squares of groups follow scaled χ² laws whose logarithm is linear in columns.
 
-use crate::effect::{FlatResidual, Knot};
+use crate::effect::Knot;
 use crate::numeric::range::{Bounds, ends};
 use nalgebra::{DMatrix, DVector};
 
@@ -100,10 +100,10 @@ pub(in crate::effect) fn overdispersion(groups: &[Group], log_squares: &[f64], p
     (sum / (groups.len() as f64 - parameters as f64).max(1.0)).max(1.0)
 }
 
-/// Groups of samples of like values, with the mean value of each.
+/// Groups of samples of like values, with the mean value of each. `flat` holds the deviation of each sample.
 pub(in crate::effect) fn by_value(
     values: impl Fn(usize) -> f64,
-    residual: &FlatResidual<'_>,
+    flat: &[f64],
     samples: &[usize],
 ) -> (Vec<Group>, Vec<f64>) {
     let mut order = samples.to_vec();
@@ -113,7 +113,7 @@ pub(in crate::effect) fn by_value(
         .chunks(size)
         .map(|group| {
             let dof = group.len() as f64;
-            let square = group.iter().map(|i| residual.flat[*i].powi(2)).sum::<f64>() / dof;
+            let square = group.iter().map(|i| flat[*i].powi(2)).sum::<f64>() / dof;
             (Group { square, dof }, group.iter().map(|i| values(*i)).sum::<f64>() / dof)
         })
         .unzip()
@@ -228,19 +228,9 @@ mod tests {
     #[test]
     fn samples_of_like_values_are_grouped_with_their_mean_square() {
         // Forty values in falling order: groups of 16, 16 and 8 from the smallest up.
-        let drivers = crate::effect::Drivers::default();
         let flat: Vec<f64> = (0..40).map(|i| if i >= 24 { 2.0 } else { -1.0 }).collect();
-        let residual = FlatResidual {
-            white: vec![],
-            flat,
-            per_deg_h: 1.0,
-            ends: 0,
-            usable: &[],
-            drivers: &drivers,
-            rounding_step: 0.0,
-        };
         let samples: Vec<usize> = (0..40).collect();
-        let (groups, values) = by_value(|i| (40 - i) as f64, &residual, &samples);
+        let (groups, values) = by_value(|i| (40 - i) as f64, &flat, &samples);
         let told: Vec<(f64, f64)> = groups.iter().map(|g| (g.square, g.dof)).collect();
         assert_eq!(told, [(4.0, 16.0), (1.0, 16.0), (1.0, 8.0)]);
         assert_eq!(values, [8.5, 24.5, 36.5]);
