@@ -51,7 +51,7 @@ impl MeanModel for ClockDrift {
             return Starts { points: vec![], trials: 1.0 };
         }
         let Bounds { low, high } = self.bounds(drivers)[0];
-        let (by_lines, places) = stated_lines::starts(drivers, context, (low, high));
+        let (by_lines, places) = stated_lines::starts(drivers, context);
         if !moves(drivers) {
             let points = by_lines.into_iter().map(|d| vec![d]);
             return Starts { points: best_of(self, points, 3, drivers, context), trials: places.max(1.0) };

@@ -10,6 +10,8 @@ use crate::numeric::cosine::inverse_dct2;
 const MOST: usize = 2;
 /// Amplitude over that stated, either way, up to which a line may be the stated one.
 const ALIKE: f64 = 2.0;
+/// Drift either way up to which a line is sought, ppm: no clock is wrong by more, and other lines are near.
+const MOST_PPM: f64 = 5e4;
 /// Peaks that are looked at.
 const PEAKS: usize = 4;
 
@@ -77,16 +79,23 @@ pub(in crate::effect) fn place(drift_ppm: f64, drivers: &Drivers) -> Option<Plac
     Some(Place { domain: Domain::Frequency, from: seen.min(stated), to: seen.max(stated) })
 }
 
-/// Drifts that put the largest line where the record has one about as large, ppm, between two bounds; and how many independent
-/// places were looked at.
-pub(in crate::effect) fn starts(
-    drivers: &Drivers,
-    context: &SearchContext<'_>,
-    bounds: (f64, f64),
-) -> (Vec<f64>, f64) {
-    let Some(line) = shown(drivers).into_iter().next() else { return (vec![], 0.0) };
+/// Drifts that put every line where the record has one about as large, ppm; and how many independent places were looked at. None
+/// where the record has a line at the place that is stated: the clock shows it as it should.
+pub(in crate::effect) fn starts(drivers: &Drivers, context: &SearchContext<'_>) -> (Vec<f64>, f64) {
+    let lines = shown(drivers);
+    let Some(line) = lines.first() else { return (vec![], 0.0) };
+    let residual = inverse_dct2(context.modes);
+    let amplitude = |f: f64, course: &[f64]| {
+        let dot = |c: &Vec<f64>| 2.0 * c.iter().zip(course).map(|(c, r)| c * r).sum::<f64>();
+        columns(f, drivers).iter().map(dot).fold(0.0, f64::hypot) / drivers.samples as f64
+    };
+    let with_lines: Vec<f64> = residual.iter().zip(taken_away(drivers)).map(|(r, t)| r - t).collect();
+    let absent = |l: &StatedLine| amplitude(l.frequency_hz, &with_lines) < l.amplitude_deg_h / ALIKE;
+    if !lines.iter().all(absent) {
+        return (vec![], 0.0);
+    }
     let LineGains { mut gains, step_hz } = LineGains::of(drivers, context);
-    let (low, high) = (seen_hz(line.frequency_hz, bounds.1), seen_hz(line.frequency_hz, bounds.0));
+    let (low, high) = (seen_hz(line.frequency_hz, MOST_PPM), seen_hz(line.frequency_hz, -MOST_PPM));
     let resolution = 1.0 / drivers.length_s();
     for (j, gain) in gains.iter_mut().enumerate() {
         let f = j as f64 * step_hz;
@@ -97,18 +106,15 @@ pub(in crate::effect) fn starts(
         }
     }
     let apart = (3.0 * resolution / step_hz).ceil() as usize;
-    let residual = inverse_dct2(context.modes);
-    let amplitude = |f: f64| {
-        let dot = |c: &Vec<f64>| 2.0 * c.iter().zip(&residual).map(|(c, r)| c * r).sum::<f64>();
-        columns(f, drivers).iter().map(dot).fold(0.0, f64::hypot) / drivers.samples as f64
-    };
-    let alike = |f: &f64| {
-        let ratio = amplitude(*f) / line.amplitude_deg_h;
-        (1.0 / ALIKE..=ALIKE).contains(&ratio)
+    let moved = |drift: &f64| {
+        lines.iter().all(|l| {
+            let ratio = amplitude(seen_hz(l.frequency_hz, *drift), &residual) / l.amplitude_deg_h;
+            (1.0 / ALIKE..=ALIKE).contains(&ratio)
+        })
     };
     let found = peaks(&gains, PEAKS, apart).into_iter();
     let at = |j: usize| (j as f64 + crate::numeric::optimize::parabolic_peak(&gains, j)) * step_hz;
-    let drifts = found.map(at).filter(alike).map(|f| 1e6 * (1.0 - f / line.frequency_hz)).collect();
+    let drifts = found.map(at).map(|f| 1e6 * (1.0 - f / line.frequency_hz)).filter(moved).collect();
     (drifts, (high - low) / resolution)
 }
 
@@ -133,6 +139,27 @@ mod tests {
     }
 
     #[test]
+    fn all_lines_move_together_and_none_that_is_in_its_place() {
+        let second = StatedLine { frequency_hz: 31.0, amplitude_deg_h: 4.0, phase_deg: 0.0 };
+        let both = Drivers { lines: [drivers().lines, vec![second]].concat(), ..drivers() };
+        // Both taken away; the record has some lines.
+        let of = |there: &[(f64, f64)]| {
+            let mut residual = taken_away(&both);
+            for (f, amplitude) in there {
+                let line = wave(*amplitude, 20.0, &columns(*f, &both));
+                residual.iter_mut().zip(line).for_each(|(r, l)| *r += l);
+            }
+            let (modes, powers) = (dct2(&residual), vec![1.0; residual.len()]);
+            starts(&both, &SearchContext { score: &residual, modes: &modes, powers: &powers }).0
+        };
+        assert!(!of(&[(12.36, 7.0), (31.93, 4.0)]).is_empty());
+        // The second is elsewhere, or in its place; the first is in its place beside another.
+        assert!(of(&[(12.36, 7.0), (30.0, 4.0)]).is_empty());
+        assert!(of(&[(12.36, 7.0), (31.0, 4.0)]).is_empty());
+        assert!(of(&[(12.0, 7.0), (12.36, 7.0), (31.93, 4.0)]).is_empty());
+    }
+
+    #[test]
     fn a_drift_begins_where_a_line_of_the_stated_size_is() {
         let drivers = drivers();
         let of = |amplitude: f64| {
@@ -141,12 +168,12 @@ mod tests {
             let score = residual.clone();
             let (modes, powers) = (dct2(&residual), vec![1.0; residual.len()]);
             let context = SearchContext { score: &score, modes: &modes, powers: &powers };
-            starts(&drivers, &context, (-1e5, 1e5)).0
+            starts(&drivers, &context).0
         };
         let found = of(6.0);
         assert!(found.iter().any(|d| (d + 40_000.0).abs() < 500.0), "{found:?}");
         // One a third as large is another line.
-        assert!(of(2.0).iter().all(|d| (d + 40_000.0).abs() > 500.0));
+        assert!(of(2.0).is_empty());
         let (amplitudes, phases) = polars(&[3.0, 0.0, 0.0, -2.0]);
         assert_eq!((amplitudes, phases), (vec![3.0, 2.0], vec![0.0, 90.0]));
     }
