@@ -62,8 +62,8 @@ pub struct StagedFolder {
 pub struct Order {
     /// The inputs: their names, such as `recording`, and what tells each from others, such as a hash.
     pub inputs: BTreeMap<String, String>,
-    /// Inputs that are files, by their names. A long recording is not read for its hash alone: reading it gives the hash. Only where a
-    /// result stands at the place is it needed before.
+    /// Inputs that are files, by their names. Their hashes come from reading them ([`StagedFolder::were_read`]). If a result already
+    /// stands at the place, they are hashed first, to compare them with its inputs.
     pub files: BTreeMap<String, Vec<PathBuf>>,
     /// Files and folders that are read, which the result must not take away.
     pub read: Vec<PathBuf>,

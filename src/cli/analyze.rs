@@ -57,7 +57,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     let mut progress = printer.progress();
     progress.stage("progress.inputs");
     let folder = Inputs::new(args.output.force)
-        .recording(&args.recording, &args.read.options())
+        .recording_as_read(&args.recording, &args.read.options())
         .options(&(
             (
                 &args.columns.rate,

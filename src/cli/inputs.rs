@@ -30,11 +30,18 @@ impl Inputs {
         self
     }
 
-    /// The recording, whatever files it is of. They are identified when they were read, if not before.
+    /// The recording, whatever files it is of.
     #[must_use]
-    pub fn recording(mut self, named: &[PathBuf], options: &ReadOptions) -> Inputs {
+    pub fn recording(self, named: &[PathBuf], options: &ReadOptions) -> Inputs {
+        self.files("recording", &files_read(named, options))
+    }
+
+    /// The recording of a result that lists the hash of the file as it was read: it identifies a recording of one file, so that a long
+    /// one is not read twice. Of several, some may not be read.
+    #[must_use]
+    pub fn recording_as_read(mut self, named: &[PathBuf], options: &ReadOptions) -> Inputs {
         let files = files_read(named, options);
-        if files.is_empty() || !files.iter().all(|p| p.is_file()) {
+        if !matches!(files.as_slice(), [one] if one.is_file()) {
             return self.files("recording", &files);
         }
         self.0.read.extend_from_slice(&files);

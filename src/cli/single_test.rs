@@ -85,7 +85,7 @@ impl<'a> SingleTest<'a> {
     /// What the result of a recording is made from.
     pub fn inputs(&self, recording: &[PathBuf], serial: Option<&str>) -> Inputs {
         let read = &self.procedure.value.recording.read;
-        self.common_inputs().recording(recording, read).text("unit", serial)
+        self.common_inputs().recording_as_read(recording, read).text("unit", serial)
     }
 
     /// Opens a recording as the procedure says.
