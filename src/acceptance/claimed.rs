@@ -74,7 +74,7 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
 }
 
 /// Effects that belong to a unit and not to a moment: another recording of it shows them too.
-const LASTING: [&str; 24] = [
+const LASTING: [&str; 25] = [
     "bandwidth_filter",
     "column_curve",
     "column_driver",
@@ -96,6 +96,7 @@ const LASTING: [&str; 24] = [
     "supply_sensitivity",
     "temp_hysteresis",
     "temp_linear",
+    "temp_linear_delayed",
     "temp_polynomial",
     "temp_rate",
     "temp_response",

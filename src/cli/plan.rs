@@ -11,6 +11,7 @@ use crate::config::alternatives;
 use crate::config::model::load_model;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::ReadOptions;
+use crate::mismatch::finding::Finding;
 use crate::mismatch::{self, Alternative, Options};
 use crate::output::Kind;
 use crate::plan::record::PlanOutcome;
@@ -175,7 +176,10 @@ fn of_recording(
 
 /// Every effect that an explanation names as an equivalent.
 fn equivalents(explanation: &Explanation) -> Vec<String> {
-    explanation.effects.iter().flat_map(|f| f.equivalents.clone()).collect()
+    // What follows a column by another name is the same cause, and no test tells it apart.
+    let other = |f: &Finding, kind: &String| f.column.is_none() || kind != "column_driver";
+    let of = |f: &Finding| f.equivalents.iter().filter(|k| other(f, k)).cloned().collect::<Vec<_>>();
+    explanation.effects.iter().flat_map(of).collect()
 }
 
 /// Equivalents that have no parameters, and so cannot be planned for.

@@ -12,6 +12,7 @@ macro_rules! catalogue {
 
 catalogue! {
     temp_linear::TempLinear,
+    temp_linear_delayed::TempLinearDelayed,
     temp_polynomial::TempPolynomial,
     temp_rate::TempRate,
     temp_rate_delayed::TempRateDelayed,

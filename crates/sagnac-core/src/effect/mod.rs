@@ -39,5 +39,6 @@ pub use model::{
 pub use model::{Effect, Family, Later, Model, StatedByCourse, UNKNOWN, plausible, stateable};
 pub use param::{Param, Value, Values, list, number, text};
 pub use shared::low_pass::LowPass;
+pub use shared::response::ResponseLaw;
 pub use sizing::{Sizing, SpectralSizing};
 pub use spectral::{ModeBin, SpectralContext, Spectrum, SpectrumAct};

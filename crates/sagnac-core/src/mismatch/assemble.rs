@@ -89,8 +89,9 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let something = !found.named.is_empty();
     let principal = principal_places(&found.named, after);
     let gained = best.fit.log_likelihood - base.fit.log_likelihood + local_gain;
-    let (findings, rest) = causes(&found.named, gained, problem, after, options);
+    let (mut findings, rest) = causes(&found.named, gained, problem, after, options);
     let alternatives = alternatives::all(selection, &findings, problem);
+    columns::as_recorded(&mut findings, &recorded.read_from);
     let columns = columns::records(problem, best, &found.named, &recorded.read_from);
     let Noticeable { sizes, not_computed } = match verdict(&findings) {
         MismatchVerdict::UnknownMismatch => Noticeable::default(),

@@ -10,8 +10,16 @@ use course::{Grounds, try_course};
 use rayon::prelude::*;
 use spectrum::try_spectrum;
 
-/// Samples above which a course at the sample rate is tried by itself.
-const LONG: usize = 1 << 20;
+/// The hypothesis with its noise as the claim states it, where the fit moved it far from there: it may stand for a course.
+fn quieter(before: &Tried) -> Option<Tried> {
+    /// Logarithm of the prior from which noise has moved: √8 of its stated deviations, were it one coefficient.
+    const MOVED: f64 = -4.0;
+    (before.hypothesis.noise.prior() < MOVED).then(|| {
+        let mut out = before.clone();
+        out.hypothesis.noise.restate();
+        out
+    })
+}
 
 /// Fits every effect that is thought of and not in the hypothesis yet as an addition to it; those that gain something,
 /// the largest ΔBIC first.
@@ -25,17 +33,18 @@ pub fn among(
     spectra: &SpectralDataSet,
     wanted: impl Fn(&dyn Effect) -> bool + Sync,
 ) -> Vec<Candidate> {
-    let grounds = Grounds::new(before, spectra);
+    let grounds = Grounds::fitted(before, spectra);
+    let quiet = quieter(before);
+    let quiet_grounds = quiet.as_ref().map(|quiet| Grounds::restated(quiet, spectra));
     let tried = |effect: &&'static dyn Effect| match effect.model() {
-        Model::Mean(course) => try_course(*effect, course, before, spectra, &grounds),
+        Model::Mean(course) => {
+            try_course(*effect, course, before, spectra, &[Some(&grounds), quiet_grounds.as_ref()])
+        }
         Model::Spectrum(spectrum) => try_spectrum(*effect, spectrum, before, spectra),
         Model::Samples(_) => None,
     };
     // Two long ones at once would not fit into the memory that a record is granted.
-    let long = |effect: &&'static dyn Effect| {
-        spectra.full.length > LONG
-            && matches!(effect.model(), Model::Mean(c) if grounds.of(c.resolution()).spectral.length > LONG)
-    };
+    let long = |effect: &&'static dyn Effect| matches!(effect.model(), Model::Mean(c) if grounds.is_long(c.resolution()));
     let (alone, together): (Vec<_>, Vec<_>) = EFFECTS.iter().filter(|e| wanted(**e)).partition(|e| long(e));
     let mut found: Vec<Candidate> = together.into_par_iter().filter_map(tried).collect();
     found.extend(alone.into_iter().filter_map(tried));

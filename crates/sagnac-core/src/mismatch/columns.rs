@@ -1,10 +1,10 @@
 //! What became of each recorded column: it drives something that was found, it is silent, or it cannot be used and why.
 
-use super::finding::{ColumnRecord, ColumnStatus, UnusableColumn};
+use super::finding::{ColumnRecord, ColumnStatus, Finding, UnusableColumn};
 use super::named::Named;
 use super::problem::Problem;
 use super::tried::Tried;
-use crate::effect::Column;
+use crate::effect::{Column, ResponseLaw, find};
 use crate::numeric::cosine::dct2;
 use crate::series::ReadFrom;
 
@@ -18,10 +18,7 @@ pub(super) fn records(
     named: &[Named],
     read_from: &[ReadFrom],
 ) -> Vec<ColumnRecord> {
-    let recorded_as = |column: Column| {
-        let read = read_from.iter().find(|r| r.name == column.name());
-        read.map(|r| r.column.clone()).filter(|name| name != column.name())
-    };
+    let recorded_as = |column: Column| other_name(column, read_from).map(ToOwned::to_owned);
     let drives = |column: Column| {
         named.iter().any(|n| {
             let named = n.estimated.texts.get("column").or_else(|| n.estimated.texts.get("column2"));
@@ -48,6 +45,55 @@ pub(super) fn records(
     problem.drivers.columns().map(used).chain(problem.unusable.iter().map(unusable)).collect()
 }
 
+/// The name of a column in the file, where it is another than its own.
+fn other_name(column: Column, read_from: &[ReadFrom]) -> Option<&str> {
+    let read = read_from.iter().find(|r| r.name == column.name());
+    read.map(|r| r.column.as_str()).filter(|name| *name != column.name())
+}
+
+/// Whether the name of a column says what it is, and not its unit alone: the thermometer of a rack is one as well.
+fn says_role(column: Column, name: &str) -> bool {
+    let words: &[&str] = match column {
+        Column::Temperature => &["temp", "темп"],
+        Column::Supply => &["supply", "volt", "пит", "напр"],
+        _ => return true,
+    };
+    let name = name.to_lowercase();
+    words.iter().any(|word| name.contains(word))
+}
+
+/// Says of a cause that follows a column which column of the file that is, where only the unit told what it holds: to somebody
+/// else it is a column as any other.
+pub(super) fn as_recorded(findings: &mut [Finding], read_from: &[ReadFrom]) {
+    /// Kinds that are an equivalent at most.
+    const MOST: usize = 3;
+    for finding in findings {
+        let Some(law) = law_of(&finding.kind) else { continue };
+        let needed = find(finding.effect_id()).map_or(&[][..], |e| e.needs());
+        let by_unit = |c: &Column| other_name(*c, read_from).filter(|name| !says_role(*c, name));
+        let Some(name) = needed.iter().find_map(by_unit) else { continue };
+        finding.column = Some(name.to_owned());
+        finding.law = Some(law.id().to_owned());
+        finding.equivalents.insert(0, COLUMN_DRIVER.to_owned());
+        finding.equivalents.truncate(MOST);
+    }
+}
+
+/// Kind of what follows a column without a role.
+const COLUMN_DRIVER: &str = "column_driver";
+
+/// The law of a kind by which the bias follows a column with a role.
+fn law_of(kind: &str) -> Option<ResponseLaw> {
+    match kind {
+        "temp_linear" | "supply_sensitivity" => Some(ResponseLaw::Linear),
+        "temp_polynomial" => Some(ResponseLaw::Curve),
+        "temp_rate" => Some(ResponseLaw::Rate),
+        "thermal_lag" => Some(ResponseLaw::Lag),
+        "temp_hysteresis" => Some(ResponseLaw::Hysteresis),
+        _ => None,
+    }
+}
+
 /// One-sided 95 % limit of what is proportional to a column, rms over the record, deg/h.
 fn linear_limit(column: Column, problem: &Problem, best: &Tried) -> Option<f64> {
     let values = problem.drivers.column(column)?;
@@ -62,4 +108,43 @@ fn linear_limit(column: Column, problem: &Problem, best: &Tried) -> Option<f64> 
     }
     let limit = rms * ((both / own).abs() + ONE_SIDED_95 / own.sqrt());
     limit.is_finite().then_some(limit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_thermometer_that_only_its_unit_tells_of_is_a_column_as_any_other() {
+        let finding = Finding {
+            kind: "temp_linear".to_owned(),
+            effect: None,
+            column: None,
+            column2: None,
+            law: None,
+            formula: None,
+            shape: None,
+            equivalents: ["temp_rate", "temp_polynomial", "unobserved_driver"].map(str::to_owned).to_vec(),
+            probabilities: std::collections::BTreeMap::new(),
+            parameters: std::collections::BTreeMap::new(),
+            places: vec![],
+            delta_bic: 100.0,
+            p_value: 1e-9,
+            heldout_gain: None,
+            removed_share: None,
+        };
+        let after = |name: &str| {
+            let column = name.to_owned();
+            let read = ReadFrom { name: Column::Temperature.name(), column, unit: "degC".to_owned() };
+            let mut findings = [finding.clone()];
+            as_recorded(&mut findings, &[read]);
+            findings[0].clone()
+        };
+        for its_own in ["temp_degC", "Temperature, degC", "Температура"] {
+            assert_eq!(after(its_own), finding, "{its_own}");
+        }
+        let of_rack = after("rack_degC");
+        assert_eq!((of_rack.column.as_deref(), of_rack.law.as_deref()), (Some("rack_degC"), Some("linear")));
+        assert_eq!(of_rack.equivalents, [COLUMN_DRIVER, "temp_rate", "temp_polynomial"]);
+    }
 }

@@ -109,6 +109,15 @@ impl Noise {
         if self.is_bound(i) { WITHIN * self.bound[i] } else { self.claimed[i] }
     }
 
+    /// Puts each coefficient that no effect has set free back to where its fit begins.
+    pub fn restate(&mut self) {
+        for i in 0..3 {
+            if !self.freed[i] {
+                self.base[i] = self.begin(i);
+            }
+        }
+    }
+
     /// Whether a coefficient is claimed as 0 with a bound.
     fn is_bound(&self, i: usize) -> bool {
         self.claimed[i] <= 0.0 && self.bound[i] > 0.0

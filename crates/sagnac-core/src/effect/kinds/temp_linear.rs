@@ -1,5 +1,6 @@
 //! A linear temperature coefficient that differs from the claimed one.
 
+use crate::effect::shared::thermal::smooth;
 use crate::effect::{
     Column, Domain, Drivers, Effect, MeanModel, Model, Nuisance, Param, Place, Regressors, SearchContext,
     Sizing, Starts, Values, number,
@@ -8,8 +9,11 @@ use crate::numeric::range::{Bounds, ends};
 
 pub struct TempLinear;
 
-static PARAMS: [Param; 1] =
-    [Param::reported("coefficient_deg_h_per_degC", "deg/h/°C", -1e5, 1e5).corrects_claim()];
+/// The coefficient in all, that of the claim included.
+pub(super) const COEFFICIENT: Param =
+    Param::reported("coefficient_deg_h_per_degC", "deg/h/°C", -1e5, 1e5).corrects_claim();
+
+static PARAMS: [Param; 1] = [COEFFICIENT];
 
 impl Effect for TempLinear {
     fn kind(&self) -> &'static str {
@@ -32,12 +36,13 @@ impl Effect for TempLinear {
     }
 }
 
-/// The claimed coefficient; 0 where the claim states none.
-fn claimed(drivers: &Drivers) -> f64 {
+/// The claimed coefficient, deg/h/°C; 0 where the claim states none.
+pub(super) fn claimed(drivers: &Drivers) -> f64 {
     drivers.claim.temperature.map_or(0.0, |t| t.coefficient_deg_h_per_degc)
 }
 
-fn reference(drivers: &Drivers) -> f64 {
+/// Temperature at which the claimed dependence is 0, °C.
+pub(super) fn reference(drivers: &Drivers) -> f64 {
     drivers.claim.temperature.map_or(20.0, |t| t.reference_degc)
 }
 
@@ -60,7 +65,9 @@ impl MeanModel for TempLinear {
 
     fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
         let from = reference(drivers);
-        let free = drivers.temperature.iter().map(|c| c.iter().map(|t| t - from).collect()).collect();
+        // The noise of the thermometer drives nothing: with it the coefficient comes out too small, the more so the larger the
+        // slow noise is taken to be.
+        let free = smooth(drivers).into_iter().map(|c| c.iter().map(|t| t - from).collect()).collect();
         Regressors { columns: free, ..Regressors::default() }
     }
 
@@ -75,7 +82,7 @@ impl MeanModel for TempLinear {
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let extra = number(values, PARAMS[0].name)? - claimed(drivers);
         let from = reference(drivers);
-        Some(drivers.temperature.as_ref()?.iter().map(|t| extra * (t - from)).collect())
+        Some(smooth(drivers)?.iter().map(|t| extra * (t - from)).collect())
     }
 
     fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

@@ -33,6 +33,7 @@ describe! {
                 "temp_hysteresis",
                 "temp_hysteresis_loops",
                 "temp_linear",
+                "temp_linear_delayed",
             ]
         }
     }

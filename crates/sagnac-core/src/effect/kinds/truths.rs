@@ -87,6 +87,7 @@ fn headings() -> Drivers {
 pub fn truth(kind: &str) -> (Drivers, Vec<f64>) {
     match kind {
         "temp_linear" => (drivers(), vec![0.023]),
+        "temp_linear_delayed" => (drivers(), vec![0.023, 170.0]),
         "temp_polynomial" => (drivers(), vec![25.0, 15.0]),
         "temp_rate" => (drivers(), vec![0.02]),
         "temp_rate_delayed" => (drivers(), vec![0.02, 170.0]),

@@ -1,8 +1,8 @@
 //! A course as an addition: the best of its shapes with the noise held, then everything fitted together.
 
 use crate::effect::{Effect, MeanModel, Resolution, SearchContext, plausible};
-use crate::mismatch::hypothesis::{Hypothesis, PartModes, columns, fit, kept, less_fixed};
-use crate::mismatch::noise_fit::Noise;
+use crate::mismatch::hypothesis::{self, Fit, Hypothesis, PartModes, columns, kept, less_fixed};
+use crate::mismatch::noise_fit::{self, Noise};
 use crate::mismatch::nonlinear_search::LocalSearch;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::CourseIn;
@@ -13,29 +13,54 @@ use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::least_squares::{Normal, subtract};
 use std::borrow::Cow;
 
+/// Samples above which a course at the sample rate is tried by itself.
+const LONG: usize = 1 << 20;
 /// Gain of a fit over that of its shapes, the noise held, from which the noise stood for the course.
 const STOOD_FOR: f64 = 1.5;
 
 /// What is the same for every course tried on a hypothesis.
 pub(super) struct Grounds<'a> {
-    full: Ground<'a>,
+    /// `None` where only averages are looked at.
+    full: Option<Ground<'a>>,
     slow: Option<Ground<'a>>,
+    /// Log-likelihood by which the noise of the hypothesis is behind that of its fit.
+    behind: f64,
 }
 
 impl<'a> Grounds<'a> {
-    pub fn new(before: &'a Tried, spectra: &'a SpectralDataSet) -> Grounds<'a> {
+    /// With the noise of the fit.
+    pub fn fitted(before: &'a Tried, spectra: &'a SpectralDataSet) -> Grounds<'a> {
+        Grounds::new(before, spectra, true, 0.0)
+    }
+
+    /// With another noise than that of the fit. Of a long record only averages are looked at: what the noise moved for is slow.
+    pub fn restated(restated: &'a Tried, spectra: &'a SpectralDataSet) -> Grounds<'a> {
+        let Tried { hypothesis, fit, .. } = restated;
+        let whittle =
+            noise_fit::whittle(&spectra.full, &fit.observed, &hypothesis.noise.densities(&spectra.full));
+        let behind = fit.log_likelihood - (whittle + hypothesis.noise.prior() + fit.mean.prior);
+        Grounds::new(restated, spectra, spectra.full.length <= LONG, behind)
+    }
+
+    fn new(before: &'a Tried, spectra: &'a SpectralDataSet, at_full_rate: bool, behind: f64) -> Grounds<'a> {
         let courses = &before.hypothesis.courses;
         let ground =
             |spectral, resolution| Ground::new(before, spectral, spectra.part_modes(resolution, courses));
         let slow = spectra.slow.as_ref().map(|slow| ground(slow, Resolution::Averaged));
-        Grounds { full: ground(&spectra.full, Resolution::FullRate), slow }
+        let full = (at_full_rate || slow.is_none()).then(|| ground(&spectra.full, Resolution::FullRate));
+        Grounds { full, slow, behind }
     }
 
-    pub fn of(&self, resolution: Resolution) -> &Ground<'a> {
+    fn of(&self, resolution: Resolution) -> Option<&Ground<'a>> {
         match (resolution, &self.slow) {
-            (Resolution::Averaged, Some(slow)) => slow,
-            _ => &self.full,
+            (Resolution::Averaged, Some(slow)) => Some(slow),
+            _ => self.full.as_ref(),
         }
+    }
+
+    /// Whether a course of some resolution is looked at in more samples than two at once fit into memory.
+    pub fn is_long(&self, resolution: Resolution) -> bool {
+        self.of(resolution).is_some_and(|g| g.spectral.length > LONG)
     }
 }
 
@@ -158,16 +183,64 @@ fn informations(course: &dyn MeanModel, inside: &CourseIn, ground: &Ground<'_>) 
     modes.iter().zip(&ground.powers).map(|(z, p)| z * z / p).collect()
 }
 
-/// The best addition of a course, over its shapes.
+/// A course that was fitted, on the ground that its shape was found on.
+struct Fitted<'a> {
+    ground: &'a Ground<'a>,
+    /// Independent places that were looked at for its shape.
+    trials: f64,
+    shape: Vec<f64>,
+    /// Columns of the course, and numbers that are fitted besides.
+    columns: usize,
+    beside: usize,
+    hypothesis: Hypothesis,
+    fit: Fit,
+}
+
+/// The best addition of a course, over its shapes: sought with the noise as it was fitted and, where that has moved far from the
+/// claim, with the noise as claimed. A noise that stands for the course hides it from its own search.
 pub(super) fn try_course(
     effect: &'static dyn Effect,
     course: &'static dyn MeanModel,
     before: &Tried,
     spectra: &SpectralDataSet,
-    grounds: &Grounds<'_>,
+    grounds: &[Option<&Grounds<'_>>; 2],
 ) -> Option<Candidate> {
+    let each = grounds.iter().flatten().filter_map(|grounds| {
+        let ground = grounds.of(course.resolution())?;
+        fitted(effect, course, before, spectra, ground, grounds.behind)
+    });
+    let best = each.max_by(|a, b| a.fit.log_likelihood.total_cmp(&b.fit.log_likelihood))?;
+    let Fitted { ground, trials, shape, columns, beside, hypothesis, fit } = best;
+    let drivers = &ground.spectral.drivers;
+    let added = course.counted(columns) + beside;
+    // A fit with a value that the effect cannot have (a zone that answers more than the rest) is another effect.
+    let allowed = hypothesis.courses.last().is_none_or(|inside| {
+        let parameters = || course.parameters(&inside.nonlinear_parameters, &inside.coefficients, drivers);
+        inside.coefficients.len() != columns || plausible(effect, &parameters())
+    });
+    let relief = hypothesis.courses.last().map_or(0.0, |inside| {
+        overcharged(added, telling(informations(course, inside, ground).into_iter()), spectra.rows)
+    });
+    let tried = Tried {
+        hypothesis,
+        fit,
+        parameters: before.parameters + added,
+        odds: before.odds_with(effect, course.odds(&shape, drivers) + own_odds(effect) + relief),
+    };
+    let looked = Looked { numbers: columns + beside, trials };
+    allowed.then(|| rated(effect, tried, before, looked, spectra.rows))
+}
+
+/// The best addition of a course whose shape is sought on one ground, fitted from the noise of that ground.
+fn fitted<'a>(
+    effect: &'static dyn Effect,
+    course: &'static dyn MeanModel,
+    before: &Tried,
+    spectra: &SpectralDataSet,
+    ground: &'a Ground<'a>,
+    behind: f64,
+) -> Option<Fitted<'a>> {
     let repeated = before.hypothesis.courses.iter().any(|c| c.effect.kind() == effect.kind());
-    let ground = grounds.of(course.resolution());
     let drivers = &ground.spectral.drivers;
     if !course.applies(drivers) || effect.needs().iter().any(|c| drivers.column(*c).is_none()) {
         return None;
@@ -186,15 +259,17 @@ pub(super) fn try_course(
     let local = LocalSearch::of(course, drivers);
     let (shape, gain) = best_shape(&starts.points, &local, &ShapeSearch::new(course, ground))?;
     let parts = course.regressors(&shape, drivers);
-    let beside = parts.nuisance.len() + local.free();
-    let numbers = parts.columns.len() + beside;
-    let added = course.counted(parts.columns.len()) + beside;
-    let mut hypothesis = with_course(&before.hypothesis, effect, &shape, &before.hypothesis.noise);
+    let (columns, beside) = (parts.columns.len(), parts.nuisance.len() + local.free());
+    let noise = &ground.before.hypothesis.noise;
+    let mut hypothesis = with_course(&before.hypothesis, effect, &shape, noise);
     // The noise, fitted anew, can give at most about as much again.
-    let worth = 4.0 * gain - added as f64 * (spectra.rows as f64).ln();
-    let mut fitted = if worth > 0.0 { fit(&mut hypothesis, &spectra.full) } else { before.fit.raised(gain) };
+    let price = (course.counted(columns) + beside) as f64 * (spectra.rows as f64).ln();
+    let gain = gain - behind;
+    let worth = 4.0 * gain - price;
+    let mut fit =
+        if worth > 0.0 { hypothesis::fit(&mut hypothesis, &spectra.full) } else { before.fit.raised(gain) };
     // Noise that had to stand for the course weighed the samples wrongly while its shape was sought.
-    if !shape.is_empty() && fitted.log_likelihood - before.fit.log_likelihood > STOOD_FOR * gain {
+    if !shape.is_empty() && fit.log_likelihood - before.fit.log_likelihood > STOOD_FOR * gain.max(0.0) {
         let noise = &hypothesis.noise;
         let quieter = Tried {
             hypothesis: Hypothesis { noise: noise.clone(), ..before.hypothesis.clone() },
@@ -203,25 +278,10 @@ pub(super) fn try_course(
         let ground = Ground::new(&quieter, ground.spectral, ground.parts.clone());
         let (shape, _) = refined(&shape, &local, &ShapeSearch::new(course, &ground));
         let mut again = with_course(&before.hypothesis, effect, &shape, noise);
-        let better = fit(&mut again, &spectra.full);
-        if better.log_likelihood > fitted.log_likelihood {
-            (hypothesis, fitted) = (again, better);
+        let better = hypothesis::fit(&mut again, &spectra.full);
+        if better.log_likelihood > fit.log_likelihood {
+            (hypothesis, fit) = (again, better);
         }
     }
-    // A fit with a value that the effect cannot have (a zone that answers more than the rest) is another effect.
-    let allowed = hypothesis.courses.last().is_none_or(|inside| {
-        let parameters = || course.parameters(&inside.nonlinear_parameters, &inside.coefficients, drivers);
-        inside.coefficients.len() != parts.columns.len() || plausible(effect, &parameters())
-    });
-    let relief = hypothesis.courses.last().map_or(0.0, |inside| {
-        overcharged(added, telling(informations(course, inside, ground).into_iter()), spectra.rows)
-    });
-    let tried = Tried {
-        hypothesis,
-        fit: fitted,
-        parameters: before.parameters + added,
-        odds: before.odds_with(effect, course.odds(&shape, drivers) + own_odds(effect) + relief),
-    };
-    let looked = Looked { numbers, trials: starts.trials };
-    allowed.then(|| rated(effect, tried, before, looked, spectra.rows))
+    Some(Fitted { ground, trials: starts.trials, shape, columns, beside, hypothesis, fit })
 }

@@ -1,0 +1,112 @@
+//! A linear temperature coefficient that differs from the claimed one and acts behind a delay: on the temperature of the coil, of
+//! which the thermometer on the housing is ahead. It is reported as a linear coefficient that differs.
+
+use super::temp_linear::{COEFFICIENT, claimed, reference};
+use crate::effect::shared::decay::decay;
+use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::search::{best_of, log_grid};
+use crate::effect::shared::thermal::{delayed, smooth};
+use crate::effect::{
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
+};
+use crate::numeric::range::Bounds;
+
+pub struct TempLinearDelayed;
+
+static PARAMS: [Param; 2] = [COEFFICIENT, Param::inner("time_constant_s", "s", 1e-6, 1e6)];
+
+describe! {
+    TempLinearDelayed, "temp_linear_delayed", Mean in Temperature, needs [Temperature],
+    confusers ["temp_linear", "thermal_lag", "temp_hysteresis"],
+    with {
+        fn reported_kind(&self) -> &'static str {
+            "temp_linear"
+        }
+    }
+}
+
+/// The delayed temperature from that at which the claimed dependence is 0, °C.
+fn late(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+    let t = smooth(drivers)?;
+    if !(time_constant_s > 0.0 && time_constant_s.is_finite()) {
+        return None;
+    }
+    let mut late = delayed(t, time_constant_s, drivers.dt_s);
+    late.iter_mut().for_each(|t| *t -= reference(drivers));
+    Some(late)
+}
+
+impl MeanModel for TempLinearDelayed {
+    fn applies(&self, drivers: &Drivers) -> bool {
+        varies(drivers.temperature.as_deref())
+    }
+
+    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
+        let Bounds { low, high } = self.bounds(drivers)[0];
+        let grid = log_grid(low, high, 24);
+        let points = best_of(self, grid.into_iter().map(|t| vec![t]), 2, drivers, context);
+        Starts { points, trials: (high / low).ln().max(1.0) }
+    }
+
+    /// Behind a delay that is long against the record every temperature is a straight line.
+    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
+        let low = drivers.dt_s;
+        vec![Bounds::new(low, (0.25 * drivers.length_s()).max(4.0 * low))]
+    }
+
+    /// The state at the beginning is not known: what is left of it decays beside the effect.
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        let Some(time) = nonlinear_parameters.first().filter(|t| **t > 0.0) else {
+            return Regressors::default();
+        };
+        Regressors {
+            columns: late(*time, drivers).into_iter().collect(),
+            nuisance: vec![decay(*time, drivers)],
+            ..Regressors::default()
+        }
+    }
+
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let first = |of: &[f64]| of.first().copied().unwrap_or(f64::NAN);
+        vec![first(coefficients) + claimed(drivers), first(nonlinear_parameters)]
+    }
+
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let extra = number(values, PARAMS[0].name)? - claimed(drivers);
+        let late = late(number(values, PARAMS[1].name)?, drivers)?;
+        Some(late.into_iter().map(|t| extra * t).collect())
+    }
+
+    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        let time = number(values, PARAMS[1].name).filter(|t| *t > 0.0);
+        time.map(|t| decay(t, drivers)).into_iter().collect()
+    }
+
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let t = smooth(drivers).unwrap_or_default();
+        reach(Domain::Temperature, t, t)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::{ClaimedMean, Temperature};
+
+    #[test]
+    fn behind_a_ramp_the_bias_is_that_of_a_time_constant_before() {
+        // 0.02 °C/s from the reference on: the delayed temperature is 40 s · 0.02 °C/s behind.
+        let ramp: Vec<f64> = (0..1000).map(|i| 20.0 + 0.02 * f64::from(i)).collect();
+        let stated = Temperature { coefficient_deg_h_per_degc: 0.5, reference_degc: 20.0 };
+        let claim = ClaimedMean { temperature: Some(stated), ..Default::default() };
+        let drivers =
+            Drivers { dt_s: 1.0, samples: 1000, temperature: Some(ramp), claim, ..Drivers::default() };
+        // 2 deg/h/°C in all, of which the claim has 0.5.
+        let values = crate::effect::sizing::numbers([(PARAMS[0].name, 2.0), (PARAMS[1].name, 40.0)]);
+        let course = TempLinearDelayed.course(&values, &drivers).unwrap();
+        assert!(course[0] == 0.0 && (course[999] - 1.5 * (19.98 - 0.8)).abs() < 1e-9, "{}", course[999]);
+        assert_eq!(TempLinearDelayed.parameters(&[40.0], &[1.5], &drivers), [2.0, 40.0]);
+        assert!(late(0.0, &drivers).is_none() && late(f64::INFINITY, &drivers).is_none());
+        assert!(TempLinearDelayed.course(&Values::new(), &drivers).is_none());
+    }
+}
