@@ -124,6 +124,17 @@ pub trait MeanModel: Sync {
         vec![]
     }
 
+    /// Relative standard deviations that the parameters and, last, the rms have beside those of the fit; empty for none. Physics
+    /// has more shapes than an effect that stands for any loop, any curve or any delay, and its fit cannot tell what they change.
+    fn unmodelled(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
+        vec![]
+    }
+
     /// How many parameters BIC counts for so many columns: as many, where each has a coefficient of its own size.
     fn counted(&self, columns: usize) -> usize {
         columns

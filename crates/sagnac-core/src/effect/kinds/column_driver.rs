@@ -96,6 +96,12 @@ impl MeanModel for ColumnDriver {
         vec![coefficient, center, half]
     }
 
+    fn unmodelled(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let Some(m) = meant(nonlinear_parameters, drivers) else { return vec![] };
+        let [coefficient, rms] = response::unmodelled(m.mask, m.law, &m.driver.smooth, drivers);
+        vec![coefficient, 0.0, 0.0, rms]
+    }
+
     fn lists(
         &self,
         nonlinear_parameters: &[f64],

@@ -1,6 +1,7 @@
 //! A bias that depends on the direction from which a temperature was reached.
 
 use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::response::UNMODELLED;
 use crate::effect::shared::search::{best_of, log_grid};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::sizing::numbers;
@@ -82,6 +83,15 @@ impl MeanModel for TempHysteresis {
         let Bounds { low, high } = self.bounds(drivers)[0];
         let places = log_grid(2.0 * low, high, 5).into_iter().map(|play| numbers([(PARAMS[1].name, play)]));
         vec![Sizing::searched(&PARAMS[0], places.collect(), 3, (high / low).ln())]
+    }
+
+    fn unmodelled(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
+        vec![UNMODELLED, 0.0, 0.0, 0.0, UNMODELLED]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

@@ -4,7 +4,7 @@
 use super::temp_hysteresis::{WIDTH, turns};
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::response::{PLAYS, play};
+use crate::effect::shared::response::{PLAYS, UNMODELLED, play};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, number,
@@ -97,6 +97,15 @@ impl MeanModel for TempHysteresisLoops {
         let [middle, half] = range(t);
         let states = columns(t, middle, half).split_off(1);
         vec![widest(t, &sum(coefficients.get(1..).unwrap_or(&[]), &states)), middle, half]
+    }
+
+    fn unmodelled(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
+        vec![UNMODELLED, 0.0, 0.0, UNMODELLED]
     }
 
     fn lists(

@@ -2,7 +2,9 @@
 
 use crate::effect::shared::polynomial::{Scale, powers, sum};
 use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::response;
 use crate::effect::shared::search::gain_of;
+use crate::effect::shared::thermal::smooth;
 use crate::effect::{
     Domain, Drivers, MeanModel, Nuisance, Param, Place, Regressors, SearchContext, Starts, Values, list,
     number,
@@ -27,7 +29,7 @@ describe! {
 
 /// Middle and half width of the temperatures.
 fn scale(drivers: &Drivers) -> Option<Scale> {
-    let Bounds { low, high } = ends(drivers.temperature.as_ref()?);
+    let Bounds { low, high } = ends(smooth(drivers)?);
     (high > low).then_some(Scale { center: 0.5 * (low + high), half: 0.5 * (high - low) })
 }
 
@@ -64,9 +66,7 @@ impl MeanModel for TempPolynomial {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let free = drivers
-            .temperature
-            .as_ref()
+        let free = smooth(drivers)
             .zip(scale(drivers))
             .map_or_else(Vec::new, |(t, scale)| powers(t, scale, order(nonlinear_parameters)));
         Regressors { columns: free, ..Regressors::default() }
@@ -92,12 +92,21 @@ impl MeanModel for TempPolynomial {
             return None;
         }
         let order = coefficients.len().min(12);
-        Some(sum(coefficients, &powers(drivers.temperature.as_ref()?, Scale { center, half }, order)))
+        Some(sum(coefficients, &powers(smooth(drivers)?, Scale { center, half }, order)))
     }
 
     fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let contribution = sum(coefficients, &self.regressors(nonlinear_parameters, drivers).columns);
-        reach(Domain::Temperature, drivers.temperature.as_deref().unwrap_or(&[]), &contribution)
+        reach(Domain::Temperature, smooth(drivers).unwrap_or(&[]), &contribution)
+    }
+
+    fn unmodelled(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
+        vec![0.0, 0.0, response::UNMODELLED]
     }
 
     fn whole(&self) -> &'static [usize] {

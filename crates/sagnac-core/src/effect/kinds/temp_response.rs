@@ -67,6 +67,15 @@ impl MeanModel for TempResponse {
         smooth(drivers).map_or(vec![f64::NAN; 2], |t| response::stated_range(t).to_vec())
     }
 
+    fn unmodelled(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
+        vec![0.0, 0.0, response::UNMODELLED]
+    }
+
     fn lists(
         &self,
         nonlinear_parameters: &[f64],

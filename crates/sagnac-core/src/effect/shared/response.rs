@@ -38,6 +38,10 @@ pub(in crate::effect) const CENTER: &str = "center";
 /// Name of half of the column's range.
 pub(in crate::effect) const HALF_RANGE: &str = "half_range";
 
+/// Relative standard deviation of the size of a course whose law is none of few parameters: curves, loops and responses of several
+/// terms leave out what is not worth a term, and real ones have other shapes. From loops and curves of another make.
+pub(in crate::effect) const UNMODELLED: f64 = 0.08;
+
 /// One term of a response.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::effect) enum Term {
@@ -281,6 +285,36 @@ pub(in crate::effect) fn per_unit(mask: u32, law: ResponseLaw) -> Option<f64> {
     }
 }
 
+/// Relative standard deviations of the coefficient and of the rms of a response beside those of its fit. A coefficient of a rate
+/// behind a delay moves with the delay, which is known to a step of its grid only.
+pub(in crate::effect) fn unmodelled(
+    mask: u32,
+    law: ResponseLaw,
+    values: &[f64],
+    drivers: &Drivers,
+) -> [f64; 2] {
+    /// Change of the logarithm of a delay by which its influence is told.
+    const STEP: f64 = 0.2;
+    let [term] = terms(mask)[..] else { return [0.0, UNMODELLED] };
+    match (law, term) {
+        (ResponseLaw::Rate, Term::Delay { time_constant_s }) => {
+            let scaled = scaled(values, Scale::of(values));
+            let rate = |time_constant_s: f64| {
+                let course = Term::Delay { time_constant_s }.course(&scaled, drivers);
+                course.into_iter().map(|x| x / time_constant_s).collect::<Vec<f64>>()
+            };
+            let (here, beside) = (rate(time_constant_s), rate(time_constant_s * STEP.exp()));
+            let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+            let slope = (dot(&here, &beside) / dot(&beside, &beside)).ln() / STEP;
+            // Anywhere within a step of the grid as likely.
+            let step = (DELAYS_S[1] / DELAYS_S[0]).ln() / 12f64.sqrt();
+            [slope.abs() * step, 0.0]
+        }
+        (ResponseLaw::Linear | ResponseLaw::Rate, _) => [0.0, 0.0],
+        _ => [0.0, UNMODELLED],
+    }
+}
+
 /// The columns of a response.
 pub(in crate::effect) fn regressors(mask: u32, values: &[f64], drivers: &Drivers) -> Regressors {
     let scaled = scaled(values, Scale::of(values));
@@ -414,6 +448,20 @@ mod tests {
         let state = play(&x, 0.15);
         assert_eq!(found(&made(&|i| 1.2 * state[i]), &values).unwrap().law, ResponseLaw::Hysteresis);
         assert!(found(&vec![0.0; n], &values).is_none(), "noise follows nothing");
+    }
+
+    #[test]
+    fn a_rate_behind_a_delay_is_known_to_a_step_of_the_delay_where_the_column_is_faster_than_it() {
+        // A period of 600 s: far slower than 60 s and far faster than 36 700 s.
+        let values: Vec<f64> =
+            (0..20_000).map(|i| (f64::from(i) * std::f64::consts::TAU / 60.0).sin()).collect();
+        let drivers = drivers(values.len());
+        let of = |delay: usize, law| unmodelled(1 << (ORDERS + 1 + delay), law, &values, &drivers);
+        let step = 2.5f64.ln() / 12f64.sqrt();
+        let [slow, fast] = [0, DELAYS_S.len() - 1].map(|d| of(d, ResponseLaw::Rate)[0] / step);
+        assert!(slow < 0.4 && (fast - 1.0).abs() < 0.02, "{slow} {fast}");
+        assert_eq!(of(0, ResponseLaw::Lag), [0.0, UNMODELLED]);
+        assert_eq!(unmodelled(1, ResponseLaw::Linear, &values, &drivers), [0.0, 0.0]);
     }
 
     #[test]

@@ -44,7 +44,12 @@ pub(super) fn of_course(
         out.push(rms(&summed(&parts.columns, coefficients, parts.offset.as_ref(), drivers.samples)));
         out
     };
-    let deviations = propagate(nonlinear_parameters, &coefficients, &covariance, all);
+    let mut deviations = propagate(nonlinear_parameters, &coefficients, &covariance, all);
+    let besides = course.unmodelled(nonlinear_parameters, &coefficients, drivers);
+    let sizes = values.iter().chain([&spread]);
+    for ((deviation, relative), size) in deviations.iter_mut().zip(&besides).zip(sizes) {
+        *deviation = deviation.hypot(relative * size);
+    }
     let mut out = Estimated::default();
     for (i, (param, value)) in effect.params().iter().zip(&values).enumerate() {
         if !value.is_finite() {
