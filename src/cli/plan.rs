@@ -176,10 +176,7 @@ fn of_recording(
 
 /// Every effect that an explanation names as an equivalent.
 fn equivalents(explanation: &Explanation) -> Vec<String> {
-    // What follows a column by another name is the same cause, and no test tells it apart.
-    let other = |f: &Finding, kind: &String| f.column.is_none() || kind != "column_driver";
-    let of = |f: &Finding| f.equivalents.iter().filter(|k| other(f, k)).cloned().collect::<Vec<_>>();
-    explanation.effects.iter().flat_map(of).collect()
+    explanation.effects.iter().flat_map(Finding::other_causes).cloned().collect()
 }
 
 /// Equivalents that have no parameters, and so cannot be planned for.

@@ -67,7 +67,7 @@ impl ExplanationResults {
         let correction =
             outcome.correction.as_ref().map(|c| ("correction.csv".to_owned(), correction_csv(c)));
         let augmented = ("augmented.toml".to_owned(), model::write(&outcome.augmented));
-        let equal = outcome.explanation.effects.iter().any(|f| !f.equivalents.is_empty());
+        let equal = outcome.explanation.effects.iter().any(|f| f.other_causes().next().is_some());
         let alternatives =
             equal.then(|| (ALTERNATIVES_FILE.to_owned(), alternatives::write(&outcome.alternatives)));
         ExplanationResults {

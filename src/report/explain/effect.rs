@@ -112,7 +112,7 @@ impl EffectView {
                 .filter(|s| s.is_finite())
                 .map(|s| percent(s, words.lang))
                 .unwrap_or_default(),
-            equivalents: f.equivalents.iter().map(|k| equivalent(k, &f.kind, all, words)).collect(),
+            equivalents: f.other_causes().map(|k| equivalent(k, &f.kind, all, words)).collect(),
         }
     }
 }

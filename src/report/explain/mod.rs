@@ -201,7 +201,7 @@ fn files(all: &Explanation, context: &Context, words: Translator) -> Vec<FileVie
         names.push(("correction.csv", "explain.wrote.correction"));
     }
     names.push(("augmented.toml", "explain.wrote.augmented"));
-    if all.effects.iter().any(|f| !f.equivalents.is_empty()) {
+    if all.effects.iter().any(|f| f.other_causes().next().is_some()) {
         names.push(("alternatives.toml", "explain.wrote.alternatives"));
     }
     names.push(("report.html", "explain.wrote.page"));

@@ -78,8 +78,8 @@ pub fn finding(finding: &Finding, explanation: &Explanation, words: Translator) 
     if !shown.is_empty() {
         out.push(words.with("explain.sentence.shows", &[("where", &shown)]));
     }
-    if !finding.equivalents.is_empty() {
-        let list: Vec<String> = finding.equivalents.iter().map(|k| title(k, words)).collect();
+    if finding.other_causes().next().is_some() {
+        let list: Vec<String> = finding.other_causes().map(|k| title(k, words)).collect();
         let list = list.join(&words.t("number.list"));
         out.push(words.with("explain.sentence.equivalents", &[("list", &list)]));
     }

@@ -11,7 +11,7 @@ use rayon::prelude::*;
 use spectrum::try_spectrum;
 
 /// The hypothesis with its noise as the claim states it, where the fit moved it far from there: it may stand for a course.
-fn quieter(before: &Tried) -> Option<Tried> {
+fn restated(before: &Tried) -> Option<Tried> {
     /// Logarithm of the prior from which noise has moved: √8 of its stated deviations, were it one coefficient.
     const MOVED: f64 = -4.0;
     (before.hypothesis.noise.prior() < MOVED).then(|| {
@@ -33,18 +33,26 @@ pub fn among(
     spectra: &SpectralDataSet,
     wanted: impl Fn(&dyn Effect) -> bool + Sync,
 ) -> Vec<Candidate> {
-    let grounds = Grounds::fitted(before, spectra);
-    let quiet = quieter(before);
-    let quiet_grounds = quiet.as_ref().map(|quiet| Grounds::restated(quiet, spectra));
+    // Grounds take transforms of the whole record, and a search for filters alone needs none.
+    let any_course = EFFECTS.iter().any(|e| wanted(*e) && matches!(e.model(), Model::Mean(_)));
+    let restated = restated(before).filter(|_| any_course);
+    let grounds = [
+        any_course.then(|| Grounds::fitted(before, spectra)),
+        restated.as_ref().map(|restated| Grounds::restated(restated, spectra)),
+    ];
     let tried = |effect: &&'static dyn Effect| match effect.model() {
-        Model::Mean(course) => {
-            try_course(*effect, course, before, spectra, &[Some(&grounds), quiet_grounds.as_ref()])
-        }
+        Model::Mean(course) => try_course(*effect, course, before, spectra, &grounds),
         Model::Spectrum(spectrum) => try_spectrum(*effect, spectrum, before, spectra),
         Model::Samples(_) => None,
     };
     // Two long ones at once would not fit into the memory that a record is granted.
-    let long = |effect: &&'static dyn Effect| matches!(effect.model(), Model::Mean(c) if grounds.is_long(c.resolution()));
+    let long = |effect: &&'static dyn Effect| {
+        let resolution = match effect.model() {
+            Model::Mean(course) => course.resolution(),
+            _ => return false,
+        };
+        grounds.iter().flatten().any(|g| g.is_long(resolution))
+    };
     let (alone, together): (Vec<_>, Vec<_>) = EFFECTS.iter().filter(|e| wanted(**e)).partition(|e| long(e));
     let mut found: Vec<Candidate> = together.into_par_iter().filter_map(tried).collect();
     found.extend(alone.into_iter().filter_map(tried));

@@ -51,27 +51,30 @@ fn other_name(column: Column, read_from: &[ReadFrom]) -> Option<&str> {
     read.map(|r| r.column.as_str()).filter(|name| *name != column.name())
 }
 
-/// Whether the name of a column says what it is, and not its unit alone: the thermometer of a rack is one as well.
-fn says_role(column: Column, name: &str) -> bool {
-    let words: &[&str] = match column {
-        Column::Temperature => &["temp", "темп"],
-        Column::Supply => &["supply", "volt", "пит", "напр"],
-        _ => return true,
-    };
+/// Whether a thermometer is said to be somewhere else than on the unit: it may say as little of it as any other column.
+fn is_elsewhere(column: Column, name: &str) -> bool {
+    const PLACES: [&str; 10] =
+        ["rack", "room", "ambient", "outside", "outdoor", "hall", "air", "помещ", "комн", "стойк"];
     let name = name.to_lowercase();
-    words.iter().any(|word| name.contains(word))
+    column == Column::Temperature && PLACES.iter().any(|place| name.contains(place))
 }
 
-/// Says of a cause that follows a column which column of the file that is, where only the unit told what it holds: to somebody
-/// else it is a column as any other.
+/// Says of a cause that follows the temperature which column of the file that is, where the thermometer is somewhere else than on
+/// the unit: to somebody else it is a column as any other.
 pub(super) fn as_recorded(findings: &mut [Finding], read_from: &[ReadFrom]) {
     /// Kinds that are an equivalent at most.
     const MOST: usize = 3;
+    let elsewhere = |c: &Column| other_name(*c, read_from).filter(|name| is_elsewhere(*c, name));
     for finding in findings {
+        for named in [&mut finding.column, &mut finding.column2] {
+            let recorded = named.as_ref().and_then(|name| elsewhere(&Column::of_name(name)));
+            if let Some(recorded) = recorded.map(str::to_owned) {
+                *named = Some(recorded);
+            }
+        }
         let Some(law) = law_of(&finding.kind) else { continue };
         let needed = find(finding.effect_id()).map_or(&[][..], |e| e.needs());
-        let by_unit = |c: &Column| other_name(*c, read_from).filter(|name| !says_role(*c, name));
-        let Some(name) = needed.iter().find_map(by_unit) else { continue };
+        let Some(name) = needed.iter().find_map(elsewhere) else { continue };
         finding.column = Some(name.to_owned());
         finding.law = Some(law.id().to_owned());
         finding.equivalents.insert(0, COLUMN_DRIVER.to_owned());
@@ -85,7 +88,7 @@ const COLUMN_DRIVER: &str = "column_driver";
 /// The law of a kind by which the bias follows a column with a role.
 fn law_of(kind: &str) -> Option<ResponseLaw> {
     match kind {
-        "temp_linear" | "supply_sensitivity" => Some(ResponseLaw::Linear),
+        "temp_linear" => Some(ResponseLaw::Linear),
         "temp_polynomial" => Some(ResponseLaw::Curve),
         "temp_rate" => Some(ResponseLaw::Rate),
         "thermal_lag" => Some(ResponseLaw::Lag),
@@ -115,8 +118,8 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_thermometer_that_only_its_unit_tells_of_is_a_column_as_any_other() {
-        let finding = Finding {
+    fn a_thermometer_elsewhere_is_a_column_as_any_other() {
+        let mut finding = Finding {
             kind: "temp_linear".to_owned(),
             effect: None,
             column: None,
@@ -133,18 +136,23 @@ mod tests {
             heldout_gain: None,
             removed_share: None,
         };
-        let after = |name: &str| {
+        let after = |finding: &Finding, name: &str| {
             let column = name.to_owned();
             let read = ReadFrom { name: Column::Temperature.name(), column, unit: "degC".to_owned() };
             let mut findings = [finding.clone()];
             as_recorded(&mut findings, &[read]);
             findings[0].clone()
         };
-        for its_own in ["temp_degC", "Temperature, degC", "Температура"] {
-            assert_eq!(after(its_own), finding, "{its_own}");
+        for its_own in ["temp_degC", "T_housing [degC]", "Температура"] {
+            assert_eq!(after(&finding, its_own), finding, "{its_own}");
         }
-        let of_rack = after("rack_degC");
+        let of_rack = after(&finding, "rack_degC");
         assert_eq!((of_rack.column.as_deref(), of_rack.law.as_deref()), (Some("rack_degC"), Some("linear")));
         assert_eq!(of_rack.equivalents, [COLUMN_DRIVER, "temp_rate", "temp_polynomial"]);
+        finding.kind = "noise_variance_driver".to_owned();
+        finding.column = Some(Column::Temperature.name().to_owned());
+        let level = after(&finding, "rack_degC");
+        assert_eq!((level.column.as_deref(), level.law), (Some("rack_degC"), None));
+        assert_eq!(level.equivalents, finding.equivalents);
     }
 }

@@ -129,6 +129,13 @@ impl Finding {
         self.effect.as_deref().unwrap_or(&self.kind)
     }
 
+    /// Its equivalents that are another cause: that a column without a role is followed is the same cause by another name, where
+    /// the finding says which column it is.
+    pub fn other_causes(&self) -> impl Iterator<Item = &String> {
+        let same = self.column.is_some() && self.kind != "column_driver";
+        self.equivalents.iter().filter(move |kind| !(same && *kind == "column_driver"))
+    }
+
     /// True for a cause that nothing in the catalogue describes.
     pub fn is_unnamed(&self) -> bool {
         self.effect_id() == "unknown"

@@ -265,15 +265,16 @@ pub fn family(first: &[Candidate]) -> f64 {
     first.len().max(1) as f64 + 8.0
 }
 
-/// Drops effects that became needless.
+/// Drops effects that became needless, by what hypotheses are ordered by: of a pair of which each explains the record alone, the
+/// one that came first stays.
 fn pruned(mut best: Tried, spectra: &SpectralDataSet, rows: usize) -> Tried {
     loop {
         let weakest = slots(&best.hypothesis)
             .into_iter()
             .map(|(slot, _)| without(&best, slot, spectra))
-            .min_by(|a, b| a.bic(rows).total_cmp(&b.bic(rows)));
+            .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)));
         match weakest {
-            Some(less) if less.bic(rows) < best.bic(rows) + ENOUGH => best = less,
+            Some(less) if less.rank(rows) < best.rank(rows) + ENOUGH => best = less,
             _ => return best,
         }
     }

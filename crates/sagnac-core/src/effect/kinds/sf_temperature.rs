@@ -1,6 +1,7 @@
 //! A scale factor that depends on temperature.
 
 use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::thermal::smooth;
 use crate::effect::{Domain, Drivers, Param, Place};
 
 pub struct SfTemperature;
@@ -14,13 +15,13 @@ describe! {
 
 fn column(drivers: &Drivers) -> Option<Vec<f64>> {
     let from = drivers.claim.temperature.map_or(20.0, |t| t.reference_degc);
-    let (rate, t) = (drivers.table_rate.as_ref()?, drivers.temperature.as_ref()?);
+    let (rate, t) = (drivers.table_rate.as_ref()?, smooth(drivers)?);
     Some(rate.iter().zip(t).map(|(r, t)| 3600e-6 * r * (t - from)).collect())
 }
 
 fn places(drivers: &Drivers) -> Vec<Place> {
     let course = column(drivers).unwrap_or_default();
-    let mut out = reach(Domain::Temperature, drivers.temperature.as_deref().unwrap_or(&[]), &course);
+    let mut out = reach(Domain::Temperature, smooth(drivers).unwrap_or(&[]), &course);
     out.extend(crate::effect::shared::reach::large_rates(drivers));
     out
 }

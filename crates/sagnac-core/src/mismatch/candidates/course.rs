@@ -203,7 +203,7 @@ pub(super) fn try_course(
     course: &'static dyn MeanModel,
     before: &Tried,
     spectra: &SpectralDataSet,
-    grounds: &[Option<&Grounds<'_>>; 2],
+    grounds: &[Option<Grounds<'_>>; 2],
 ) -> Option<Candidate> {
     let each = grounds.iter().flatten().filter_map(|grounds| {
         let ground = grounds.of(course.resolution())?;
