@@ -80,6 +80,15 @@ impl Starts {
     }
 }
 
+/// Relative standard deviations of estimates beside those of their fit.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Unmodelled {
+    /// Of the first parameter.
+    pub first_parameter: f64,
+    /// Of the rms of the course.
+    pub rms: f64,
+}
+
 /// An effect that adds a course to the rate which its parameters and the recorded columns determine.
 pub trait MeanModel: Sync {
     /// The sampling at which it must be fitted.
@@ -124,15 +133,10 @@ pub trait MeanModel: Sync {
         vec![]
     }
 
-    /// Relative standard deviations that the parameters and, last, the rms have beside those of the fit; empty for none. Physics
-    /// has more shapes than an effect that stands for any loop, any curve or any delay, and its fit cannot tell what they change.
-    fn unmodelled(
-        &self,
-        _nonlinear_parameters: &[f64],
-        _coefficients: &[f64],
-        _drivers: &Drivers,
-    ) -> Vec<f64> {
-        vec![]
+    /// What the estimates do not know beside what their fit tells: physics has more shapes than an effect that stands for any loop,
+    /// any curve or any delay.
+    fn unmodelled(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Unmodelled {
+        Unmodelled::default()
     }
 
     /// How many parameters BIC counts for so many columns: as many, where each has a coefficient of its own size.

@@ -31,7 +31,7 @@ pub use column::{Column, OtherColumn};
 pub use domain::{Domain, Place};
 pub use drivers::{ClaimedMean, Drivers, Earth, OtherDriver, StatedLine, Temperature, averages};
 pub use kinds::{EFFECTS, find, parameter};
-pub use mean::{MeanModel, Nuisance, Regressors, Resolution, SearchContext, Starts};
+pub use mean::{MeanModel, Nuisance, Regressors, Resolution, SearchContext, Starts, Unmodelled};
 pub use model::{
     Background, Detection, Detector, FlatResidual, JumpDetector, Jumps, Knot, Law, Level, LevelDetector,
     LevelLaw, OutlierDetector, Outliers, Pulses, Reported, Rounding, RowDetector, Rows, RowsFound, Samples,

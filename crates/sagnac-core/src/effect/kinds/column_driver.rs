@@ -9,7 +9,7 @@ use crate::effect::shared::response::{
 };
 use crate::effect::{
     Column, Domain, Drivers, MeanModel, OtherDriver, Param, Place, Regressors, SearchContext, Sizing, Starts,
-    Value, Values, text,
+    Unmodelled, Value, Values, text,
 };
 use crate::numeric::range::Bounds;
 
@@ -96,10 +96,10 @@ impl MeanModel for ColumnDriver {
         vec![coefficient, center, half]
     }
 
-    fn unmodelled(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        let Some(m) = meant(nonlinear_parameters, drivers) else { return vec![] };
-        let [coefficient, rms] = response::unmodelled(m.mask, m.law, &m.driver.smooth, drivers);
-        vec![coefficient, 0.0, 0.0, rms]
+    fn unmodelled(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Unmodelled {
+        meant(nonlinear_parameters, drivers).map_or_else(Unmodelled::default, |m| {
+            response::unmodelled(m.mask, m.law, &m.driver.smooth, drivers)
+        })
     }
 
     fn lists(

@@ -1,12 +1,13 @@
 //! A bias that depends on the direction from which a temperature was reached.
 
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::response::UNMODELLED;
+use crate::effect::shared::response::ANY_SHAPE;
 use crate::effect::shared::search::{best_of, log_grid};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::sizing::numbers;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Unmodelled, Values,
+    number,
 };
 use crate::numeric::range::{Bounds, ends};
 
@@ -85,13 +86,8 @@ impl MeanModel for TempHysteresis {
         vec![Sizing::searched(&PARAMS[0], places.collect(), 3, (high / low).ln())]
     }
 
-    fn unmodelled(
-        &self,
-        _nonlinear_parameters: &[f64],
-        _coefficients: &[f64],
-        _drivers: &Drivers,
-    ) -> Vec<f64> {
-        vec![UNMODELLED, 0.0, 0.0, 0.0, UNMODELLED]
+    fn unmodelled(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Unmodelled {
+        ANY_SHAPE
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

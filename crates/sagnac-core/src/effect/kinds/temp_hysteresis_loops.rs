@@ -4,10 +4,11 @@
 use super::temp_hysteresis::{WIDTH, turns};
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::response::{PLAYS, UNMODELLED, play};
+use crate::effect::shared::response::{ANY_SHAPE, PLAYS, play};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Unmodelled, Values, list,
+    number,
 };
 use crate::numeric::range::{Bounds, ends};
 
@@ -99,13 +100,8 @@ impl MeanModel for TempHysteresisLoops {
         vec![widest(t, &sum(coefficients.get(1..).unwrap_or(&[]), &states)), middle, half]
     }
 
-    fn unmodelled(
-        &self,
-        _nonlinear_parameters: &[f64],
-        _coefficients: &[f64],
-        _drivers: &Drivers,
-    ) -> Vec<f64> {
-        vec![UNMODELLED, 0.0, 0.0, UNMODELLED]
+    fn unmodelled(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Unmodelled {
+        ANY_SHAPE
     }
 
     fn lists(

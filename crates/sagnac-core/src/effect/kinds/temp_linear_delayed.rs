@@ -2,10 +2,9 @@
 //! which the thermometer on the housing is ahead. It is reported as a linear coefficient that differs.
 
 use super::temp_linear::{COEFFICIENT, claimed, reference};
-use crate::effect::shared::decay::decay;
+use crate::effect::shared::behind_delay::{self, late};
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::search::{best_of, log_grid};
-use crate::effect::shared::thermal::{delayed, smooth};
+use crate::effect::shared::thermal::smooth;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
@@ -26,12 +25,8 @@ describe! {
 }
 
 /// The delayed temperature from that at which the claimed dependence is 0, °C.
-fn late(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
-    let t = smooth(drivers)?;
-    if !(time_constant_s > 0.0 && time_constant_s.is_finite()) {
-        return None;
-    }
-    let mut late = delayed(t, time_constant_s, drivers.dt_s);
+fn temperature(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+    let mut late = late(time_constant_s, drivers)?;
     late.iter_mut().for_each(|t| *t -= reference(drivers));
     Some(late)
 }
@@ -42,28 +37,15 @@ impl MeanModel for TempLinearDelayed {
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        let Bounds { low, high } = self.bounds(drivers)[0];
-        let grid = log_grid(low, high, 24);
-        let points = best_of(self, grid.into_iter().map(|t| vec![t]), 2, drivers, context);
-        Starts { points, trials: (high / low).ln().max(1.0) }
+        behind_delay::starts(self, drivers, context)
     }
 
-    /// Behind a delay that is long against the record every temperature is a straight line.
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
-        let low = drivers.dt_s;
-        vec![Bounds::new(low, (0.25 * drivers.length_s()).max(4.0 * low))]
+        behind_delay::bounds(drivers)
     }
 
-    /// The state at the beginning is not known: what is left of it decays beside the effect.
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let Some(time) = nonlinear_parameters.first().filter(|t| **t > 0.0) else {
-            return Regressors::default();
-        };
-        Regressors {
-            columns: late(*time, drivers).into_iter().collect(),
-            nuisance: vec![decay(*time, drivers)],
-            ..Regressors::default()
-        }
+        behind_delay::regressors(nonlinear_parameters, drivers, temperature)
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
@@ -73,13 +55,12 @@ impl MeanModel for TempLinearDelayed {
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let extra = number(values, PARAMS[0].name)? - claimed(drivers);
-        let late = late(number(values, PARAMS[1].name)?, drivers)?;
+        let late = temperature(number(values, PARAMS[1].name)?, drivers)?;
         Some(late.into_iter().map(|t| extra * t).collect())
     }
 
     fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
-        let time = number(values, PARAMS[1].name).filter(|t| *t > 0.0);
-        time.map(|t| decay(t, drivers)).into_iter().collect()
+        behind_delay::initial(number(values, PARAMS[1].name), drivers)
     }
 
     fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
@@ -106,7 +87,7 @@ mod tests {
         let course = TempLinearDelayed.course(&values, &drivers).unwrap();
         assert!(course[0] == 0.0 && (course[999] - 1.5 * (19.98 - 0.8)).abs() < 1e-9, "{}", course[999]);
         assert_eq!(TempLinearDelayed.parameters(&[40.0], &[1.5], &drivers), [2.0, 40.0]);
-        assert!(late(0.0, &drivers).is_none() && late(f64::INFINITY, &drivers).is_none());
+        assert!(temperature(0.0, &drivers).is_none() && temperature(f64::INFINITY, &drivers).is_none());
         assert!(TempLinearDelayed.course(&Values::new(), &drivers).is_none());
     }
 }

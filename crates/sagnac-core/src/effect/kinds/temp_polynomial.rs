@@ -6,8 +6,8 @@ use crate::effect::shared::response;
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Nuisance, Param, Place, Regressors, SearchContext, Starts, Values, list,
-    number,
+    Domain, Drivers, MeanModel, Nuisance, Param, Place, Regressors, SearchContext, Starts, Unmodelled,
+    Values, list, number,
 };
 use crate::numeric::range::{Bounds, ends};
 
@@ -100,13 +100,8 @@ impl MeanModel for TempPolynomial {
         reach(Domain::Temperature, smooth(drivers).unwrap_or(&[]), &contribution)
     }
 
-    fn unmodelled(
-        &self,
-        _nonlinear_parameters: &[f64],
-        _coefficients: &[f64],
-        _drivers: &Drivers,
-    ) -> Vec<f64> {
-        vec![0.0, 0.0, response::UNMODELLED]
+    fn unmodelled(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Unmodelled {
+        Unmodelled { first_parameter: 0.0, ..response::ANY_SHAPE }
     }
 
     fn whole(&self) -> &'static [usize] {

@@ -2,10 +2,9 @@
 //! housing is ahead. It is reported as bias proportional to the rate of change of temperature.
 
 use super::temp_rate::COEFFICIENT;
-use crate::effect::shared::decay::decay;
+use crate::effect::shared::behind_delay::{self, late};
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::search::{best_of, log_grid};
-use crate::effect::shared::thermal::{delayed, smooth};
+use crate::effect::shared::thermal::smooth;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
@@ -28,10 +27,7 @@ describe! {
 /// Rate of change of the delayed temperature, °C/min: the difference from the present one over the time constant.
 fn rate(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     let t = smooth(drivers)?;
-    if !(time_constant_s > 0.0 && time_constant_s.is_finite()) {
-        return None;
-    }
-    let late = delayed(t, time_constant_s, drivers.dt_s);
+    let late = late(time_constant_s, drivers)?;
     Some(late.iter().zip(t).map(|(d, t)| 60.0 * (t - d) / time_constant_s).collect())
 }
 
@@ -41,27 +37,15 @@ impl MeanModel for TempRateDelayed {
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        let Bounds { low, high } = self.bounds(drivers)[0];
-        let grid = log_grid(low, high, 24);
-        let points = best_of(self, grid.into_iter().map(|t| vec![t]), 2, drivers, context);
-        Starts { points, trials: (high / low).ln().max(1.0) }
+        behind_delay::starts(self, drivers, context)
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
-        let low = drivers.dt_s;
-        vec![Bounds::new(low, (0.25 * drivers.length_s()).max(4.0 * low))]
+        behind_delay::bounds(drivers)
     }
 
-    /// The state at the beginning is not known: what is left of it decays beside the effect.
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let Some(time) = nonlinear_parameters.first().filter(|t| **t > 0.0) else {
-            return Regressors::default();
-        };
-        Regressors {
-            columns: rate(*time, drivers).into_iter().collect(),
-            nuisance: vec![decay(*time, drivers)],
-            ..Regressors::default()
-        }
+        behind_delay::regressors(nonlinear_parameters, drivers, rate)
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
@@ -76,8 +60,7 @@ impl MeanModel for TempRateDelayed {
     }
 
     fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
-        let time = number(values, PARAMS[1].name).filter(|t| *t > 0.0);
-        time.map(|t| decay(t, drivers)).into_iter().collect()
+        behind_delay::initial(number(values, PARAMS[1].name), drivers)
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

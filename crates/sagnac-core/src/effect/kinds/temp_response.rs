@@ -4,7 +4,9 @@
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::response::{self, CENTER, COEFFICIENTS_LIST, HALF_RANGE, SCALES_LIST, TERMS_LIST};
 use crate::effect::shared::thermal::smooth;
-use crate::effect::{Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values};
+use crate::effect::{
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Unmodelled, Values,
+};
 use crate::numeric::range::Bounds;
 
 pub struct TempResponse;
@@ -67,13 +69,8 @@ impl MeanModel for TempResponse {
         smooth(drivers).map_or(vec![f64::NAN; 2], |t| response::stated_range(t).to_vec())
     }
 
-    fn unmodelled(
-        &self,
-        _nonlinear_parameters: &[f64],
-        _coefficients: &[f64],
-        _drivers: &Drivers,
-    ) -> Vec<f64> {
-        vec![0.0, 0.0, response::UNMODELLED]
+    fn unmodelled(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Unmodelled {
+        Unmodelled { first_parameter: 0.0, ..response::ANY_SHAPE }
     }
 
     fn lists(

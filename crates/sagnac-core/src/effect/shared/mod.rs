@@ -1,5 +1,6 @@
 //! Physics and searches that several effects use. None of it names an effect.
 
+pub(super) mod behind_delay;
 pub(super) mod chance;
 pub(super) mod decay;
 pub(super) mod delay;

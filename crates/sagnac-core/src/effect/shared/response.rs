@@ -9,7 +9,7 @@ use super::decay::decay;
 use super::polynomial::Scale;
 use super::pursuit::{choices, pursue, remove, unit};
 use super::thermal::delayed;
-use crate::effect::{Drivers, Regressors, SearchContext, Values, list, number};
+use crate::effect::{Drivers, Regressors, SearchContext, Unmodelled, Values, list, number};
 use crate::numeric::cosine::dct2;
 use crate::numeric::special;
 
@@ -38,9 +38,9 @@ pub(in crate::effect) const CENTER: &str = "center";
 /// Name of half of the column's range.
 pub(in crate::effect) const HALF_RANGE: &str = "half_range";
 
-/// Relative standard deviation of the size of a course whose law is none of few parameters: curves, loops and responses of several
-/// terms leave out what is not worth a term, and real ones have other shapes. From loops and curves of another make.
-pub(in crate::effect) const UNMODELLED: f64 = 0.08;
+/// What is not known of the size of a course whose law is none of few parameters: curves, loops and responses of several terms
+/// leave out what is not worth a term, and real ones have other shapes. From loops and curves of another make.
+pub(in crate::effect) const ANY_SHAPE: Unmodelled = Unmodelled { first_parameter: 0.08, rms: 0.08 };
 
 /// One term of a response.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -285,17 +285,18 @@ pub(in crate::effect) fn per_unit(mask: u32, law: ResponseLaw) -> Option<f64> {
     }
 }
 
-/// Relative standard deviations of the coefficient and of the rms of a response beside those of its fit. A coefficient of a rate
-/// behind a delay moves with the delay, which is known to a step of its grid only.
+/// What the fit of a response does not know of its coefficient and rms. A coefficient of a rate behind a delay moves with the
+/// delay, which is known to a step of its grid only.
 pub(in crate::effect) fn unmodelled(
     mask: u32,
     law: ResponseLaw,
     values: &[f64],
     drivers: &Drivers,
-) -> [f64; 2] {
-    /// Change of the logarithm of a delay by which its influence is told.
+) -> Unmodelled {
+    /// Step in the logarithm of a delay over which its influence is measured.
     const STEP: f64 = 0.2;
-    let [term] = terms(mask)[..] else { return [0.0, UNMODELLED] };
+    let of_rms = Unmodelled { first_parameter: 0.0, ..ANY_SHAPE };
+    let [term] = terms(mask)[..] else { return of_rms };
     match (law, term) {
         (ResponseLaw::Rate, Term::Delay { time_constant_s }) => {
             let scaled = scaled(values, Scale::of(values));
@@ -308,10 +309,10 @@ pub(in crate::effect) fn unmodelled(
             let slope = (dot(&here, &beside) / dot(&beside, &beside)).ln() / STEP;
             // Anywhere within a step of the grid as likely.
             let step = (DELAYS_S[1] / DELAYS_S[0]).ln() / 12f64.sqrt();
-            [slope.abs() * step, 0.0]
+            Unmodelled { first_parameter: slope.abs() * step, rms: 0.0 }
         }
-        (ResponseLaw::Linear | ResponseLaw::Rate, _) => [0.0, 0.0],
-        _ => [0.0, UNMODELLED],
+        (ResponseLaw::Linear | ResponseLaw::Rate, _) => Unmodelled::default(),
+        _ => of_rms,
     }
 }
 
@@ -458,10 +459,10 @@ mod tests {
         let drivers = drivers(values.len());
         let of = |delay: usize, law| unmodelled(1 << (ORDERS + 1 + delay), law, &values, &drivers);
         let step = 2.5f64.ln() / 12f64.sqrt();
-        let [slow, fast] = [0, DELAYS_S.len() - 1].map(|d| of(d, ResponseLaw::Rate)[0] / step);
+        let [slow, fast] = [0, DELAYS_S.len() - 1].map(|d| of(d, ResponseLaw::Rate).first_parameter / step);
         assert!(slow < 0.4 && (fast - 1.0).abs() < 0.02, "{slow} {fast}");
-        assert_eq!(of(0, ResponseLaw::Lag), [0.0, UNMODELLED]);
-        assert_eq!(unmodelled(1, ResponseLaw::Linear, &values, &drivers), [0.0, 0.0]);
+        assert_eq!(of(0, ResponseLaw::Lag), Unmodelled { first_parameter: 0.0, rms: 0.08 });
+        assert_eq!(unmodelled(1, ResponseLaw::Linear, &values, &drivers), Unmodelled::default());
     }
 
     #[test]

@@ -3,7 +3,7 @@
 use super::estimated::{Estimated, TWO_SIDED_95, interval};
 use super::instant;
 use super::placed::Placed;
-use crate::effect::{Effect, MeanModel, Value};
+use crate::effect::{Effect, MeanModel, Unmodelled, Value};
 use crate::mismatch::contribution::summed;
 use crate::mismatch::finding::ParameterValue;
 use crate::mismatch::tried::{SpectralDataSet, Tried};
@@ -45,10 +45,10 @@ pub(super) fn of_course(
         out
     };
     let mut deviations = propagate(nonlinear_parameters, &coefficients, &covariance, all);
-    let besides = course.unmodelled(nonlinear_parameters, &coefficients, drivers);
-    let sizes = values.iter().chain([&spread]);
-    for ((deviation, relative), size) in deviations.iter_mut().zip(&besides).zip(sizes) {
-        *deviation = deviation.hypot(relative * size);
+    let Unmodelled { first_parameter, rms: of_spread } = course.unmodelled(nonlinear_parameters, drivers);
+    if let ([first, .., last], Some(value)) = (&mut deviations[..], values.first()) {
+        *first = first.hypot(first_parameter * value);
+        *last = last.hypot(of_spread * spread);
     }
     let mut out = Estimated::default();
     for (i, (param, value)) in effect.params().iter().zip(&values).enumerate() {
