@@ -248,16 +248,18 @@ impl SpectralData {
 
 /// Cosine modes of each block, mode 0 of each set to 0.
 fn transform(series: &[f64], blocks: &[usize], length: usize) -> Vec<f64> {
-    let mut out = Vec::with_capacity(blocks.len() * length);
-    for first in blocks {
+    let of_block = |first: &usize| {
         let mut modes = dct2(series.get(*first..first + length).unwrap_or_default());
         modes.resize(length, 0.0);
         if let Some(first) = modes.first_mut() {
             *first = 0.0;
         }
-        out.extend(modes);
+        modes
+    };
+    match blocks {
+        [whole] => of_block(whole),
+        blocks => blocks.iter().flat_map(of_block).collect(),
     }
-    out
 }
 
 fn block_means(series: &[f64], blocks: &[usize], length: usize) -> Vec<f64> {

@@ -17,6 +17,18 @@ use crate::numeric::range;
 /// Samples that go through all accumulators while they are in cache.
 const SLICE: usize = 8192;
 
+/// Samples in a push from which two threads are worth their start.
+const SIDE_BY_SIDE: usize = 2 * SLICE;
+
+/// Neighbouring usable samples.
+struct Run<'a> {
+    samples: &'a [f64],
+    /// Grid index of the first.
+    first_index: u64,
+    /// Whether they follow on those before.
+    continues: bool,
+}
+
 /// Largest rate that can be used, deg/h: the largest number of a file in rad/s, rounded up.
 const MAX_RATE_DEG_H: f64 = 1e6 * range::LARGEST;
 
@@ -215,14 +227,15 @@ impl RateAccumulator {
         }
         let mut at = first_index;
         let mut continues = continues && self.next_index == Some(first_index);
+        let mut runs = Vec::with_capacity(samples.len() / SLICE + 1);
         for slice in samples.chunks(SLICE) {
             let mut offset = 0;
-            for run in slice.split(|y| !usable(*y)) {
-                if !run.is_empty() {
-                    self.run(run, at.saturating_add(offset as u64), continues);
+            for samples in slice.split(|y| !usable(*y)) {
+                if !samples.is_empty() {
+                    runs.push(Run { samples, first_index: at.saturating_add(offset as u64), continues });
                     continues = true;
                 }
-                offset += run.len();
+                offset += samples.len();
                 if offset < slice.len() {
                     self.unusable += 1;
                     offset += 1;
@@ -233,6 +246,7 @@ impl RateAccumulator {
         }
         // Behind an unusable last sample nothing continues.
         self.next_index = continues.then_some(at);
+        self.take(&runs, samples.len());
     }
 
     /// Everything about the samples pushed so far.
@@ -259,7 +273,42 @@ impl RateAccumulator {
         }
     }
 
-    fn run(&mut self, run: &[f64], first_index: u64, continues: bool) {
+    /// Runs of `count` samples in all go through the accumulators, where there are many of them through two halves side by
+    /// side. Each accumulator sees the same runs in the same order either way.
+    fn take(&mut self, runs: &[Run<'_>], count: usize) {
+        for run in runs {
+            self.moments(run.samples);
+        }
+        let RateAccumulator { allan, octaves, welch, blocks, windows, histogram, envelope, quietest, .. } =
+            self;
+        let mut deviations = || {
+            for Run { samples, first_index, continues } in runs {
+                allan.push(samples, *first_index, *continues);
+                if let Some(octaves) = octaves {
+                    octaves.push(samples, *first_index, *continues);
+                }
+                windows.iter_mut().for_each(|w| w.push(samples, *continues));
+            }
+        };
+        let mut others = || {
+            for Run { samples, first_index, continues } in runs {
+                welch.push(samples, *continues);
+                blocks.push(samples, *first_index);
+                histogram.push(samples, *continues);
+                envelope.push(samples, *first_index);
+                quietest.push(samples, *continues);
+            }
+        };
+        if count < SIDE_BY_SIDE {
+            deviations();
+            others();
+        } else {
+            rayon::join(deviations, others);
+        }
+    }
+
+    /// Mean and extremes.
+    fn moments(&mut self, run: &[f64]) {
         if self.samples == 0 {
             self.reference = run.first().copied().unwrap_or(0.0);
         }
@@ -271,16 +320,6 @@ impl RateAccumulator {
         }
         self.sum.add(sum);
         self.samples += run.len() as u64;
-        self.allan.push(run, first_index, continues);
-        if let Some(octaves) = &mut self.octaves {
-            octaves.push(run, first_index, continues);
-        }
-        self.welch.push(run, continues);
-        self.blocks.push(run, first_index);
-        self.windows.iter_mut().for_each(|w| w.push(run, continues));
-        self.histogram.push(run, continues);
-        self.envelope.push(run, first_index);
-        self.quietest.push(run, continues);
     }
 }
 

@@ -11,17 +11,22 @@ pub struct Normal {
     total: f64,
 }
 
-/// Σ a b/p. In four sums, none of which waits for the other.
-fn inner(a: &[f64], b: &[f64], powers: &[f64]) -> f64 {
-    let n = a.len().min(b.len()).min(powers.len());
-    let mut sums = [0.0; 4];
-    let (a, b, powers) = (&a[..n], &b[..n], &powers[..n]);
-    for ((x, y), p) in a.chunks(4).zip(b.chunks(4)).zip(powers.chunks(4)) {
-        for (sum, ((x, y), p)) in sums.iter_mut().zip(x.iter().zip(y).zip(p)) {
-            *sum += x * y / p;
+/// a/p, which several columns are multiplied by.
+fn weighted(a: &[f64], powers: &[f64]) -> Vec<f64> {
+    a.iter().zip(powers).map(|(x, p)| x / p).collect()
+}
+
+/// Σ a b. In eight sums, none of which waits for the other.
+fn inner(a: &[f64], b: &[f64]) -> f64 {
+    let n = a.len().min(b.len());
+    let ((a, a_left), (b, b_left)) = (a[..n].as_chunks::<8>(), b[..n].as_chunks::<8>());
+    let mut sums = [0.0; 8];
+    for (a, b) in a.iter().zip(b) {
+        for (sum, (x, y)) in sums.iter_mut().zip(a.iter().zip(b)) {
+            *sum += x * y;
         }
     }
-    sums.iter().sum()
+    sums.iter().sum::<f64>() + a_left.iter().zip(b_left).map(|(x, y)| x * y).sum::<f64>()
 }
 
 impl Normal {
@@ -31,15 +36,16 @@ impl Normal {
         let mut matrix = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
         for (i, (a, deviation)) in columns.iter().enumerate() {
+            let a = weighted(a, powers);
             for (j, (b, _)) in columns.iter().enumerate().take(i + 1) {
-                let value = inner(a, b, powers);
+                let value = inner(&a, b);
                 matrix[(i, j)] = value;
                 matrix[(j, i)] = value;
             }
             matrix[(i, i)] += deviation.powi(-2);
-            right[i] = inner(a, data, powers);
+            right[i] = inner(&a, data);
         }
-        Normal { matrix, right, total: inner(data, data, powers) }
+        Normal { matrix, right, total: inner(&weighted(data, powers), data) }
     }
 
     /// The equations with more columns, against the same data less a fixed part.
@@ -55,15 +61,17 @@ impl Normal {
         let mut matrix = DMatrix::zeros(p + q, p + q);
         matrix.view_mut((0, 0), (p, p)).copy_from(&self.matrix);
         let mut right = DVector::zeros(p + q);
+        let other = fixed.then(|| weighted(data, powers));
         for (i, (a, _)) in old.iter().enumerate() {
-            right[i] = if fixed { inner(a, data, powers) } else { self.right[i] };
+            right[i] = other.as_ref().map_or(self.right[i], |data| inner(data, a));
         }
         let known = |j: usize| if j < p { old[j].0 } else { new[j - p] };
         let rows: Vec<Vec<f64>> = (0..q)
             .into_par_iter()
             .map(|i| {
-                let against = (0..=p + i).map(|j| inner(new[i], known(j), powers));
-                against.chain(std::iter::once(inner(new[i], data, powers))).collect()
+                let column = weighted(new[i], powers);
+                let against = (0..=p + i).map(|j| inner(&column, known(j)));
+                against.chain(std::iter::once(inner(&column, data))).collect()
             })
             .collect();
         for (i, row) in rows.into_iter().enumerate() {
@@ -73,7 +81,7 @@ impl Normal {
             }
             right[p + i] = row[p + i + 1];
         }
-        let total = if fixed { inner(data, data, powers) } else { self.total };
+        let total = other.map_or(self.total, |other| inner(&other, data));
         Normal { matrix, right, total }
     }
 
@@ -190,8 +198,9 @@ mod tests {
 
     #[test]
     fn sums_end_with_the_shortest_of_the_series() {
-        // 1·2/4 + 3·4/2 in one sum each, and five terms over the four sums.
-        assert_eq!(inner(&[1.0, 3.0], &[2.0, 4.0, 9.0], &[4.0, 2.0, 1.0]), 6.5);
-        assert_eq!(inner(&[1.0, 2.0, 3.0, 4.0, 5.0], &[2.0; 5], &[1.0, 2.0, 1.0, 4.0, 5.0]), 14.0);
+        assert_eq!(weighted(&[1.0, 3.0], &[4.0, 2.0, 1.0]), [0.25, 1.5]);
+        assert_eq!(inner(&[0.25, 1.5], &[2.0, 4.0, 9.0]), 6.5);
+        // Ten terms over the eight sums.
+        assert_eq!(inner(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0], &[2.0; 10]), 110.0);
     }
 }

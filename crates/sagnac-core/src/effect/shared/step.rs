@@ -15,22 +15,13 @@ pub(in crate::effect) fn instants(drivers: &Drivers, context: &SearchContext<'_>
     if n < 8 {
         return Starts { points: vec![], trials: 1.0 };
     }
-    // The gain is (Σ_{i ≥ j} w_i)²/2 over z'C⁻¹z, and the latter varies slowly with the instant: it is computed at some
-    // and interpolated.
-    let points = 48.min(n / 4);
-    let at = |p: usize| 1.0 + (n as f64 - 2.0) * p as f64 / points as f64;
-    let weight = |j: f64| {
-        let modes = crate::numeric::cosine::dct2(&step(drivers, (j - 0.5) * drivers.dt_s));
-        modes.iter().zip(context.powers).skip(1).map(|(z, p)| z * z / p).sum::<f64>()
-    };
-    let weights: Vec<f64> = (0..=points).map(|p| weight(at(p))).collect();
+    // The gain is (Σ_{i ≥ j} w_i)²/2 over z'C⁻¹z.
+    let information = informations(context.powers);
     let mut sum: f64 = 0.0;
     let mut gains = vec![0.0; n];
     for j in (1..n).rev() {
         sum += context.score[j];
-        let x = (j as f64 - at(0)) / (at(1) - at(0));
-        let p = (x.max(0.0) as usize).min(points - 1);
-        let w = weights[p] + (weights[p + 1] - weights[p]) * (x - p as f64).clamp(0.0, 1.0);
+        let w = information.get(j.min(n - j)).copied().unwrap_or(0.0);
         gains[j] = if w > 0.0 { 0.5 * sum * sum / w } else { 0.0 };
     }
     let mut points = vec![];
@@ -44,6 +35,24 @@ pub(in crate::effect) fn instants(drivers: &Drivers, context: &SearchContext<'_>
         gains[best.saturating_sub(apart)..(best + apart).min(n)].fill(0.0);
     }
     Starts { points, trials: trials(n) }
+}
+
+/// Σ c²/p over the modes c of a unit step from sample j on, for j up to half the record; that of n − j is the same.
+///
+/// c_k = −√(2/n) sin(πkj/n)/(2 sin(πk/2n)), so that one Fourier transform of 1/(4n sin²(πk/2n) p_k) gives it for every j.
+fn informations(powers: &[f64]) -> Vec<f64> {
+    let n = powers.len();
+    let half_turn = std::f64::consts::PI / (2.0 * n as f64);
+    let each = |(k, p): (usize, &f64)| 1.0 / (4.0 * n as f64 * (half_turn * k as f64).sin().powi(2) * p);
+    let mut of_modes = vec![0.0];
+    of_modes.extend(powers.iter().enumerate().skip(1).map(each));
+    let forward = sagnac_fft::real_forward(n);
+    let mut sums = forward.make_output_vec();
+    if forward.process(&mut of_modes, &mut sums).is_err() {
+        return vec![];
+    }
+    let all = sums.first().map_or(0.0, |s| s.re);
+    sums.iter().map(|s| all - s.re).collect()
 }
 
 /// Instants closer than the time in which the noise lets a step be placed are one; in white noise each counts.
@@ -70,6 +79,20 @@ mod tests {
         assert_eq!(step(&drivers, 4.5), [0.0, 0.0, 0.25, 1.0, 1.0]);
         assert_eq!(step(&drivers, -9.0), [1.0; 5]);
         assert_eq!(step(&drivers, 99.0), [0.0; 5]);
+    }
+
+    #[test]
+    fn the_information_of_a_step_is_that_of_its_modes() {
+        for n in [8usize, 33, 500] {
+            let powers: Vec<f64> =
+                (0..n).map(|k| if k == 0 { f64::INFINITY } else { 0.1 + 30.0 / k as f64 }).collect();
+            let fast = informations(&powers);
+            for j in 1..n {
+                let column: Vec<f64> = (0..n).map(|i| if i >= j { 1.0 } else { 0.0 }).collect();
+                let direct: f64 = dct2(&column).iter().zip(&powers).map(|(c, p)| c * c / p).sum();
+                assert!((fast[j.min(n - j)] / direct - 1.0).abs() < 1e-9, "{j} of {n}");
+            }
+        }
     }
 
     #[test]
