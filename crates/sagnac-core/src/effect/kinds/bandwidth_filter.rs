@@ -5,8 +5,7 @@ use crate::effect::{
     Domain, Family, LowPass, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct,
     Values, number,
 };
-use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode};
-use crate::noise::data::NoiseType;
+use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode, filtered_white};
 use crate::numeric::optimize::bisect;
 use crate::numeric::range::Bounds;
 use std::f64::consts::PI;
@@ -117,9 +116,10 @@ fn averaged(samples: usize, bin: &ModeBin) -> f64 {
     })
 }
 
-fn filter(fitted: &[f64]) -> Bandwidth {
+/// Time constant of a filter of first order, s.
+fn time_constant_s(fitted: &[f64]) -> f64 {
     let cutoff = fitted.first().copied().unwrap_or(1e9).max(1e-12);
-    Bandwidth::FirstOrder { time_constant_s: 1.0 / (2.0 * PI * cutoff) }
+    1.0 / (2.0 * PI * cutoff)
 }
 
 impl Spectrum for BandwidthFilter {
@@ -149,16 +149,9 @@ impl Spectrum for BandwidthFilter {
                 bins.iter().map(|b| averaged(samples, b).max(MIN_POWER)).collect()
             }
             None => {
-                let filter = filter(fitted);
-                let white = |b: &ModeBin| {
-                    filter.unit_density(
-                        NoiseType::AngleRandomWalk,
-                        b.frequency_hz,
-                        b.dt_s,
-                        Sampling::Averaging,
-                    )
-                };
-                bins.iter().map(|b| (white(b) / 3600.0).max(MIN_POWER)).collect()
+                let white =
+                    filtered_white(time_constant_s(fitted)).densities(first.dt_s, Sampling::Averaging);
+                bins.iter().map(|b| (white.at(b.frequency_hz) / 3600.0).max(MIN_POWER)).collect()
             }
         }
     }
@@ -259,7 +252,7 @@ impl Spectrum for BandwidthFilter {
                 let cutoff = fitted.first().copied().unwrap_or(1.0);
                 Some(Bandwidth::MovingAverage { samples: average_samples(cutoff, dt_s) as u32 })
             }
-            Form::BeforeSampling => Some(filter(fitted)),
+            Form::BeforeSampling => Some(Bandwidth::FirstOrder { time_constant_s: time_constant_s(fitted) }),
             _ => noise.bandwidth,
         };
     }

@@ -137,7 +137,7 @@ mod tests {
             PowerLawNoise.compose(&fitted, dt_s, &mut noise);
             for frequency_hz in [1e-4, 1e-3, 1e-2, 0.1, 1.0, 4.0] {
                 let sum: f64 =
-                    noise.markov.iter().map(|m| m.densities(dt_s, Sampling::Averaging)(frequency_hz)).sum();
+                    noise.markov.iter().map(|m| m.density(frequency_hz, dt_s, Sampling::Averaging)).sum();
                 let bin = ModeBin { frequency_hz, mode: 1, modes: 1, samples: 1000, dt_s, even_ends: false };
                 let wanted = PowerLawNoise.density(&fitted, &bin);
                 assert!((sum / wanted - 1.0).abs() < 0.06, "{exponent} at {frequency_hz}: {sum} {wanted}");

@@ -90,7 +90,7 @@ impl Spectrum for QuasiPeriodic {
                 point += lorentz(bin.frequency_hz - center);
                 mean += (primitive(high - center) - primitive(low - center)) / (high - low);
             }
-            let exact = exact(bin.frequency_hz);
+            let exact = exact.at(bin.frequency_hz);
             if point > 0.0 { exact * mean / point } else { exact }
         };
         bins.iter().map(one).collect()

@@ -20,7 +20,7 @@ pub(in crate::effect) fn densities(process: &Damped, bins: &[ModeBin]) -> Vec<f6
     let far = process.densities(first.dt_s, Sampling::Averaging);
     // Far above 1/(record length) the modes hold what the density says.
     let exact = |b: &ModeBin| b.modes == 1 && b.mode < 64;
-    bins.iter().map(|b| if exact(b) { modes.power(b.mode) } else { far(b.frequency_hz) }).collect()
+    bins.iter().map(|b| if exact(b) { modes.power(b.mode) } else { far.at(b.frequency_hz) }).collect()
 }
 
 /// Starts over correlation times from `low` to `high`, each with the level that the excess at its corner asks for.

@@ -64,18 +64,23 @@ impl Bandwidth {
                 gain * gain * sampled_density(term, frequency_hz, tau0_s, sampling)
             }
             Bandwidth::FirstOrder { time_constant_s } => match term {
-                NoiseType::AngleRandomWalk => white(time_constant_s).density(frequency_hz, tau0_s, sampling),
-                NoiseType::Flicker => (-ALIASES..=ALIASES)
-                    .map(|k| {
+                NoiseType::AngleRandomWalk => {
+                    filtered_white(time_constant_s).density(frequency_hz, tau0_s, sampling)
+                }
+                NoiseType::Flicker => {
+                    // The same for all aliases.
+                    let sin = (PI * frequency_hz * tau0_s).sin();
+                    let alias = |k| {
                         let f = frequency_hz + f64::from(k) / tau0_s;
                         let x = PI * f * tau0_s;
                         let averaged = match sampling {
-                            Sampling::Averaging if x != 0.0 => (x.sin() / x).powi(2),
+                            Sampling::Averaging if x != 0.0 => (sin / x).powi(2),
                             _ => 1.0,
                         };
                         averaged / (2.0 * PI * f.abs()) / (1.0 + (2.0 * PI * f * time_constant_s).powi(2))
-                    })
-                    .sum(),
+                    };
+                    (-ALIASES..=ALIASES).map(alias).sum()
+                }
                 // Aliases of a random walk fall as f⁻⁶ here: the filter acts on the sampled density.
                 _ => {
                     sampled_density(term, frequency_hz, tau0_s, sampling)
@@ -88,7 +93,7 @@ impl Bandwidth {
     /// V(t) of filtered white noise of N = 1 deg/√h, (deg/h)².
     pub fn unit_white_mean_variance(&self, t_s: f64, tau0_s: f64) -> f64 {
         match *self {
-            Bandwidth::FirstOrder { time_constant_s } => white(time_constant_s).mean_variance(t_s),
+            Bandwidth::FirstOrder { time_constant_s } => filtered_white(time_constant_s).mean_variance(t_s),
             Bandwidth::MovingAverage { samples } => {
                 let n = f64::from(samples.max(1));
                 let m = (t_s / tau0_s).round().max(1.0);
@@ -102,8 +107,8 @@ impl Bandwidth {
     }
 }
 
-/// White noise of N = 1 deg/√h behind a first-order filter is a Markov process.
-fn white(time_constant_s: f64) -> Damped {
+/// White noise of N = 1 deg/√h behind a filter of first order: a Markov process.
+pub fn filtered_white(time_constant_s: f64) -> Damped {
     Damped {
         rms_deg_h: (3600.0 / (2.0 * time_constant_s)).sqrt(),
         frequency_hz: 0.0,

@@ -28,6 +28,27 @@ pub struct Damped {
     pub decay_time_s: f64,
 }
 
+/// Densities of samples of a [`Damped`] process. What no frequency enters is computed once.
+#[derive(Debug, Clone, Copy)]
+pub struct Densities {
+    gamma0: f64,
+    first: Complex<f64>,
+    rho: Complex<f64>,
+    tau_s: f64,
+    scale: f64,
+}
+
+impl Densities {
+    /// Two-sided density at a frequency, aliases included, (deg/h)²/Hz.
+    pub fn at(&self, frequency_hz: f64) -> f64 {
+        let Densities { gamma0, first, rho, tau_s, scale } = *self;
+        let cos = (2.0 * PI * frequency_hz * tau_s).cos();
+        // γ_d = Re[first·ρ^(d−1)]; Σ_{d≥1} ρ^(d−1) cos(θd) = (cosθ − ρ)/(1 − 2ρcosθ + ρ²).
+        let sum = first * (Complex::new(cos, 0.0) - rho) / (1.0 - 2.0 * cos * rho + rho * rho);
+        (scale * (gamma0 + 2.0 * sum.re)).max(0.0)
+    }
+}
+
 /// Expected powers of the cosine modes of a [`Damped`] process.
 #[derive(Debug, Clone, Copy)]
 pub struct Modes {
@@ -119,19 +140,13 @@ impl Damped {
 
     /// Two-sided density of samples over `tau_s` at `frequency_hz`, aliases included, (deg/h)²/Hz.
     pub fn density(&self, frequency_hz: f64, tau_s: f64, sampling: Sampling) -> f64 {
-        self.densities(tau_s, sampling)(frequency_hz)
+        self.densities(tau_s, sampling).at(frequency_hz)
     }
 
-    /// The density as a function of frequency.
-    pub fn densities(&self, tau_s: f64, sampling: Sampling) -> impl Fn(f64) -> f64 + use<> {
+    /// The density at any frequency.
+    pub fn densities(&self, tau_s: f64, sampling: Sampling) -> Densities {
         let (gamma0, first, rho) = self.covariance(tau_s, sampling);
-        let scale = self.rms_deg_h.powi(2) * tau_s;
-        move |frequency_hz| {
-            let cos = (2.0 * PI * frequency_hz * tau_s).cos();
-            // γ_d = Re[first·ρ^(d−1)]; Σ_{d≥1} ρ^(d−1) cos(θd) = (cosθ − ρ)/(1 − 2ρcosθ + ρ²).
-            let sum = first * (Complex::new(cos, 0.0) - rho) / (1.0 - 2.0 * cos * rho + rho * rho);
-            (scale * (gamma0 + 2.0 * sum.re)).max(0.0)
-        }
+        Densities { gamma0, first, rho, tau_s, scale: self.rms_deg_h.powi(2) * tau_s }
     }
 
     /// E\[c_k²\]·τ of the orthonormal cosine mode k of `blocks` samples over `tau_s`: what the density becomes in a

@@ -5,8 +5,8 @@ mod bandwidth;
 pub mod damped;
 mod described;
 
-pub use bandwidth::{Bandwidth, averaged_white_mode};
-pub use damped::{Damped, Modes, Sampling, Windowed};
+pub use bandwidth::{Bandwidth, averaged_white_mode, filtered_white};
+pub use damped::{Damped, Densities, Modes, Sampling, Windowed};
 pub use described::{Described, Parameter, Propagated};
 
 use super::data::NoiseType;

@@ -1,14 +1,16 @@
 //! Expected band powers of each part for a coefficient of 1.
 
-use super::model::{BASE, Shape};
+use super::model::BASE;
 use crate::noise::composite::{
-    Bandwidth, Composite, Damped, Modes, Sampling, Windowed, averaged_white_mode, sampled_density,
+    Bandwidth, Composite, Damped, Densities, Modes, Sampling, Windowed, averaged_white_mode, filtered_white,
+    sampled_density,
 };
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
 use crate::noise::model::{Bin, Spectral, bin_ratio};
 use std::cell::Cell;
 use std::f64::consts::PI;
+use std::sync::Arc;
 
 /// A term behind a filter.
 struct Filtered {
@@ -16,6 +18,8 @@ struct Filtered {
     filter: Option<Bandwidth>,
     tau0_s: f64,
     sampling: Sampling,
+    /// White noise behind a filter of first order over the interval that was asked for last.
+    white: Cell<Option<(f64, Densities)>>,
 }
 
 impl Spectral for Filtered {
@@ -23,6 +27,14 @@ impl Spectral for Filtered {
         let (f, tau) = (bin.frequency_hz, bin.tau_s);
         let plain = match self.filter {
             None => sampled_density(self.term, f, tau, self.sampling_of(bin)),
+            Some(Bandwidth::FirstOrder { time_constant_s }) if self.term == NoiseType::AngleRandomWalk => {
+                let white = match self.white.get() {
+                    Some((tau_s, white)) if tau_s == tau => white,
+                    _ => filtered_white(time_constant_s).densities(tau, self.sampling_of(bin)),
+                };
+                self.white.set(Some((tau, white)));
+                white.at(f)
+            }
             Some(filter @ Bandwidth::FirstOrder { .. }) => {
                 filter.unit_density(self.term, f, tau, self.sampling_of(bin))
             }
@@ -96,7 +108,8 @@ pub(super) fn base(evidence: &Evidence, filter: Option<Bandwidth>, sampling: Sam
             if filter.is_none() && sampling == Sampling::Averaging {
                 return evidence.expectation(term);
             }
-            evidence.expectation(&Filtered { term: *term, filter, tau0_s: evidence.tau0_s, sampling })
+            let (tau0_s, white) = (evidence.tau0_s, Cell::new(None));
+            evidence.expectation(&Filtered { term: *term, filter, tau0_s, sampling, white })
         })
         .collect()
 }
@@ -108,21 +121,17 @@ pub(super) fn process(evidence: &Evidence, process: &Damped, sampling: Sampling)
     evidence.expectation(&Process { process: unit, tau0_s, sampling, last, windowed })
 }
 
+/// The columns of N, B, K and Q, shared by all shapes behind the same filter.
+pub(super) type Base = Arc<Vec<Vec<f64>>>;
+
 /// All columns of a shape.
 #[derive(Debug, Clone)]
 pub(super) struct Columns {
-    pub(super) base: Vec<Vec<f64>>,
+    pub(super) base: Base,
     pub(super) damped: Vec<Vec<f64>>,
 }
 
 impl Columns {
-    pub(super) fn of(evidence: &Evidence, shape: &Shape, sampling: Sampling) -> Columns {
-        Columns {
-            base: base(evidence, shape.filter, sampling),
-            damped: shape.damped.iter().map(|(_, d)| process(evidence, d, sampling)).collect(),
-        }
-    }
-
     pub(super) fn all(&self) -> impl Iterator<Item = &Vec<f64>> {
         self.base.iter().chain(&self.damped)
     }

@@ -4,12 +4,13 @@ use super::super::likelihood::{
     BandPower, best_ramp, deviance, ramp_information, starting_variance, usable_bands,
 };
 use super::super::misfit::WhitenedBand;
-use super::columns::{Columns, base, process};
-use super::model::{BASE, Free, JointPoint, Shape, Variable};
-use crate::noise::composite::{Bandwidth, Sampling};
+use super::columns::{Base, Columns, base, process};
+use super::model::{BASE, Free, JointPoint, ProcessKind, Shape, Variable};
+use crate::noise::composite::{Bandwidth, Damped, Sampling};
 use crate::noise::evidence::Evidence;
 use crate::numeric::optimize::{bounded_quadratic, shortened_steps};
 use nalgebra::{DMatrix, DVector};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Fall of the deviance below which a fit is done.
 const MIN_FALL: f64 = 1e-3;
@@ -17,6 +18,8 @@ const MIN_FALL: f64 = 1e-3;
 const MAX_STEPS: usize = 80;
 /// Periods that an oscillation lasts at least.
 const MIN_PERIODS: f64 = 2.0;
+/// Filters whose columns are kept.
+const MAX_FILTERS: usize = 8;
 /// Relative step of numeric derivatives.
 const DERIVATIVE_STEP: f64 = 1e-3;
 
@@ -26,15 +29,17 @@ pub struct Joint<'a> {
     sampling: Sampling,
     bands: Vec<BandPower>,
     used: Vec<usize>,
-    plain: Vec<Vec<f64>>,
+    plain: Base,
+    filtered: Mutex<Vec<(Bandwidth, Base)>>,
 }
 
 impl<'a> Joint<'a> {
     /// Prepares the likelihood; `None` when there is no power in any band or too few bands to say anything.
     pub fn new(evidence: &'a Evidence, sampling: Sampling) -> Option<Joint<'a>> {
         let (used, bands) = usable_bands(evidence)?;
-        let mut joint = Joint { evidence, sampling, bands, used, plain: vec![] };
-        joint.plain = joint.restrict(base(evidence, None, sampling));
+        let (plain, filtered) = (Arc::default(), Mutex::default());
+        let mut joint = Joint { evidence, sampling, bands, used, plain, filtered };
+        joint.plain = Arc::new(joint.restrict(base(evidence, None, sampling)));
         Some(joint)
     }
 
@@ -56,13 +61,39 @@ impl<'a> Joint<'a> {
         columns.into_iter().map(pick).collect()
     }
 
-    pub(super) fn columns(&self, shape: &Shape) -> Columns {
-        if shape.filter.is_none() {
-            let damped = shape.damped.iter().map(|(_, d)| process(self.evidence, d, self.sampling)).collect();
-            return Columns { base: self.plain.clone(), damped: self.restrict(damped) };
+    /// The columns of N, B, K and Q behind a filter. Those of the last filters are kept: a search asks for them with many
+    /// processes beside.
+    fn base(&self, filter: Option<Bandwidth>) -> Base {
+        let Some(filter) = filter else { return self.plain.clone() };
+        let kept = || self.filtered.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, base)) = kept().iter().find(|(f, _)| *f == filter) {
+            return base.clone();
         }
-        let all = Columns::of(self.evidence, shape, self.sampling);
-        Columns { base: self.restrict(all.base), damped: self.restrict(all.damped) }
+        let made = Arc::new(self.restrict(base(self.evidence, Some(filter), self.sampling)));
+        let mut kept = kept();
+        if kept.len() >= MAX_FILTERS {
+            kept.remove(0);
+        }
+        kept.push((filter, made.clone()));
+        made
+    }
+
+    pub(super) fn columns(&self, shape: &Shape) -> Columns {
+        let damped = shape.damped.iter().map(|(_, d)| process(self.evidence, d, self.sampling)).collect();
+        Columns { base: self.base(shape.filter), damped: self.restrict(damped) }
+    }
+
+    /// The columns of a shape near one whose columns are known.
+    fn columns_near(&self, shape: &Shape, known: &Shape, columns: &Columns) -> Columns {
+        let one = |(i, (_, damped)): (usize, &(ProcessKind, Damped))| {
+            let same = known.damped.get(i).filter(|(_, d)| d == damped).and_then(|_| columns.damped.get(i));
+            same.cloned().map_or_else(
+                || self.restrict(vec![process(self.evidence, damped, self.sampling)]),
+                |column| vec![column],
+            )
+        };
+        let damped = shape.damped.iter().enumerate().flat_map(one).collect();
+        Columns { base: self.base(shape.filter), damped }
     }
 
     fn density(&self, columns: &Columns, variance: &[f64]) -> Vec<f64> {
@@ -158,9 +189,9 @@ impl<'a> Joint<'a> {
             match *variable {
                 Variable::Variance(i) => columns.all().nth(i).cloned().unwrap_or_default(),
                 Variable::FilterTime => {
-                    let moved = self.columns(&self.moved(&point.shape, *variable, DERIVATIVE_STEP));
+                    let moved = self.base(self.moved(&point.shape, *variable, DERIVATIVE_STEP).filter);
                     let mut out = vec![0.0; self.bands.len()];
-                    for ((now, then), v) in columns.base.iter().zip(&moved.base).zip(&point.variance) {
+                    for ((now, then), v) in columns.base.iter().zip(moved.iter()).zip(&point.variance) {
                         for ((o, a), b) in out.iter_mut().zip(now).zip(then) {
                             *o += v * (b - a) / DERIVATIVE_STEP;
                         }
@@ -261,7 +292,11 @@ impl<'a> Joint<'a> {
             let shorter = |scale: f64| scale * if scale > 0.2 { 0.5 } else { 0.25 };
             let (better, scale) = shortened_steps(12, shorter, |scale| {
                 let (mut trial, bent) = self.moved_along(&point, &variables, &step, scale);
-                let trial_columns = if bent { self.columns(&trial.shape) } else { columns.clone() };
+                let trial_columns = if bent {
+                    self.columns_near(&trial.shape, &point.shape, &columns)
+                } else {
+                    columns.clone()
+                };
                 let trial_s = self.density(&trial_columns, &trial.variance);
                 if restricted && trial_s.iter().all(|s| *s > 0.0) {
                     trial.ramp = best_ramp(self.expected(&trial_s));
