@@ -138,8 +138,11 @@ impl Sink {
                     parquet::schema::parser::parse_message_type(&format!("message recording {{ {fields}}}"));
                 let schema = schema.map_err(as_io)?;
                 let level = ZstdLevel::try_new(3).map_err(as_io)?;
-                let properties =
-                    WriterProperties::builder().set_compression(Compression::ZSTD(level)).build();
+                // Noise hardly repeats a value: a dictionary is a third of the work, and given up in the end.
+                let properties = WriterProperties::builder()
+                    .set_compression(Compression::ZSTD(level))
+                    .set_dictionary_enabled(false)
+                    .build();
                 let writer = SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties));
                 writer.map(|w| Sink::Parquet(Box::new(w))).map_err(as_io)
             }

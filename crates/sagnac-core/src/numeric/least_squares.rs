@@ -11,9 +11,24 @@ pub struct Normal {
     total: f64,
 }
 
-/// a/p, which several columns are multiplied by.
-fn weighted(a: &[f64], powers: &[f64]) -> Vec<f64> {
-    a.iter().zip(powers).map(|(x, p)| x / p).collect()
+/// Values that are weighted at a time: they stay in the fastest cache, and a long record needs no memory for them.
+const AT_ONCE: usize = 2048;
+
+/// Σ a b/p for each of several columns b.
+fn products<'a>(a: &[f64], powers: &[f64], columns: impl Iterator<Item = &'a [f64]>) -> Vec<f64> {
+    let columns: Vec<&[f64]> = columns.collect();
+    let mut sums = vec![0.0; columns.len()];
+    let mut weighted = [0.0; AT_ONCE];
+    for (part, (a, powers)) in a.chunks(AT_ONCE).zip(powers.chunks(AT_ONCE)).enumerate() {
+        let count = a.len().min(powers.len());
+        for (w, (x, p)) in weighted.iter_mut().zip(a.iter().zip(powers)) {
+            *w = x / p;
+        }
+        for (sum, column) in sums.iter_mut().zip(&columns) {
+            *sum += inner(&weighted[..count], column.get(part * AT_ONCE..).unwrap_or_default());
+        }
+    }
+    sums
 }
 
 /// Σ a b. In eight sums, none of which waits for the other.
@@ -36,16 +51,16 @@ impl Normal {
         let mut matrix = DMatrix::zeros(p, p);
         let mut right = DVector::zeros(p);
         for (i, (a, deviation)) in columns.iter().enumerate() {
-            let a = weighted(a, powers);
-            for (j, (b, _)) in columns.iter().enumerate().take(i + 1) {
-                let value = inner(&a, b);
-                matrix[(i, j)] = value;
-                matrix[(j, i)] = value;
+            let others = columns.iter().take(i + 1).map(|(b, _)| *b).chain([data]);
+            let values = products(a, powers, others);
+            for (j, value) in values.iter().enumerate().take(i + 1) {
+                matrix[(i, j)] = *value;
+                matrix[(j, i)] = *value;
             }
             matrix[(i, i)] += deviation.powi(-2);
-            right[i] = inner(&a, data);
+            right[i] = values[i + 1];
         }
-        Normal { matrix, right, total: inner(&weighted(data, powers), data) }
+        Normal { matrix, right, total: products(data, powers, [data].into_iter())[0] }
     }
 
     /// The equations with more columns, against the same data less a fixed part.
@@ -61,17 +76,17 @@ impl Normal {
         let mut matrix = DMatrix::zeros(p + q, p + q);
         matrix.view_mut((0, 0), (p, p)).copy_from(&self.matrix);
         let mut right = DVector::zeros(p + q);
-        let other = fixed.then(|| weighted(data, powers));
-        for (i, (a, _)) in old.iter().enumerate() {
-            right[i] = other.as_ref().map_or(self.right[i], |data| inner(data, a));
+        // Against the old columns, and against itself.
+        let other = fixed.then(|| products(data, powers, old.iter().map(|(a, _)| *a).chain([data])));
+        for i in 0..p {
+            right[i] = other.as_ref().map_or(self.right[i], |other| other[i]);
         }
         let known = |j: usize| if j < p { old[j].0 } else { new[j - p] };
         let rows: Vec<Vec<f64>> = (0..q)
             .into_par_iter()
             .map(|i| {
-                let column = weighted(new[i], powers);
-                let against = (0..=p + i).map(|j| inner(&column, known(j)));
-                against.chain(std::iter::once(inner(&column, data))).collect()
+                let against = (0..=p + i).map(known);
+                products(new[i], powers, against.chain([data]))
             })
             .collect();
         for (i, row) in rows.into_iter().enumerate() {
@@ -81,7 +96,7 @@ impl Normal {
             }
             right[p + i] = row[p + i + 1];
         }
-        let total = other.map_or(self.total, |other| inner(&other, data));
+        let total = other.map_or(self.total, |other| other[p]);
         Normal { matrix, right, total }
     }
 
@@ -198,8 +213,12 @@ mod tests {
 
     #[test]
     fn sums_end_with_the_shortest_of_the_series() {
-        assert_eq!(weighted(&[1.0, 3.0], &[4.0, 2.0, 1.0]), [0.25, 1.5]);
-        assert_eq!(inner(&[0.25, 1.5], &[2.0, 4.0, 9.0]), 6.5);
+        let sums = products(&[1.0, 3.0], &[4.0, 2.0, 1.0], [&[2.0, 4.0, 9.0][..], &[2.0]].into_iter());
+        assert_eq!(sums, [6.5, 0.5]);
+        let long = vec![1.0; AT_ONCE + 5];
+        let rising: Vec<f64> = (0..AT_ONCE + 5).map(|i| i as f64).collect();
+        let n = (AT_ONCE + 5) as f64;
+        assert_eq!(products(&rising, &[0.5; AT_ONCE + 5], [&long[..]].into_iter()), [n * (n - 1.0)]);
         // Ten terms over the eight sums.
         assert_eq!(inner(&[1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0], &[2.0; 10]), 110.0);
     }
