@@ -2,7 +2,7 @@
 //! jumps of its level.
 //!
 //! Every view gives a probability that counts the search within the view and what fitted parameters took, and says
-//! where and by how much the record departs most. Measured on simulated records (`tests/goodness_of_fit.rs`).
+//! where and by how much the record departs most. Measured on simulated records (`tests/it/goodness_of_fit.rs`).
 
 mod amplitude;
 mod averaging;

@@ -1,0 +1,9 @@
+//! Procedures, limits and manifests: what is read, what is refused, what the guide says of every key.
+
+mod check_list;
+mod deciding;
+mod files;
+mod manifest;
+mod named_files;
+mod phases;
+mod robustness;
