@@ -6,6 +6,7 @@ mod modules;
 mod notices;
 mod proofs;
 mod same_results;
+mod test_names;
 mod weight;
 
 use std::path::{Path, PathBuf};
@@ -25,6 +26,8 @@ proofs DATA [WORD]...
     Run the proofs with the recordings of a folder, those whose path contains a word or all, and add a line a run to docs/PROOFS.md.
 notices [--check]
     Write THIRD-PARTY.md: licences and notices of the packages that the program contains.
+tests COMMIT
+    Print the tests that went and those that came since a commit, by the names of their functions.
 weight [--since DATE]
     Print how many lines, files and types there are, and how many files a commit touches for one more field, measurand or effect.
 ";
@@ -43,6 +46,7 @@ fn main() -> ExitCode {
         Some((command, rest)) if command == "features" => features::check(root, rest),
         Some((command, [])) if command == "notices" => notices::run(root, false),
         Some((command, [check])) if command == "notices" && check == "--check" => notices::run(root, true),
+        Some((command, [commit])) if command == "tests" => test_names::compare(root, commit),
         Some((command, [])) if command == "weight" => weight::print(root, weight::COMMITS_SINCE),
         Some((command, [option, date])) if command == "weight" && option == "--since" => {
             weight::print(root, date)

@@ -91,7 +91,12 @@ fn is_test(path: &str) -> bool {
 
 fn is_product(path: &str) -> bool {
     let wanted = ["src/", "crates/", "templates/"].iter().any(|p| path.starts_with(p));
-    wanted && !is_test(path) && !path.contains("/examples/") && !path.contains("/studies/")
+    // Sentences in two languages are text, not code.
+    wanted
+        && !is_test(path)
+        && !path.starts_with("templates/locale/")
+        && !path.contains("/examples/")
+        && !path.contains("/studies/")
 }
 
 fn sources(root: &Path) -> io::Result<Vec<Source>> {
@@ -247,35 +252,41 @@ fn reached(root: &Path) -> io::Result<usize> {
 
 /// Medians of the files that a commit touches, by what it adds.
 fn touched(root: &Path, since: &str) -> io::Result<Vec<(&'static str, String)>> {
+    let since = format!("--since={since}");
+    let log = ["log", "--no-merges", "--no-renames", "--format=commit %H", &since];
+    let mut files: BTreeMap<String, usize> = BTreeMap::new();
+    let mut commit = String::new();
+    for line in git(root, &[&log[..], &["--name-only"]].concat())?.lines().filter(|l| !l.is_empty()) {
+        match line.strip_prefix("commit ") {
+            Some(hash) => hash.clone_into(&mut commit),
+            None => *files.entry(commit.clone()).or_default() += 1,
+        }
+    }
+    let mut kinds: BTreeSet<(&'static str, String)> = BTreeSet::new();
+    let places = ["src/record", ":(glob)crates/*/src/measurand/**", ":(glob)crates/*/src/effect/kinds/**"];
+    let mut path = String::new();
+    for line in git(root, &[&log[..], &["--patch", "--unified=0", "--"], &places[..]].concat())?.lines() {
+        let mut add = |kind| kinds.insert((kind, commit.clone()));
+        if let Some(hash) = line.strip_prefix("commit ") {
+            hash.clone_into(&mut commit);
+        } else if let Some(name) = line.strip_prefix("+++ b/") {
+            name.clone_into(&mut path);
+        } else if line.starts_with("+    pub ")
+            && line.contains(": ")
+            && !line.contains("fn ")
+            && path.starts_with("src/record/")
+        {
+            add("to add a field of a result");
+        } else if line.starts_with('+') && path.contains("/measurand/") {
+            add("by a change of a measurand");
+        } else if line.starts_with('+') && path.contains("/effect/kinds/") {
+            add("by a change of an effect");
+        }
+    }
+    kinds.extend(files.keys().map(|commit| ("by any commit", commit.clone())));
     let mut counts: BTreeMap<&'static str, Vec<usize>> = BTreeMap::new();
-    let commits = git(root, &["log", "--no-merges", "--format=%H", &format!("--since={since}")])?;
-    for commit in commits.lines() {
-        let shown = git(
-            root,
-            &["show", "--format=", "--unified=0", "--no-renames", commit, "--", "src/record", "crates"],
-        )?;
-        let files = git(root, &["show", "--format=", "--name-only", "--no-renames", commit])?;
-        let count = files.lines().filter(|l| !l.is_empty()).count();
-        let (mut path, mut kinds) = (String::new(), BTreeSet::new());
-        for line in shown.lines() {
-            if let Some(rest) = line.strip_prefix("+++ b/") {
-                rest.clone_into(&mut path);
-            } else if path.starts_with("src/record/")
-                && line.starts_with("+    pub ")
-                && line.contains(": ")
-                && !line.contains("fn ")
-            {
-                kinds.insert("to add a field of a result");
-            } else if path.contains("/measurand/") && line.starts_with('+') {
-                kinds.insert("by a change of a measurand");
-            } else if path.contains("/effect/kinds/") && line.starts_with('+') {
-                kinds.insert("by a change of an effect");
-            }
-        }
-        for kind in kinds {
-            counts.entry(kind).or_default().push(count);
-        }
-        counts.entry("by any commit").or_default().push(count);
+    for (kind, commit) in kinds {
+        counts.entry(kind).or_default().push(files.get(&commit).copied().unwrap_or_default());
     }
     let median = |mut of: Vec<usize>| {
         of.sort_unstable();
@@ -284,7 +295,8 @@ fn touched(root: &Path, since: &str) -> io::Result<Vec<(&'static str, String)>> 
     Ok(counts.into_iter().map(|(kind, of)| (kind, median(of))).collect())
 }
 
-fn git(root: &Path, arguments: &[&str]) -> io::Result<String> {
+/// Output of a git command in the root folder.
+pub fn git(root: &Path, arguments: &[&str]) -> io::Result<String> {
     let output = Command::new("git").current_dir(root).args(arguments).output()?;
     if !output.status.success() {
         return Err(io::Error::other(String::from_utf8_lossy(&output.stderr).into_owned()));
