@@ -33,7 +33,6 @@ use crate::i18n::Note;
 use earlier::Earlier;
 use error::io;
 use partial::Partial;
-use schemars::JsonSchema;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -87,17 +86,18 @@ impl Order {
 }
 
 /// A record with what it was made from and the files of its folder.
-#[derive(Debug, Serialize, JsonSchema)]
-#[schemars(title = "RunRecord")]
+#[derive(Debug, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[cfg_attr(feature = "schema", schemars(title = "RunRecord"))]
 pub struct Listed<T> {
     #[serde(flatten)]
     record: T,
     /// What the result was made from: SHA-256 of `recording`, `procedure`, `limits`, `model` and `options`, and the
     /// serial number of the `unit`, as far as there are any.
-    #[schemars(default)]
+    #[cfg_attr(feature = "schema", schemars(default))]
     inputs: BTreeMap<String, String>,
     /// Every file of the folder, this one among them. Nothing else in it is ever removed by the program.
-    #[schemars(default)]
+    #[cfg_attr(feature = "schema", schemars(default))]
     files: Vec<String>,
 }
 

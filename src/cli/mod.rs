@@ -36,6 +36,8 @@ mod run;
 mod run_args;
 mod run_phases;
 mod schema;
+#[cfg(any(test, feature = "schema"))]
+mod schema_files;
 mod selftest;
 mod sign;
 mod simulate;
@@ -43,6 +45,9 @@ mod single_test;
 mod store;
 mod verify;
 mod writer;
+
+#[cfg(feature = "schema")]
+pub use schema_files::generate as generate_schemas;
 
 use crate::config::procedure::phases::is_phased;
 use crate::i18n::{Lang, visible};

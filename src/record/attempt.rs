@@ -2,11 +2,11 @@
 
 use super::Message;
 use crate::estimate::Verdict;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Which test of the unit by the procedure this is, as the store knew when it was made.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct AttemptRecord {
     /// Number of the attempt, from 1.
     pub number: u64,
@@ -17,7 +17,8 @@ pub struct AttemptRecord {
 }
 
 /// An earlier test of the unit by the procedure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct EarlierAttempt {
     /// Number of the attempt.
     pub number: u64,

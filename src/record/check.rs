@@ -1,11 +1,11 @@
 //! Checks that a kind of test could make, and whether they were made.
 
 use super::Message;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Whether a check was made.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum CheckStatus {
     /// It was carried out; what it found stands in the conditions.
@@ -15,7 +15,8 @@ pub enum CheckStatus {
 }
 
 /// One check.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CheckRecord {
     /// Id, for example `earth_rate`.
     pub id: String,

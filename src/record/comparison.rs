@@ -3,11 +3,11 @@
 
 use crate::estimate::Interval;
 pub use crate::noise::prediction::Agreement;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Russian and Allan values of one channel of one record.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ComparisonRecord {
     /// Channel.
     pub channel: String,
@@ -30,7 +30,8 @@ pub struct ComparisonRecord {
 }
 
 /// One window length.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WindowRecord {
     /// Window length asked for, s.
     pub window_s: f64,
@@ -55,7 +56,8 @@ pub struct WindowRecord {
 }
 
 /// One part of a model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ShareRecord {
     /// `angle_random_walk`, `flicker`, `rate_random_walk`, `quantization`, `rate_ramp`, `markov`, `quasi_periodic`,
     /// `line`.
@@ -69,7 +71,8 @@ pub struct ShareRecord {
 }
 
 /// The octave identity s²·(n − 1)/n = ½ Σ σ²(2^j τ) over disjoint pairs.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OctavesRecord {
     /// Windows used: the largest power of two.
     pub windows: u64,
@@ -82,7 +85,8 @@ pub struct OctavesRecord {
 }
 
 /// One octave.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OctaveRecord {
     /// Averaging time, s.
     pub tau_s: f64,
@@ -95,7 +99,8 @@ pub struct OctaveRecord {
 }
 
 /// The minimum of the overlapping Allan deviation.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MinimumRecord {
     /// Smallest deviation, deg/h.
     pub deviation_deg_h: f64,
@@ -112,7 +117,8 @@ pub struct MinimumRecord {
 }
 
 /// From where on a figure would measure bias instability.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FloorRecord {
     /// B taken, deg/h: the value found, or the upper limit.
     pub b_deg_h: f64,
@@ -125,7 +131,8 @@ pub struct FloorRecord {
 }
 
 /// A model with the covariance of its parameters.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ModelRecord {
     /// Fitted parameters.
     pub parameters: Vec<ParameterRecord>,
@@ -142,7 +149,8 @@ pub struct ModelRecord {
 }
 
 /// A coherent line of a model; in JSON a pair.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(from = "(f64, f64)", into = "(f64, f64)")]
 pub struct CoherentLine {
     /// Amplitude, deg/h.
@@ -164,7 +172,8 @@ impl From<CoherentLine> for (f64, f64) {
 }
 
 /// One parameter.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ParameterRecord {
     /// Id, as of the measurand where there is one.
     pub id: String,

@@ -2,15 +2,15 @@
 
 use super::ConditionStatus;
 use crate::i18n::LocalText;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// An instrument and its calibration.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct InstrumentRecord {
     /// Name.
     #[serde(flatten, with = "super::local::name")]
-    #[schemars(with = "super::local::name::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::name::Members<String>"))]
     pub name: LocalText,
     /// Serial number.
     pub serial: Option<String>,
@@ -21,24 +21,26 @@ pub struct InstrumentRecord {
 }
 
 /// A waiver: who lets a row pass although it does not, why and when. Beside the verdict, never part of it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct WaiverRecord {
     /// Measurand or condition concerned.
     pub row: String,
     /// Who decided.
     #[serde(flatten, with = "super::local::by")]
-    #[schemars(with = "super::local::by::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::by::Members<String>"))]
     pub by: LocalText,
     /// Why.
     #[serde(flatten, with = "super::local::reason")]
-    #[schemars(with = "super::local::reason::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::reason::Members<String>"))]
     pub reason: LocalText,
     /// When, ISO 8601 date.
     pub date: String,
 }
 
 /// A span that the procedure excludes.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExclusionRecord {
     /// Start, s from the start of the recording.
     pub from_s: f64,
@@ -46,32 +48,34 @@ pub struct ExclusionRecord {
     pub to_s: f64,
     /// Why.
     #[serde(flatten, with = "super::local::reason")]
-    #[schemars(with = "super::local::reason::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::reason::Members<String>"))]
     pub reason: LocalText,
 }
 
 /// A clause of the standard.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ClauseRecord {
     /// Clause, for example `12.11`.
     #[serde(flatten, with = "super::local::clause")]
-    #[schemars(with = "super::local::clause::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::clause::Members<String>"))]
     pub clause: LocalText,
     /// Its title.
     #[serde(flatten, with = "super::local::title")]
-    #[schemars(with = "super::local::title::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::title::Members<String>"))]
     pub title: LocalText,
     /// `here`, `elsewhere`, `not_applicable`; `not_done` in place of `here` where the test could not be carried out,
     /// `partly` where not every phase of it could.
     pub status: String,
     /// Where or why.
     #[serde(flatten, with = "super::local::note")]
-    #[schemars(with = "super::local::note::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::note::Members<String>"))]
     pub note: LocalText,
 }
 
 /// An option that the analysis used.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct OptionRecord {
     /// Name, dotted.
     pub name: String,

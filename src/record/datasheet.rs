@@ -3,14 +3,14 @@
 use super::{DeviationRecord, Message, Program};
 use crate::estimate::{Interval, UpperLimit, Verdict};
 use crate::i18n::LocalText;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Version of the format of a data sheet.
 pub const DATASHEET_FORMAT: &str = "datasheet/1";
 
 /// A whole data sheet.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DataSheet {
     /// Always `datasheet/1`.
     pub format: String,
@@ -20,7 +20,7 @@ pub struct DataSheet {
     pub made_at: String,
     /// Title that a sheet file gives.
     #[serde(flatten, with = "super::local::title")]
-    #[schemars(with = "super::local::title::Members<Option<String>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::title::Members<Option<String>>"))]
     pub title: Option<LocalText>,
     /// Model of the units; absent where no result names one.
     pub model: Option<String>,
@@ -48,7 +48,8 @@ pub struct DataSheet {
 }
 
 /// Identity of a procedure.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetProcedure {
     /// Id.
     #[serde(default)]
@@ -59,7 +60,8 @@ pub struct SheetProcedure {
 }
 
 /// A condition with what the results tell of it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetCondition {
     /// Id: `duration_s`, `warm_up_s`, `temperature_degC`, `sample_rate_hz`. Its unit stands in it.
     pub id: String,
@@ -72,7 +74,8 @@ pub struct SheetCondition {
 }
 
 /// A scale on which units scatter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SheetScale {
     /// The natural logarithm.
@@ -82,7 +85,8 @@ pub enum SheetScale {
 }
 
 /// One quantity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetQuantity {
     /// Measurand.
     pub id: String,
@@ -93,11 +97,11 @@ pub struct SheetQuantity {
     pub phase: Option<String>,
     /// Name that a sheet file gives it.
     #[serde(flatten, with = "super::local::name")]
-    #[schemars(with = "super::local::name::Members<Option<String>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::name::Members<Option<String>>"))]
     pub name: Option<LocalText>,
     /// Footnote that a sheet file gives it.
     #[serde(flatten, with = "super::local::footnote")]
-    #[schemars(with = "super::local::footnote::Members<Option<String>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::footnote::Members<Option<String>>"))]
     pub footnote: Option<LocalText>,
     /// Unit.
     pub unit: String,
@@ -140,7 +144,8 @@ pub struct SheetQuantity {
 }
 
 /// The median of the true values of the population.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetTypical {
     /// Estimate.
     pub value: f64,
@@ -149,7 +154,8 @@ pub struct SheetTypical {
 }
 
 /// Standard deviations on the scale of the quantity.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetSpread {
     /// Of true values of units of one lot.
     pub between_units: f64,
@@ -160,7 +166,8 @@ pub struct SheetSpread {
 }
 
 /// What a bound is for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SheetOf {
     /// True values.
@@ -170,7 +177,8 @@ pub enum SheetOf {
 }
 
 /// Where a bound lies.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SheetSide {
     /// Values lie at or below it.
@@ -180,7 +188,8 @@ pub enum SheetSide {
 }
 
 /// A bound for a proportion of the population.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetBound {
     /// True or measured values.
     pub of: SheetOf,
@@ -197,7 +206,8 @@ pub struct SheetBound {
 }
 
 /// The largest value.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetLargest {
     /// Value.
     pub value: f64,
@@ -206,7 +216,8 @@ pub struct SheetLargest {
 }
 
 /// A limit that the units were judged by.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetLimit {
     /// Lower limit.
     #[serde(default)]
@@ -220,7 +231,8 @@ pub struct SheetLimit {
 }
 
 /// The bound that more units would promise.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetOutlook {
     /// Number of units.
     pub units: usize,
@@ -231,7 +243,8 @@ pub struct SheetOutlook {
 }
 
 /// The risks of an upper limit over the units of the population, a value at or below it being accepted.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetRisk {
     /// Length of the test over that of the tests of the lot.
     pub length: f64,
@@ -242,7 +255,8 @@ pub struct SheetRisk {
 }
 
 /// A share of the population.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetShare {
     /// Estimate, between 0 and 1.
     pub value: f64,
@@ -251,7 +265,8 @@ pub struct SheetShare {
 }
 
 /// What was measured of one unit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetValue {
     /// Serial number.
     pub serial: String,
@@ -266,7 +281,8 @@ pub struct SheetValue {
 }
 
 /// A Russian value beside an Allan one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetPair {
     /// Channel.
     pub channel: String,
@@ -289,7 +305,8 @@ pub struct SheetPair {
 }
 
 /// The overlapping Allan deviation of the lot, deg/h.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetCurve {
     /// Channel.
     pub channel: String,
@@ -300,7 +317,8 @@ pub struct SheetCurve {
 }
 
 /// One averaging time.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetPoint {
     /// Averaging time, s.
     pub tau_s: f64,
@@ -318,7 +336,8 @@ pub struct SheetPoint {
 }
 
 /// Bias over temperature of the units of a lot, of one channel.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetTemperatureCurve {
     /// Channel.
     pub channel: String,
@@ -329,7 +348,8 @@ pub struct SheetTemperatureCurve {
 }
 
 /// One temperature.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetTemperaturePoint {
     /// Temperature, degC.
     pub temperature_deg_c: f64,
@@ -345,7 +365,8 @@ pub struct SheetTemperaturePoint {
 }
 
 /// The curve of one unit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetUnitCurve {
     /// Serial number.
     pub serial: String,
@@ -354,7 +375,8 @@ pub struct SheetUnitCurve {
 }
 
 /// A result that counts.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SheetResult {
     /// Serial number of the unit.
     pub serial: String,

@@ -1,10 +1,10 @@
 //! Points of the Allan family.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A deviation at one averaging time. `sigma_tau.csv` holds every point; here are octaves.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct DeviationRecord {
     /// Channel.
     pub channel: String,

@@ -1,10 +1,10 @@
 //! How it is known that something was as it is said to have been.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// What stands behind a condition or a level.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Evidence {
     /// A channel, a stamp or a field of the recording tells it.

@@ -2,11 +2,11 @@
 
 use super::Message;
 use super::explanation::Explanation;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// A recording against the model of its family.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ExplainedRecord {
     /// The model.
     pub model: String,

@@ -2,11 +2,11 @@
 
 use super::Message;
 use crate::noise::residual::View;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// One view of the residual of one channel.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct GoodnessOfFitRecord {
     /// Channel.
     pub channel: String,

@@ -4,14 +4,14 @@
 
 use super::{Message, Program};
 use crate::estimate::{Interval, Verdict};
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Version of the format of a history.
 pub const HISTORY_FORMAT: &str = "history/1";
 
 /// The history of some results.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryRecord {
     /// Always `history/1`.
     pub format: String,
@@ -40,7 +40,8 @@ pub struct HistoryRecord {
 }
 
 /// What was asked for; what is absent did not matter.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryAsked {
     /// Serial number.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -66,7 +67,8 @@ pub struct HistoryAsked {
 }
 
 /// How many results there are.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryCounts {
     /// All results.
     pub results: usize,
@@ -85,7 +87,8 @@ pub struct HistoryCounts {
 }
 
 /// A counted share with its 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryShare {
     /// How many there were.
     pub count: usize,
@@ -98,7 +101,8 @@ pub struct HistoryShare {
 }
 
 /// The yield of a procedure.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryYield {
     /// Id of the procedure.
     pub procedure: String,
@@ -109,7 +113,8 @@ pub struct HistoryYield {
 }
 
 /// What kept units from passing.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryReason {
     /// `measurand`, `condition`, `fault` or `error`.
     pub kind: String,
@@ -122,7 +127,8 @@ pub struct HistoryReason {
 }
 
 /// The verdicts of a month.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryMonth {
     /// Month, such as `2026-03`.
     pub month: String,
@@ -133,7 +139,8 @@ pub struct HistoryMonth {
 }
 
 /// What a chart is of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum HistoryChartOf {
     /// The first valid test of each unit.
@@ -156,7 +163,8 @@ impl HistoryChartOf {
 }
 
 /// A quantity over time.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryChart {
     /// What it is of.
     pub of: HistoryChartOf,
@@ -182,7 +190,8 @@ pub struct HistoryChart {
 }
 
 /// What tells one quantity from another.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryQuantity {
     /// Id of the procedure.
     pub procedure: String,
@@ -198,7 +207,8 @@ pub struct HistoryQuantity {
 }
 
 /// Limits of a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryLimit {
     /// Lower limit.
     pub min: Option<f64>,
@@ -207,7 +217,8 @@ pub struct HistoryLimit {
 }
 
 /// A value in time.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryPoint {
     /// Address of the result.
     pub result: String,
@@ -224,7 +235,8 @@ pub struct HistoryPoint {
 }
 
 /// Control limits.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryControl {
     /// Mean of the values.
     pub center: f64,
@@ -241,7 +253,8 @@ pub struct HistoryControl {
 }
 
 /// Control limits at a value.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryControlPoint {
     /// Distance between the limits and the center; it holds the uncertainty of the value.
     pub reach: f64,
@@ -258,7 +271,8 @@ pub struct HistoryControlPoint {
 }
 
 /// Capability of a process.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryCapability {
     /// Units.
     pub units: usize,
@@ -277,7 +291,8 @@ pub struct HistoryCapability {
 }
 
 /// Drift of a unit over its tests.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryDrift {
     /// The quantity.
     #[serde(flatten)]
@@ -303,7 +318,8 @@ pub struct HistoryDrift {
 }
 
 /// A station against the others.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryStation {
     /// The quantity.
     #[serde(flatten)]
@@ -323,7 +339,8 @@ pub struct HistoryStation {
 }
 
 /// A result.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryResult {
     /// Address.
     pub address: String,

@@ -3,13 +3,13 @@
 use super::Message;
 use crate::i18n::{Lang, Localize};
 use sagnac_core::recording::integrity as found;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 pub use found::{OF_ROWS, OF_STAMPS, OF_VALUES};
 
 /// Faults of the recording, counted; the first of each kind listed with row and time.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Integrity {
     /// Places where samples are missing.
     pub gaps: u64,
@@ -64,7 +64,8 @@ impl Integrity {
 }
 
 /// One fault.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FaultRecord {
     /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `rollover`, `timestamp_disagreement`, `non_finite`,
     /// `unparsable`, `outlier`, `saturated`, `stuck`, `repeated`, `interpolated`, `implausible`, `cut_off`.
@@ -82,7 +83,7 @@ pub struct FaultRecord {
     /// What was seen, English.
     pub note: String,
     /// The same sentence by name, for other languages.
-    #[schemars(with = "serde_json::Value")]
+    #[cfg_attr(feature = "schema", schemars(with = "serde_json::Value"))]
     pub message: Option<Message>,
 }
 

@@ -1,11 +1,11 @@
 //! Means of runs, or of intervals without and with an influence.
 
 use super::Evidence;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// One run or interval of one channel.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct IntervalMeanRecord {
     /// Channel.
     pub channel: String,

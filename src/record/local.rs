@@ -44,14 +44,15 @@ impl Written for Option<LocalText> {
     }
 }
 
-/// A module for `#[serde(flatten, with = "local::title")]`, and its schema for `#[schemars(with = "...")]`.
+/// A module for `#[serde(flatten, with = "local::title")]`, and its schema for `schemars(with = "...")`.
 macro_rules! field {
     ($(#[$doc:meta])* $name:ident, $plain:literal, $by_language:literal) => {
         pub(crate) mod $name {
             use super::*;
 
             /// The two members of JSON.
-            #[derive(Serialize, Deserialize, schemars::JsonSchema)]
+            #[derive(Serialize, Deserialize)]
+            #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
             pub(crate) struct Members<T> {
                 $(#[$doc])*
                 #[serde(rename = $plain)]

@@ -7,14 +7,14 @@ use super::{
     UnitUnderTest,
 };
 use crate::estimate::Verdict;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Version of the format of a lot.
 pub const LOT_FORMAT: &str = "lot/1";
 
 /// A whole lot.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LotRecord {
     /// Always `lot/1`.
     pub format: String,
@@ -33,7 +33,8 @@ pub struct LotRecord {
 }
 
 /// How many units have each verdict.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct VerdictCounts {
     /// Units that could not be tested as required.
     pub error: usize,
@@ -48,7 +49,8 @@ pub struct VerdictCounts {
 }
 
 /// One unit of a lot.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LotUnit {
     /// The unit.
     pub unit_under_test: UnitUnderTest,
@@ -73,7 +75,8 @@ pub struct LotUnit {
 }
 
 /// Where the serial number of a unit was taken from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum SerialSource {
     /// The manifest of the recording states it.
@@ -87,7 +90,8 @@ pub enum SerialSource {
 }
 
 /// A file of a recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LotFile {
     /// Path as given.
     pub path: String,
@@ -96,7 +100,8 @@ pub struct LotFile {
 }
 
 /// A condition, in short.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LotCondition {
     /// Id, for example `temperature`.
     pub id: String,

@@ -1,7 +1,6 @@
 //! A sentence as it stands in results: in English, and by name with its arguments for other languages.
 
 use crate::i18n::{Arg, Lang, LocalText, Localize, Note};
-use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::ser::{Error as _, SerializeMap, SerializeStruct};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
@@ -45,9 +44,10 @@ impl std::ops::Deref for Message {
 }
 
 /// How a [`Message`] appears in JSON.
-#[derive(Deserialize, JsonSchema)]
+#[derive(Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[allow(dead_code)]
-#[schemars(rename = "NoteSchema")]
+#[cfg_attr(feature = "schema", schemars(rename = "NoteSchema"))]
 struct MessageSchema {
     /// The sentence in English.
     text: String,
@@ -57,7 +57,7 @@ struct MessageSchema {
     args: BTreeMap<String, Value>,
     /// How arguments are presented, by name, where their plain value does not tell it.
     #[serde(default)]
-    #[schemars(with = "Option<BTreeMap<String, Value>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "Option<BTreeMap<String, Value>>"))]
     show: BTreeMap<String, Presentation>,
 }
 
@@ -108,7 +108,8 @@ struct Item {
     show: Option<Presentation>,
 }
 
-impl JsonSchema for Message {
+#[cfg(feature = "schema")]
+impl schemars::JsonSchema for Message {
     fn schema_name() -> std::borrow::Cow<'static, str> {
         MessageSchema::schema_name()
     }

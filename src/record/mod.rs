@@ -67,14 +67,14 @@ use crate::i18n::LocalText;
 use crate::noise::data::NoiseType;
 pub use sagnac_core::mismatch::finding as explanation;
 pub use sagnac_core::recording::window::{ExcludedSpan, Window};
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Version of the result format.
 pub const RESULT_FORMAT: &str = "result/1";
 
 /// What made a record: an acceptance test by a procedure, or an analysis without one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RunKind {
     /// An acceptance test: conditions, checks and limits of a procedure apply.
@@ -84,7 +84,8 @@ pub enum RunKind {
 }
 
 /// A whole run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunRecord {
     /// Always `result/1`.
     pub format: String,
@@ -161,7 +162,8 @@ pub struct RunRecord {
 }
 
 /// State of a condition.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ConditionStatus {
     /// Shown to be met.
@@ -173,7 +175,8 @@ pub enum ConditionStatus {
 }
 
 /// One condition with its evidence.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ConditionRecord {
     /// Id, for example `temperature`.
     pub id: String,
@@ -197,7 +200,8 @@ pub struct ConditionRecord {
 }
 
 /// One measurand row.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct MeasurandRecord {
     /// Id, see the contract.
     pub id: String,
@@ -239,7 +243,8 @@ pub struct MeasurandRecord {
 }
 
 /// A limit as applied.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LimitRecord {
     /// Lower limit.
     pub min: Option<f64>,
@@ -260,22 +265,24 @@ pub struct LimitRecord {
 }
 
 /// A published value set beside the measured one.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ReferenceRecord {
     /// Value in the unit of the row.
     pub value: f64,
     /// Where it was published.
     #[serde(flatten, with = "local::source")]
-    #[schemars(with = "local::source::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "local::source::Members<String>"))]
     pub source: LocalText,
     /// Conventions that apply to the value; absent in earlier results.
     #[serde(flatten, with = "local::note")]
-    #[schemars(with = "local::note::Members<Option<String>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "local::note::Members<Option<String>>"))]
     pub note: Option<LocalText>,
 }
 
 /// A spectral line.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LineRecord {
     /// Channel.
     pub channel: String,
@@ -292,7 +299,8 @@ pub struct LineRecord {
 }
 
 /// A fitted noise model.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct NoiseModelRecord {
     /// Channel.
     pub channel: String,
@@ -327,7 +335,8 @@ pub struct NoiseModelRecord {
 }
 
 /// Power of one limit.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PowerRecord {
     /// Measurand.
     pub id: String,
@@ -348,7 +357,8 @@ pub struct PowerRecord {
 }
 
 /// A figure of the report.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FigureRecord {
     /// Id, also the stem of the file in `figures/`.
     pub id: String,

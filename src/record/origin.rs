@@ -2,12 +2,12 @@
 
 use crate::i18n::LocalText;
 use crate::recording::Role;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The program that wrote a result.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Program {
     /// `sagnac`.
     pub name: String,
@@ -16,27 +16,28 @@ pub struct Program {
 }
 
 /// Identity of the procedure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProcedureRecord {
     /// Id, for example `static-bias`.
     pub id: String,
     /// Title shown on the report.
     #[serde(flatten, with = "super::local::title")]
-    #[schemars(with = "super::local::title::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::title::Members<String>"))]
     pub title: LocalText,
     /// Revision.
     pub revision: String,
     /// Standard followed.
     #[serde(flatten, with = "super::local::standard")]
-    #[schemars(with = "super::local::standard::Members<Option<String>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::standard::Members<Option<String>>"))]
     pub standard: Option<LocalText>,
     /// Clause of the standard.
     #[serde(flatten, with = "super::local::clause")]
-    #[schemars(with = "super::local::clause::Members<Option<String>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::clause::Members<Option<String>>"))]
     pub clause: Option<LocalText>,
     /// Who wrote it.
     #[serde(flatten, with = "super::local::author")]
-    #[schemars(with = "super::local::author::Members<Option<String>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::author::Members<Option<String>>"))]
     pub author: Option<LocalText>,
     /// File it was read from, as given.
     pub path: String,
@@ -47,19 +48,20 @@ pub struct ProcedureRecord {
 }
 
 /// Identity of a limits file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct LimitsFile {
     /// Id of the limits.
     pub id: String,
     /// Title.
     #[serde(flatten, with = "super::local::title")]
-    #[schemars(with = "super::local::title::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::title::Members<String>"))]
     pub title: LocalText,
     /// Revision.
     pub revision: String,
     /// Where the values come from.
     #[serde(flatten, with = "super::local::source")]
-    #[schemars(with = "super::local::source::Members<Option<String>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::source::Members<Option<String>>"))]
     pub source: Option<LocalText>,
     /// File it was read from, as given.
     pub path: String,
@@ -68,13 +70,14 @@ pub struct LimitsFile {
 }
 
 /// Identity of the unit that was tested.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct UnitUnderTest {
     /// Serial number.
     pub serial: Option<String>,
     /// Family, for example `OIUS-501`.
     #[serde(flatten, with = "super::local::family")]
-    #[schemars(with = "super::local::family::Members<Option<String>>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::family::Members<Option<String>>"))]
     pub family: Option<LocalText>,
     /// Part number.
     pub part: Option<String>,
@@ -121,7 +124,8 @@ fn is_false(flag: &bool) -> bool {
 }
 
 /// Who tested, where, when.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Session {
     /// Operator.
     pub operator: Option<String>,
@@ -132,7 +136,8 @@ pub struct Session {
 }
 
 /// One file of the recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RecordingFile {
     /// Path as given.
     pub path: String,
@@ -160,7 +165,8 @@ pub struct RecordingFile {
 }
 
 /// One column and what it was taken for.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ColumnRecord {
     /// Name in the file.
     pub name: String,

@@ -4,17 +4,17 @@ use super::Message;
 use super::{ConditionRecord, FigureRecord, Integrity, MeasurandRecord, ProcedureRecord, RecordingFile};
 use crate::estimate::Verdict;
 use crate::i18n::LocalText;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// One phase: what its own `result.json` says, in short.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PhaseRecord {
     /// Id.
     pub id: String,
     /// Title.
     #[serde(flatten, with = "super::local::title")]
-    #[schemars(with = "super::local::title::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::title::Members<String>"))]
     pub title: LocalText,
     /// Folder with its own report and result, relative to this result; absent when it was not recorded.
     pub folder: Option<String>,

@@ -3,7 +3,6 @@
 use super::explanation::Explanation;
 use super::{Message, Program};
 use crate::i18n::LocalText;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -11,7 +10,8 @@ use std::collections::BTreeMap;
 pub const PROOF_FORMAT: &str = "proof-result/1";
 
 /// A whole proof, as `proof.json` holds it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProofRecord {
     /// Always `proof-result/1`.
     pub format: String,
@@ -23,11 +23,11 @@ pub struct ProofRecord {
     pub sha256: String,
     /// Title.
     #[serde(flatten, with = "super::local::title")]
-    #[schemars(with = "super::local::title::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::title::Members<String>"))]
     pub title: LocalText,
     /// What is asked.
     #[serde(flatten, with = "super::local::description")]
-    #[schemars(with = "super::local::description::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::description::Members<String>"))]
     pub question: LocalText,
     /// When the proof was made, RFC 3339.
     pub proved_at: String,
@@ -58,7 +58,8 @@ pub struct ProofRecord {
 }
 
 /// What a proof comes to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ProofOutcome {
     /// Every rule holds.
@@ -68,7 +69,8 @@ pub enum ProofOutcome {
 }
 
 /// The recording of a proof.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProofRecording {
     /// File, as named in the proof; for a simulation, its model.
     pub path: String,
@@ -87,7 +89,8 @@ pub struct ProofRecording {
 }
 
 /// Something that was concealed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Hidden {
     /// Name of the column, or the kinds of the effects.
     pub name: String,
@@ -98,7 +101,8 @@ pub struct Hidden {
 }
 
 /// What was concealed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum HiddenKind {
     /// A column of the recording.
@@ -110,7 +114,8 @@ pub enum HiddenKind {
 }
 
 /// Where a claim comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ClaimOrigin {
     /// A model that the proof names.
@@ -122,7 +127,8 @@ pub enum ClaimOrigin {
 }
 
 /// A step of a proof.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ProtocolStep {
     /// What was done: `concealed`, `shown`, `claim`, `explained`, `unveiled`, `explained_again`.
     pub step: String,
@@ -133,7 +139,8 @@ pub struct ProtocolStep {
 }
 
 /// An inferred course against something that was concealed.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct CourseRecord {
     /// What it is held against.
     pub name: String,
@@ -149,13 +156,14 @@ pub struct CourseRecord {
 }
 
 /// Something known from elsewhere.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct KnownRecord {
     /// Id.
     pub id: String,
     /// What it is.
     #[serde(flatten, with = "super::local::name")]
-    #[schemars(with = "super::local::name::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::name::Members<String>"))]
     pub what: LocalText,
     /// Interval.
     pub interval: Option<[f64; 2]>,
@@ -163,14 +171,15 @@ pub struct KnownRecord {
     pub unit: Option<String>,
     /// Where it comes from.
     #[serde(flatten, with = "super::local::source")]
-    #[schemars(with = "super::local::source::Members<String>")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::source::Members<String>"))]
     pub source: LocalText,
     /// What was found for it, in its unit.
     pub found: Option<FoundValue>,
 }
 
 /// A value that was found.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct FoundValue {
     /// Explanation in which it was found: `concealed` or `unveiled`.
     pub when: String,
@@ -183,7 +192,8 @@ pub struct FoundValue {
 }
 
 /// A rule and whether it holds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RuleRecord {
     /// Explanation that it speaks of: `concealed` or `unveiled`.
     pub when: String,

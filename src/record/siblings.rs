@@ -1,11 +1,11 @@
 //! A unit beside the other units of its lot, where its store has enough of them.
 
 use super::Message;
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How unlike the other units of its lot a unit is, as the store knew them when the result was made. It is no part of the verdict.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SiblingsRecord {
     /// Model of the units.
     pub model: String,
@@ -26,7 +26,8 @@ pub struct SiblingsRecord {
 }
 
 /// A quantity that a unit is compared in.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct SiblingQuantity {
     /// Measurand, or `allan_deviation`.
     pub id: String,

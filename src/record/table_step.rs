@@ -1,10 +1,10 @@
 //! Steps of a test on a rate table.
 
-use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// One step of one channel.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct TableStepRecord {
     /// Channel.
     pub channel: String,

@@ -9,6 +9,7 @@ mod same_results;
 mod test_names;
 mod weight;
 
+use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitCode};
 
@@ -24,6 +25,8 @@ features [CARGO OPTION]...
     Check sagnac-ingest with every cargo feature alone, with none and with all.
 proofs DATA [WORD]...
     Run the proofs with the recordings of a folder, those whose path contains a word or all, and add a line a run to docs/PROOFS.md.
+schemas [--check]
+    Write schemas/: JSON Schema of results, generated from the types of the records.
 notices [--check]
     Write THIRD-PARTY.md: licences and notices of the packages that the program contains.
 tests COMMIT
@@ -44,6 +47,8 @@ fn main() -> ExitCode {
         Some((command, rest)) if command == "study" && rest.len() < 2 => long_studies::run(root, rest),
         Some((command, [data, words @ ..])) if command == "proofs" => proofs::run(root, data, words),
         Some((command, rest)) if command == "features" => features::check(root, rest),
+        Some((command, [])) if command == "schemas" => schemas(root, &[]),
+        Some((command, [check])) if command == "schemas" && check == "--check" => schemas(root, &[check]),
         Some((command, [])) if command == "notices" => notices::run(root, false),
         Some((command, [check])) if command == "notices" && check == "--check" => notices::run(root, true),
         Some((command, [commit])) if command == "tests" => test_names::compare(root, commit),
@@ -62,12 +67,22 @@ fn usage() -> ExitCode {
 
 /// Studies run optimised, whatever profile this program has.
 fn validate(root: &Path, arguments: &[String]) -> ExitCode {
+    cargo(root, &["run", "--release", "--quiet", "--package", "sagnac-studies", "--"], arguments)
+}
+
+/// The generator is a build of its own: own packages with the feature `schema`, which nothing optimises, and the dependencies that
+/// there are already.
+fn schemas(root: &Path, arguments: &[&String]) -> ExitCode {
+    let unoptimised = ["sagnac", "sagnac-core", "sagnac-ingest"]
+        .map(|package| format!("--config=profile.dev.package.{package}.opt-level=0"));
+    let options: Vec<&str> = unoptimised.iter().map(String::as_str).collect();
+    let run = ["run", "--quiet", "--package", "sagnac", "--features", "schema", "--bin", "generate-schemas"];
+    cargo(root, &[&run, &options[..], &["--"]].concat(), arguments)
+}
+
+fn cargo(root: &Path, command: &[&str], arguments: &[impl AsRef<OsStr>]) -> ExitCode {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
-    let status = Command::new(cargo)
-        .current_dir(root)
-        .args(["run", "--release", "--quiet", "--package", "sagnac-studies", "--"])
-        .args(arguments)
-        .status();
+    let status = Command::new(cargo).current_dir(root).args(command).args(arguments).status();
     match status {
         Ok(status) => ExitCode::from(status.code().and_then(|c| u8::try_from(c).ok()).unwrap_or(1)),
         Err(error) => {
