@@ -1,20 +1,18 @@
 //! The view of a lot: words and printed numbers, ready for a template and for the terminal.
 
 mod csv;
-mod junit;
 mod quantity;
 mod reasons;
 
 pub use csv::csv;
-pub use junit::{junit, junit_of_run};
 pub use quantity::QuantityView;
+pub(super) use reasons::{condition_reason, measurand_reason, reasons, several_channels};
 
 use super::number::date_time;
 use super::translator::{Field, Translator};
 use crate::estimate::Verdict;
 use crate::i18n::Lang;
 use crate::record::{LotRecord, LotUnit, SerialSource};
-use reasons::reasons;
 use serde::Serialize;
 
 /// Everything that the page of a lot shows.

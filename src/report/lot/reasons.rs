@@ -9,7 +9,7 @@ use crate::report::view::{row_reason, summary};
 const COUNTING: [&str; 2] = ["summary.one_condition_invalid", "summary.conditions_invalid"];
 
 /// The reasons; none for a unit that passes.
-pub(super) fn reasons(unit: &LotUnit, words: Translator) -> Vec<String> {
+pub(in crate::report) fn reasons(unit: &LotUnit, words: Translator) -> Vec<String> {
     if unit.verdict == Verdict::Pass {
         return vec![];
     }
@@ -38,12 +38,12 @@ pub(super) fn reasons(unit: &LotUnit, words: Translator) -> Vec<String> {
 }
 
 /// True where sentences must name the channel.
-pub(super) fn several_channels(unit: &LotUnit) -> bool {
+pub(in crate::report) fn several_channels(unit: &LotUnit) -> bool {
     unit.measurands.iter().any(|m| Some(&m.channel) != unit.measurands.first().map(|f| &f.channel))
 }
 
 /// Why a quantity does not pass; `None` where it does.
-pub(super) fn measurand_reason(
+pub(in crate::report) fn measurand_reason(
     m: &MeasurandRecord,
     several_channels: bool,
     words: Translator,
@@ -53,7 +53,7 @@ pub(super) fn measurand_reason(
 }
 
 /// Why a condition is not met; `None` where it is.
-pub(super) fn condition_reason(c: &LotCondition, words: Translator) -> Option<String> {
+pub(in crate::report) fn condition_reason(c: &LotCondition, words: Translator) -> Option<String> {
     if c.status != ConditionStatus::Invalid {
         return None;
     }

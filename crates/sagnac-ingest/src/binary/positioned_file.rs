@@ -102,18 +102,6 @@ impl Read for FileRange {
     }
 }
 
-impl io::Seek for FileRange {
-    fn seek(&mut self, to: io::SeekFrom) -> io::Result<u64> {
-        let next = match to {
-            io::SeekFrom::Start(n) => Some(n),
-            io::SeekFrom::End(d) => self.end.checked_add_signed(d),
-            io::SeekFrom::Current(d) => self.next.checked_add_signed(d),
-        };
-        self.next = next.ok_or_else(|| io::Error::from(io::ErrorKind::InvalidInput))?;
-        Ok(self.next)
-    }
-}
-
 /// Hashes a file beside its reading, until asked to stop.
 ///
 /// # Errors

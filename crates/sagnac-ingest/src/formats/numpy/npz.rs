@@ -1,4 +1,4 @@
-//! Archives of NumPy arrays (`.npz`): zip files in which each member is an array. The directory is read by the `zip`
+//! Archives of NumPy arrays (`.npz`): zip files in which each member is an array. The directory is read by the `rawzip`
 //! crate; the members are unpacked here, side by side, so that none is ever held as a whole.
 
 use super::array::{self, MAGIC};
@@ -6,12 +6,14 @@ use crate::binary::array_selection;
 use crate::binary::column_stream::{
     Coding, ColumnPlace, ColumnStreamTable, RecordGroup, Stream, stream_error,
 };
-use crate::binary::positioned_file::{FileRange, PositionedFile};
+use crate::binary::positioned_file::PositionedFile;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::metadata::{Metadata, stated_sample_rate_hz};
 use crate::{Candidate, Column, Format, Opened};
+use rawzip::{CompressionMethod, ReaderAt, ZipLocator};
 use sagnac_core::message::Note;
-use zip::{CompressionMethod, ZipArchive};
+use std::io;
+use std::sync::Arc;
 
 /// Most members of an archive.
 const MAX_MEMBERS: usize = 4096;
@@ -118,27 +120,38 @@ fn other_length(array: &array_selection::Array, rows: u64) -> Note {
         .with("chosen", rows)
 }
 
+impl ReaderAt for PositionedFile {
+    fn read_at(&self, buffer: &mut [u8], offset: u64) -> io::Result<usize> {
+        self.read(offset, buffer)
+    }
+}
+
 /// Looks at every member of the archive.
-fn members(file: &Candidate, at: &std::sync::Arc<PositionedFile>) -> Result<ArchiveContents, IngestError> {
+fn members(file: &Candidate, at: &Arc<PositionedFile>) -> Result<ArchiveContents, IngestError> {
     let path = &file.path;
-    let damaged = |e: zip::result::ZipError| {
+    let damaged = |e: rawzip::Error| {
         let note = Note::new("ingest.npz.damaged").with("reason", e.to_string());
         IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.damaged")
     };
-    let mut archive = ZipArchive::new(FileRange::new(at, 0, at.size)).map_err(damaged)?;
-    if archive.len() > MAX_MEMBERS {
-        let note = Note::new("ingest.binary.too_many_columns").with("most", MAX_MEMBERS);
-        return Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.give_recording"));
-    }
+    let mut buffer = vec![0; rawzip::RECOMMENDED_BUFFER_SIZE];
+    let located = ZipLocator::new().locate_in_reader(at.as_ref(), &mut buffer, at.size);
+    let archive = located.map_err(|(_, e)| damaged(e))?;
+    let mut directory = archive.entries(&mut buffer);
     let mut found = ArchiveContents::default();
-    for index in 0..archive.len() {
-        let member = archive.by_index_raw(index).map_err(damaged)?;
-        let full = String::from_utf8_lossy(member.name_raw()).into_owned();
+    let mut count = 0;
+    while let Some(member) = directory.next_entry().map_err(damaged)? {
+        count += 1;
+        if count > MAX_MEMBERS {
+            let note = Note::new("ingest.binary.too_many_columns").with("most", MAX_MEMBERS);
+            let error = IngestError::new(IngestErrorKind::Damaged, path, note);
+            return Err(error.hint("ingest.hint.give_recording"));
+        }
+        let full = String::from_utf8_lossy(member.file_path().as_bytes()).into_owned();
         let leave = |reason: Note| {
             Note::new("ingest.binary.left_out").with("name", shown(&full)).with("reason", reason)
         };
-        let coding = match member.compression() {
-            _ if member.encrypted() => None,
+        let coding = match member.compression_method() {
+            _ if member.flags().is_encrypted() => None,
             CompressionMethod::STORE => Some(Coding::Checked(member.crc32())),
             CompressionMethod::DEFLATE => Some(Coding::Deflate(member.crc32())),
             _ => None,
@@ -147,13 +160,13 @@ fn members(file: &Candidate, at: &std::sync::Arc<PositionedFile>) -> Result<Arch
             found.left.push(leave("ingest.npz.no_array".into()));
             continue;
         };
-        let (Some(coding), Some(from)) = (coding, member.data_start()) else {
+        let Some(coding) = coding else {
             found.left.push(leave("ingest.npz.packing".into()));
             continue;
         };
-        let stream = Stream { name: full.clone(), from, length: member.compressed_size(), coding };
-        let size = member.size();
-        drop(member);
+        let (from, end) = archive.get_entry(member.wayfinder()).map_err(damaged)?.compressed_data_range();
+        let stream = Stream { name: full.clone(), from, length: end.saturating_sub(from), coding };
+        let size = member.uncompressed_size_hint();
         let mut head = vec![0; HEAD.min(usize::try_from(size).unwrap_or(HEAD))];
         let n = stream.open(at).fill(&mut head).map_err(|e| stream_error(path, &full, &e))?;
         head.truncate(n);

@@ -137,32 +137,85 @@ pub(super) fn stated(
     Ok(FoundEncoding { encoding, reason: Note::new("ingest.delimited.why_stated"), damaged_at })
 }
 
-fn decoder(encoding: Encoding) -> Option<encoding_rs::Decoder> {
-    let table = match encoding {
-        Encoding::Utf8 => return None,
-        Encoding::Utf16Le => encoding_rs::UTF_16LE,
-        Encoding::Utf16Be => encoding_rs::UTF_16BE,
-        Encoding::Windows1251 => encoding_rs::WINDOWS_1251,
-    };
-    Some(table.new_decoder_without_bom_handling())
+/// The characters of Windows-1251 from 0x80 to 0xbf, as the WHATWG Encoding Standard has them; from 0xc0 on it has the Russian
+/// alphabet, А to я.
+const WINDOWS_1251: [char; 64] = [
+    'Ђ', 'Ѓ', '‚', 'ѓ', '„', '…', '†', '‡', '€', '‰', 'Љ', '‹', 'Њ', 'Ќ', 'Ћ', 'Џ', //
+    'ђ', '‘', '’', '“', '”', '•', '–', '—', '\u{98}', '™', 'љ', '›', 'њ', 'ќ', 'ћ', 'џ', //
+    '\u{a0}', 'Ў', 'ў', 'Ј', '¤', 'Ґ', '¦', '§', 'Ё', '©', 'Є', '«', '¬', '\u{ad}', '®', 'Ї', //
+    '°', '±', 'І', 'і', 'ґ', 'µ', '¶', '·', 'ё', '№', 'є', '»', 'ј', 'Ѕ', 'ѕ', 'ї',
+];
+
+fn windows_1251(byte: u8) -> char {
+    match byte {
+        ..0x80 => char::from(byte),
+        0x80..0xc0 => {
+            WINDOWS_1251.get(usize::from(byte - 0x80)).copied().unwrap_or(char::REPLACEMENT_CHARACTER)
+        }
+        0xc0.. => {
+            char::from_u32(u32::from('А') + u32::from(byte - 0xc0)).unwrap_or(char::REPLACEMENT_CHARACTER)
+        }
+    }
+}
+
+/// Turns the bytes of a text into UTF-8, block after block; what is no character becomes U+FFFD, except in UTF-8 itself.
+struct Decoder {
+    encoding: Encoding,
+    /// The first bytes of a character whose others come with the next block.
+    begun: Vec<u8>,
+}
+
+impl Decoder {
+    fn new(encoding: Encoding) -> Decoder {
+        Decoder { encoding, begun: Vec::new() }
+    }
+
+    /// Adds the characters of a block; `last`: none follows.
+    fn decode(&mut self, bytes: &[u8], last: bool, text: &mut Vec<u8>) {
+        let unit: fn([u8; 2]) -> u16 = match self.encoding {
+            Encoding::Utf8 => return text.extend_from_slice(bytes),
+            Encoding::Windows1251 => return bytes.iter().for_each(|b| push(text, windows_1251(*b))),
+            Encoding::Utf16Le => u16::from_le_bytes,
+            Encoding::Utf16Be => u16::from_be_bytes,
+        };
+        let mut block = std::mem::take(&mut self.begun);
+        block.extend_from_slice(bytes);
+        let (pairs, half) = block.as_chunks::<2>();
+        let mut units: Vec<u16> = pairs.iter().map(|pair| unit(*pair)).collect();
+        if !last {
+            // The first half of a character beyond the first 65 536 waits for the second one.
+            let waits = units.pop_if(|u| (0xd800..0xdc00).contains(u)).is_some();
+            let from = pairs.len().saturating_sub(usize::from(waits)) * 2;
+            self.begun = block.get(from..).unwrap_or_default().to_vec();
+        }
+        let characters = char::decode_utf16(units).map(|c| c.unwrap_or(char::REPLACEMENT_CHARACTER));
+        characters.for_each(|c| push(text, c));
+        if last && !half.is_empty() {
+            push(text, char::REPLACEMENT_CHARACTER);
+        }
+    }
+}
+
+fn push(text: &mut Vec<u8>, character: char) {
+    text.extend_from_slice(character.encode_utf8(&mut [0; 4]).as_bytes());
 }
 
 /// Turns the start of a file into UTF-8; what is no character becomes U+FFFD, except in UTF-8 itself.
 pub(super) fn decode(encoding: Encoding, head: &[u8], all: bool) -> Vec<u8> {
-    let Some(mut decoder) = decoder(encoding) else { return head.to_vec() };
-    let room = decoder.max_utf8_buffer_length(head.len()).unwrap_or(0);
-    let mut out = vec![0; room];
-    let (_, _, written, _) = decoder.decode_to_utf8(head, &mut out, all);
-    out.truncate(written);
-    out
+    let mut text = Vec::new();
+    Decoder::new(encoding).decode(head, all, &mut text);
+    text
 }
 
 /// The characters of a file as UTF-8, in order.
 pub(super) struct TextStream {
     bytes: ByteStream,
-    decoder: Option<encoding_rs::Decoder>,
+    /// `None` where the file has UTF-8.
+    decoder: Option<Decoder>,
     raw: Vec<u8>,
-    at: usize,
+    /// Characters that were decoded, and how many of their bytes have passed.
+    text: Vec<u8>,
+    passed: usize,
     last: bool,
     ended: bool,
 }
@@ -170,7 +223,9 @@ pub(super) struct TextStream {
 impl TextStream {
     /// Reads a text in an encoding from an opened file.
     pub(super) fn new(bytes: ByteStream, encoding: Encoding) -> TextStream {
-        TextStream { bytes, decoder: decoder(encoding), raw: Vec::new(), at: 0, last: false, ended: false }
+        let decoder = (encoding != Encoding::Utf8).then(|| Decoder::new(encoding));
+        let (raw, text) = (Vec::new(), Vec::new());
+        TextStream { bytes, decoder, raw, text, passed: 0, last: false, ended: false }
     }
 
     /// Puts characters into the buffer, which has room for some; returns the bytes put in.
@@ -185,22 +240,27 @@ impl TextStream {
         };
         let mut done = 0;
         while !self.ended {
-            if self.at >= self.raw.len() && !self.last {
-                self.raw.resize(RAW, 0);
-                let n = self.bytes.fill(&mut self.raw)?;
-                self.raw.truncate(n);
-                self.at = 0;
-                self.last = n < RAW;
-            }
-            let source = self.raw.get(self.at..).unwrap_or_default();
+            let ready = self.text.get(self.passed..).unwrap_or_default();
             let room = buffer.get_mut(done..).unwrap_or_default();
-            let (result, read, written, _) = decoder.decode_to_utf8(source, room, self.last);
-            self.at += read;
-            done += written;
-            match result {
-                encoding_rs::CoderResult::OutputFull => break,
-                encoding_rs::CoderResult::InputEmpty => self.ended = self.last,
+            let n = ready.len().min(room.len());
+            for (to, from) in room.iter_mut().zip(ready) {
+                *to = *from;
             }
+            done += n;
+            self.passed += n;
+            if self.passed < self.text.len() {
+                break;
+            }
+            if self.last {
+                self.ended = true;
+                break;
+            }
+            self.raw.resize(RAW, 0);
+            let read = self.bytes.fill(&mut self.raw)?;
+            self.last = read < RAW;
+            self.text.clear();
+            self.passed = 0;
+            decoder.decode(self.raw.get(..read).unwrap_or_default(), self.last, &mut self.text);
         }
         Ok(done)
     }
@@ -227,6 +287,35 @@ impl TextStream {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn windows_1251_has_its_letters_and_signs() {
+        let of = |bytes: &[u8]| String::from_utf8(decode(Encoding::Windows1251, bytes, true)).unwrap();
+        // As `iconv -t CP1251` writes them.
+        assert_eq!(of(b"\xc2\xf0\xe5\xec\xff \xd6\xc0\xdf \xb9\xa8\xb8"), "Время ЦАЯ №Ёё");
+        assert_eq!(of(b"\x80\x88\x8f\x90\x96\x99\x9f"), "Ђ€Џђ–™џ");
+        assert_eq!(of(b"\xa0\xa7\xb0\xb1\xb5\xb7\xbb\xbf"), "\u{a0}§°±µ·»ї");
+        let all: Vec<u8> = (0..=255).collect();
+        let distinct: std::collections::BTreeSet<char> = of(&all).chars().collect();
+        assert_eq!(distinct.len(), 256);
+    }
+
+    #[test]
+    fn utf_16_is_the_same_in_blocks_of_any_size() {
+        let text = "t;°/ч\n𝛺😀;\u{fffd}";
+        let mut bytes: Vec<u8> = text.encode_utf16().flat_map(u16::to_be_bytes).collect();
+        // The first half of a character without the second one, in the middle and at the end; half a unit.
+        bytes.extend_from_slice(&[0xd8, 0x00, 0x00, b'a', 0xdc, 0x00, 0xd8, 0x00, 0x00]);
+        let expected = format!("{text}\u{fffd}a\u{fffd}\u{fffd}\u{fffd}");
+        for size in 1..=bytes.len() {
+            let (mut decoder, mut found) = (Decoder::new(Encoding::Utf16Be), Vec::new());
+            for block in bytes.chunks(size) {
+                decoder.decode(block, false, &mut found);
+            }
+            decoder.decode(&[], true, &mut found);
+            assert_eq!(String::from_utf8(found).unwrap(), expected, "blocks of {size}");
+        }
+    }
 
     #[test]
     fn encodings_are_told_by_their_bytes() {
