@@ -1,11 +1,11 @@
-//! CPU of an analysis over that of bare kernels on the same samples, in one run: `cargo bench --bench ratio`.
+//! CPU of an analysis over that of bare kernels on the same samples, in one run:
+//! `cargo bench -p sagnac-benches --bench ratio`.
 //!
 //! Seconds depend on the machine and on what else runs there; the ratio hardly does. The last line is the ratio; above
 //! [`MOST`] the command fails. The kernels are good plain code on one core: numbers parsed from text, the Allan deviation at
 //! ten averaging times a decade, a Welch spectrum. Neither checks nor intervals are in them.
 
-use sagnac::noise::model::NoiseModel;
-use sagnac::noise::simulate::{Setup, Simulator};
+use sagnac_benches::{TAU0_S, simulated_rate};
 use sagnac_fft::real_forward;
 use std::hint::black_box;
 use std::io::Write;
@@ -14,7 +14,6 @@ use std::process::{Command, ExitCode};
 
 /// Rows of the recording: ten hours at 100 Hz.
 const ROWS: usize = 3_600_000;
-const TAU0_S: f64 = 0.01;
 /// Each is measured so often, in turn; the least counts.
 const ROUNDS: usize = 3;
 /// Largest ratio that is no loss of speed.
@@ -24,7 +23,13 @@ const SEGMENT: usize = 1 << 16;
 /// Terms of the Allan deviation that are summed for all averaging times before the next ones.
 const BLOCK: usize = 1 << 13;
 
+/// Verb of the program that is measured. This program is that one too, when it is started with the verb.
+const VERB: &str = "analyze";
+
 fn main() -> ExitCode {
+    if std::env::args().nth(1).is_some_and(|verb| verb == VERB) {
+        return sagnac::cli::main();
+    }
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("recording.csv");
     let rate = write_recording(&path);
@@ -62,8 +67,7 @@ fn main() -> ExitCode {
 
 /// A recording of time, rate and temperature; gives the rate.
 fn write_recording(path: &Path) -> Vec<f64> {
-    let model = NoiseModel { n: 0.002, b: 0.004, ..Default::default() };
-    let rate = Simulator::new(&model, &Setup::for_record(1, TAU0_S, ROWS as u64)).take(ROWS);
+    let rate = simulated_rate(ROWS);
     let mut file = std::io::BufWriter::new(std::fs::File::create(path).expect("a file"));
     writeln!(file, "time_s,rate_deg_h,temp_degC").expect("a line");
     for (i, y) in rate.iter().enumerate() {
@@ -78,8 +82,8 @@ fn write_recording(path: &Path) -> Vec<f64> {
 fn analyse(path: &Path, folder: &Path) {
     let out = folder.join("out");
     let _ = std::fs::remove_dir_all(&out);
-    let status = Command::new(env!("CARGO_BIN_EXE_sagnac"))
-        .args(["analyze", "--quiet", "--out"])
+    let status = Command::new(std::env::current_exe().expect("this program"))
+        .args([VERB, "--quiet", "--out"])
         .args([out.as_path(), path])
         .stdout(std::process::Stdio::null())
         .status();

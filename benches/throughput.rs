@@ -1,4 +1,5 @@
-//! Speed of the parts of a run on a million samples: `cargo bench --bench throughput`. Nothing here passes or fails.
+//! Speed of the parts of a run on a million samples: `cargo bench -p sagnac-benches --bench throughput`.
+//! Nothing here passes or fails.
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use sagnac::acceptance::{Request, analysis, execute};
@@ -7,22 +8,15 @@ use sagnac::ingest::{Source, open};
 use sagnac::noise::allan::{AllanAccumulator, AllanPlan};
 use sagnac::noise::digest::{DigestPlan, RateAccumulator};
 use sagnac::noise::family::Estimator;
-use sagnac::noise::model::NoiseModel;
-use sagnac::noise::simulate::{Setup, Simulator};
 use sagnac::noise::tau_grid::TauGrid;
 use sagnac::record::UnitUnderTest;
 use sagnac::recording::{Channel, ColumnRef, Role};
 use sagnac::units::Unit;
+use sagnac_benches::{TAU0_S, simulated_rate};
 use std::fmt::Write;
 use std::ops::ControlFlow;
 
 const SAMPLES: usize = 1_000_000;
-const TAU0_S: f64 = 0.01;
-
-fn samples() -> Vec<f64> {
-    let model = NoiseModel { n: 0.002, b: 0.004, ..Default::default() };
-    Simulator::new(&model, &Setup::for_record(1, TAU0_S, SAMPLES as u64)).take(SAMPLES)
-}
 
 fn channel(column: &str, role: Role, unit: &str) -> Channel {
     let unit = Unit::parse(unit).expect("a unit");
@@ -51,7 +45,7 @@ fn analyse(source: &Source) -> usize {
 }
 
 fn throughput(c: &mut Criterion) {
-    let rate = samples();
+    let rate = simulated_rate(SAMPLES);
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("million.csv");
     let mut text = String::from("time_s,rate_deg_h\n");
