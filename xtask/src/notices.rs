@@ -49,7 +49,7 @@ fn notices(root: &Path) -> Result<String, String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let done = Command::new(cargo)
         .current_dir(root)
-        .args(["metadata", "--format-version", "1", "--locked", "--all-features"])
+        .args(["metadata", "--format-version", "1", "--locked", "--features", "sagnac/pdf"])
         .output()
         .map_err(|e| format!("failed to start cargo: {e}"))?;
     if !done.status.success() {
