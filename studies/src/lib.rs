@@ -8,7 +8,6 @@ pub mod chance;
 pub mod comparison;
 pub mod coverage;
 pub mod edges;
-pub mod explain;
 pub mod false_lines;
 pub mod goodness_of_fit;
 pub mod identification;
@@ -61,11 +60,6 @@ pub static STUDIES: &[&Study] = &[
     &identification::STUDY,
     &identification::sample_rates::STUDY,
     &identification::flicker_or_markov::STUDY,
-    &explain::studies::NULLS,
-    &explain::studies::CLEAR_EFFECTS,
-    &explain::studies::WEAK_EFFECTS,
-    &explain::studies::CLOSED_LOOP,
-    &explain::studies::OTHERS,
     &laboratory::study::STUDY,
     &laboratory::real_noise::STUDY,
     &planned::STUDY,

@@ -16,7 +16,6 @@ mod each;
 mod edges;
 mod error_reports;
 mod explain;
-mod explain_study;
 mod extended;
 mod goodness_of_fit;
 mod guarded_decoders;
