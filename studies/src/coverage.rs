@@ -1,6 +1,7 @@
 //! How often intervals hold a truth and how wide they are: what most studies count of a measurand.
 
 use crate::study::{Asked, Row};
+use rayon::prelude::*;
 use sagnac::estimate::Estimate;
 
 /// Width of a 95 % interval of a normal distribution, in standard deviations.
@@ -34,7 +35,28 @@ pub struct Coverage {
     pub over_told: Vec<f64>,
 }
 
+/// Counts of several measurands over the tests of so many seeds, in the order of the seeds.
+pub fn over_seeds<const N: usize>(
+    first: u64,
+    records: u64,
+    test: impl Fn(u64) -> [Coverage; N] + Send + Sync,
+) -> [Coverage; N] {
+    let all: Vec<[Coverage; N]> = (first..first + records).into_par_iter().map(test).collect();
+    let mut sums: [Coverage; N] = std::array::from_fn(|_| Coverage::default());
+    for counts in all {
+        sums.iter_mut().zip(counts).for_each(|(sum, count)| sum.add(count));
+    }
+    sums
+}
+
 impl Coverage {
+    /// One test: its row, the truth, and the standard deviation of a fit that knows the noise.
+    pub fn of(row: Option<&Estimate>, truth: f64, told: Option<f64>) -> Coverage {
+        let mut count = Coverage::default();
+        count.take(row, truth, told);
+        count
+    }
+
     /// Counts one test: its row, the truth, and the standard deviation of a fit that knows the noise.
     pub fn take(&mut self, row: Option<&Estimate>, truth: f64, told: Option<f64>) {
         self.runs += 1;

@@ -1,7 +1,8 @@
 //! Several recordings of one unit explained together: what they find that none finds alone, and what they find where the
 //! claim is right.
 
-use crate::noticeable::bench::{Place, Set, claim, recording};
+use crate::noticeable::bench::{Place, Set, recording};
+use crate::noticeable::loaded;
 use crate::study::{Asked, Case, Row, Study};
 use rayon::prelude::*;
 use sagnac::claim::Claim;
@@ -58,11 +59,6 @@ fn cases() -> Vec<Case> {
 
 fn first(seed: u64) -> u64 {
     91_000 + 10_000 * (seed - 1)
-}
-
-fn loaded(place: Place) -> Claim {
-    let read = sagnac::config::model::parse("model.toml", claim(place).as_bytes());
-    read.map(|m| m.claim).unwrap_or_else(|_| panic!("the claim cannot be read"))
 }
 
 /// Size that would have been noticed in one recording with a right claim.

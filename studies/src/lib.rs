@@ -4,7 +4,7 @@
 //! `docs/validation/`. Short versions with fixed seeds run with `cargo test`; they use the same functions.
 
 pub mod allan_intervals;
-pub mod chance;
+pub mod bench;
 pub mod comparison;
 pub mod coverage;
 pub mod edges;
@@ -16,7 +16,6 @@ pub mod influence;
 pub mod joint;
 pub mod laboratory;
 pub mod lot_bounds;
-pub mod noise_source;
 pub mod noticeable;
 pub mod pages;
 pub mod planned;
@@ -42,7 +41,6 @@ pub static STUDIES: &[&Study] = &[
     &influence::STUDY,
     &thermal::INTERVALS,
     &thermal::AMBIGUITY,
-    &thermal::SLOW_NOISE,
     &thermal::warm_up::STUDY,
     &rate_table::intervals::STUDY,
     &rate_table::tilts::STUDY,

@@ -1,6 +1,6 @@
 //! Bounds and medians of simulated lots against the population that they are drawn from.
 
-use crate::chance::Chance;
+use crate::bench::chance::Chance;
 use crate::study::{Asked, Case, Row, Study};
 use rayon::prelude::*;
 use sagnac::lot::population::{Of, Population, Reading, Side, Unit};

@@ -1,6 +1,6 @@
 //! How often a unit of the same population is called unlike its siblings, and one that is not of it.
 
-use crate::chance::Chance;
+use crate::bench::chance::Chance;
 use crate::study::{Asked, Case, Row, Study};
 use rayon::prelude::*;
 use sagnac::lot::siblings::unlike;

@@ -14,13 +14,14 @@ use tempfile::tempdir;
 fn every_measurand_is_named_by_a_test() {
     let mut texts = String::new();
     // Fast tests run studies in short; what those read is named there.
-    let mut open = vec![root().join("tests"), root().join("studies/src")];
+    let cases = root().join("studies/cases");
+    let mut open = vec![root().join("tests"), root().join("studies/src"), cases.clone()];
     while let Some(folder) = open.pop() {
         for entry in std::fs::read_dir(folder).unwrap() {
             let path = entry.unwrap().path();
             if path.is_dir() {
                 open.push(path);
-            } else if path.extension().is_some_and(|e| e == "rs") {
+            } else if path.extension().is_some_and(|e| e == "rs") || path.starts_with(&cases) {
                 texts.push_str(&std::fs::read_to_string(path).unwrap());
             }
         }

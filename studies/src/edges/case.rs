@@ -1,10 +1,13 @@
-//! What a case of the table is: a place where a truth is hard, the recording that shows it, and what is true of it.
+//! A case of the table: a place where a truth is hard, the recording that shows it, and what is true of it.
 
+use serde::Deserialize;
+use std::fmt::Write;
 use std::path::Path;
 use std::{fs, io};
 
 /// Places where a truth can lie at its edge.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Edge {
     /// The effect is exactly zero, and so is every other of its family.
     Zero,
@@ -36,24 +39,11 @@ impl Edge {
         Edge::Shortest,
         Edge::Coarsest,
     ];
-
-    /// Name in the table.
-    pub fn name(self) -> &'static str {
-        match self {
-            Edge::Zero => "zero",
-            Edge::Grid => "edge of the grid",
-            Edge::BelowNoise => "below the noise",
-            Edge::Alone => "alone",
-            Edge::BesideLarge => "beside a large effect",
-            Edge::Nuisance => "nuisance in step",
-            Edge::Shortest => "shortest record",
-            Edge::Coarsest => "coarsest schedule",
-        }
-    }
 }
 
-/// How a limit is written.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+/// Key of a limit in a limits file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum LimitKey {
     /// `max`
     Max,
@@ -76,9 +66,9 @@ pub struct Limit {
 #[derive(Debug, Clone)]
 pub struct Truth {
     /// Id of the measurand.
-    pub id: &'static str,
+    pub id: String,
     /// Channel of its row; `None`: the only row of this id.
-    pub channel: Option<&'static str>,
+    pub channel: Option<String>,
     /// True value, in the unit of the measurand.
     pub value: f64,
     /// Limit it is judged against. Exactly at the truth: the rate of passes and of failures is at most the risk.
@@ -89,23 +79,13 @@ pub struct Truth {
 
 impl Truth {
     /// A truth without a limit and without an oracle.
-    pub fn new(id: &'static str, value: f64) -> Truth {
-        Truth { id, channel: None, value, limit: None, oracle: None }
+    pub fn new(id: impl Into<String>, value: f64) -> Truth {
+        Truth { id: id.into(), channel: None, value, limit: None, oracle: None }
     }
 
-    /// With an upper limit.
-    pub fn max(self, value: f64) -> Truth {
-        Truth { limit: Some(Limit { key: LimitKey::Max, value }), ..self }
-    }
-
-    /// With a lower limit.
-    pub fn min(self, value: f64) -> Truth {
-        Truth { limit: Some(Limit { key: LimitKey::Min, value }), ..self }
-    }
-
-    /// With a limit on the magnitude.
-    pub fn max_abs(self, value: f64) -> Truth {
-        Truth { limit: Some(Limit { key: LimitKey::MaxAbs, value }), ..self }
+    /// With a limit.
+    pub fn limited(self, key: LimitKey, value: f64) -> Truth {
+        Truth { limit: Some(Limit { key, value }), ..self }
     }
 
     /// With the half width of the 95 % interval of an oracle that knows everything else.
@@ -114,8 +94,13 @@ impl Truth {
     }
 
     /// On one of several channels.
-    pub fn on(self, channel: &'static str) -> Truth {
-        Truth { channel: Some(channel), ..self }
+    pub fn on(self, channel: impl Into<String>) -> Truth {
+        Truth { channel: Some(channel.into()), ..self }
+    }
+
+    /// Measurand, and its channel where there are several.
+    pub fn name(&self) -> String {
+        self.channel.as_ref().map_or_else(|| self.id.clone(), |c| format!("{} {c}", self.id))
     }
 
     /// Where a unit with this truth stands against its limit.
@@ -175,56 +160,55 @@ impl Simulated {
     }
 }
 
+/// Draws the unit and its recording of a seed.
+pub type Draw = Box<dyn Fn(u64) -> Simulated + Send + Sync>;
+
 /// One case of the table.
 pub struct Case {
     /// What it is, in one line.
-    pub name: &'static str,
+    pub name: String,
     /// Edges it stands for.
-    pub edges: &'static [Edge],
+    pub edges: Vec<Edge>,
     /// Measurands it tells of.
-    pub ids: &'static [&'static str],
+    pub ids: Vec<String>,
     /// Recordings in the full study.
     pub records: usize,
     /// Draws the unit and its recording of a seed. Every draw has a truth for each of `ids`.
-    pub draw: fn(seed: u64) -> Simulated,
+    pub draw: Draw,
 }
 
 /// A reason why an edge does not apply to some measurands.
 pub struct Exemption {
     /// The edges.
-    pub edges: &'static [Edge],
+    pub edges: Vec<Edge>,
     /// The measurands.
-    pub ids: &'static [&'static str],
+    pub ids: Vec<String>,
     /// Why there is no such case.
-    pub reason: &'static str,
+    pub reason: String,
 }
 
 /// Measurands that one kind of test gives.
 pub struct Family {
     /// Short name.
-    pub name: &'static str,
+    pub name: String,
     /// Every measurand of the family.
-    pub ids: &'static [&'static str],
+    pub ids: Vec<String>,
     /// Its cases.
-    pub cases: &'static [Case],
+    pub cases: Vec<Case>,
     /// Edges that do not apply.
-    pub exempt: &'static [Exemption],
+    pub exempt: Vec<Exemption>,
 }
 
 impl Family {
     /// Pairs of a measurand and an edge that have neither a case nor a reason.
     pub fn gaps(&self) -> Vec<String> {
-        let shown = |id: &str, edge: Edge| {
-            let case = self.cases.iter().any(|c| c.ids.contains(&id) && c.edges.contains(&edge));
-            let exempt =
-                |e: &&Exemption| e.ids.contains(&id) && e.edges.contains(&edge) && e.reason.len() > 20;
-            case || self.exempt.iter().any(|e| exempt(&e))
+        let shown = |id: &String, edge: &Edge| {
+            let case = self.cases.iter().any(|c| c.ids.contains(id) && c.edges.contains(edge));
+            let exempt = |e: &Exemption| e.ids.contains(id) && e.edges.contains(edge) && e.reason.len() > 20;
+            case || self.exempt.iter().any(exempt)
         };
-        let pairs = self.ids.iter().flat_map(|id| Edge::ALL.map(|edge| (*id, edge)));
-        pairs
-            .filter(|(id, edge)| !shown(id, *edge))
-            .map(|(id, edge)| format!("{id}: {}", edge.name()))
-            .collect()
+        let pairs = self.ids.iter().flat_map(|id| Edge::ALL.map(|edge| (id, edge)));
+        pairs.filter(|(id, edge)| !shown(id, edge)).map(|(id, edge)| format!("{id}: {edge:?}")).collect()
     }
 }
 
@@ -238,20 +222,22 @@ fn limits(truths: &[Truth]) -> String {
     for truth in truths {
         let Some(limit) = &truth.limit else { continue };
         // A limit of a channel judges its rows at all levels.
-        let channel = truth.channel.map(|c| c.split('@').next().unwrap_or(c));
-        if written.contains(&(truth.id, channel)) {
+        let channel = truth.channel.as_ref().map(|c| c.split('@').next().unwrap_or(c));
+        if written.contains(&(&truth.id, channel)) {
             continue;
         }
-        written.push((truth.id, channel));
-        let unit = sagnac::measurand::find(truth.id).map_or("", |m| m.unit);
+        written.push((&truth.id, channel));
+        let unit = sagnac::measurand::find(&truth.id).map_or("", |m| m.unit);
         let key = match limit.key {
             LimitKey::Max => "max",
             LimitKey::Min => "min",
             LimitKey::MaxAbs => "max_abs",
         };
-        text += &format!("[[limit]]\nmeasurand = \"{}\"\n{key} = \"{:.12} {unit}\"\n", truth.id, limit.value);
+        // Writing to a text cannot fail.
+        let _ =
+            writeln!(text, "[[limit]]\nmeasurand = \"{}\"\n{key} = \"{:.12} {unit}\"", truth.id, limit.value);
         if let Some(channel) = channel {
-            text += &format!("channel = \"{channel}\"\n");
+            let _ = writeln!(text, "channel = \"{channel}\"");
         }
     }
     text

@@ -1,79 +1,114 @@
 //! Influences and repeatability at their edges: nothing at all, below the noise, beside drifts, with a temperature that goes
 //! with the levels or the order of the runs, and the shortest tests that `check` accepts.
 
-use super::case::{Case, Edge, Exemption, Family, Simulated, Truth};
-use crate::noise_source::{NoiseSource, add, csv};
+use super::case::{Simulated, Truth};
+use super::table;
+use crate::bench::noise_source::{NoiseSource, add, csv};
+use serde::Deserialize;
 
 /// deg/sqrt(h)
 const N: f64 = 0.002;
 
+/// A test of an influence or of repeatability.
+#[derive(Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Bench {
+    /// Intervals in turns, without an influence and with it.
+    Turns(Turns),
+    /// Switching off and on.
+    Runs(Runs),
+}
+
+impl table::Bench for Bench {
+    fn simulated(&self, _: &[String], seed: u64) -> Simulated {
+        match self {
+            Bench::Turns(turns) => turns.simulated(seed),
+            Bench::Runs(runs) => runs.simulated(seed),
+        }
+    }
+}
+
 /// What is changed on purpose.
-#[derive(Clone, Copy, PartialEq)]
+#[derive(Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename_all = "snake_case")]
 enum Kind {
     Field,
     Supply,
     Shaker,
 }
 
+/// How a kind of influence is tested.
+struct Named {
+    sensitivity: &'static str,
+    test: &'static str,
+    role: &'static str,
+    unit: &'static str,
+    /// Level of the reference.
+    reference: f64,
+}
+
+impl Kind {
+    fn named(self) -> Named {
+        let of =
+            |sensitivity, test, role, unit, reference| Named { sensitivity, test, role, unit, reference };
+        match self {
+            Kind::Field => of("magnetic_sensitivity", "magnetic_test", "magnetic_field", "mT", 0.0),
+            Kind::Supply => of("supply_sensitivity", "supply_test", "supply", "V", 5.0),
+            Kind::Shaker => of("vibration_sensitivity", "vibration_test", "vibration", "g", 0.0),
+        }
+    }
+}
+
 /// A comparison with intervals in turns.
-struct Turns {
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Turns {
     kind: Kind,
     /// Levels without the reference, one an interval between two without.
-    levels: &'static [f64],
+    levels: Vec<f64>,
+    #[serde(default = "interval_s")]
     interval_s: f64,
-    /// Change of the bias per drive.
+    /// Change of the bias per drive: the level, of a shaker its square.
+    #[serde(default)]
     per_unit: f64,
     /// deg/h over the test.
+    #[serde(default = "drift")]
     drift: f64,
     /// Flicker, deg/h.
+    #[serde(default)]
     flicker: f64,
     /// Growth of N per unit of the level.
+    #[serde(default)]
     louder: f64,
     /// degC per unit of the level, and deg/h/degC.
+    #[serde(default)]
     warms: (f64, f64),
     /// Coefficient that the procedure allows for, deg/h/degC.
     allowed: Option<f64>,
-    /// Limit on the magnitude of the sensitivity, and on the change of N.
-    limits: (Option<f64>, Option<f64>),
+}
+
+fn interval_s() -> f64 {
+    75.0
+}
+
+fn drift() -> f64 {
+    0.05
 }
 
 impl Turns {
-    const fn of(kind: Kind) -> Turns {
-        Turns {
-            kind,
-            levels: match kind {
-                Kind::Shaker => &[2.0, 4.0, 2.0, 4.0],
-                _ => &[0.5, -0.5, 0.5, -0.5],
-            },
-            interval_s: 75.0,
-            per_unit: 0.0,
-            drift: 0.05,
-            flicker: 0.0,
-            louder: 0.0,
-            warms: (0.0, 0.0),
-            allowed: None,
-            limits: (None, None),
-        }
-    }
-
-    fn ids(&self) -> (&'static str, &'static str, &'static str, &'static str, f64, &'static str) {
-        match self.kind {
-            Kind::Field => ("magnetic_sensitivity", "magnetic_test", "magnetic_field", "mT", 0.0, "deg/h/mT"),
-            Kind::Supply => ("supply_sensitivity", "supply_test", "supply", "V", 5.0, "deg/h/V"),
-            Kind::Shaker => ("vibration_sensitivity", "vibration_test", "vibration", "g", 0.0, "deg/h/g^2"),
-        }
-    }
-
     fn drive(&self, level: f64) -> f64 {
         if self.kind == Kind::Shaker { level * level } else { level }
     }
 
+    fn dt_s(&self) -> f64 {
+        if self.kind == Kind::Shaker { 0.2 } else { 1.0 }
+    }
+
     fn simulated(&self, seed: u64) -> Simulated {
         let mut source = NoiseSource::new(seed);
-        let dt = if self.kind == Kind::Shaker { 0.2 } else { 1.0 };
+        let dt = self.dt_s();
         let each = (self.interval_s / dt).round() as usize;
         let count = each * (2 * self.levels.len() + 1);
-        let (id, table, role, unit, reference, _) = self.ids();
         let level = |i: usize| {
             let interval = i / each;
             if interval % 2 == 1 { self.levels[interval / 2] } else { 0.0 }
@@ -94,54 +129,49 @@ impl Turns {
                 + self.warms.1 * self.warms.0 * level(i);
         }
         let time: Vec<f64> = (0..count).map(|i| i as f64 * dt).collect();
+        let reference = self.kind.named().reference;
         let told: Vec<f64> = (0..count).map(|i| reference + level(i)).collect();
-        // White noise and a line, the mean and the drift free: what an oracle of the noise is left with.
         let drives: Vec<f64> = (0..count).map(|i| self.drive(level(i))).collect();
-        let half = 1.96 * 60.0 * N / dt.sqrt() / free(&drives).sqrt();
-        let sensitivity = Truth::new(id, self.per_unit);
-        let mut truths = vec![match self.limits.0 {
-            Some(limit) => sensitivity.max_abs(limit),
-            None => sensitivity,
-        }];
+        Simulated {
+            csv: csv("time_s,rate_deg_h,temp_degC,level", &[&time, &rate, &temperature, &told]),
+            procedure: self.procedure(),
+            truths: self.truths(&drives),
+        }
+    }
+
+    fn truths(&self, drives: &[f64]) -> Vec<Truth> {
+        let Named { sensitivity, reference, .. } = self.kind.named();
+        let mut truths = vec![Truth::new(sensitivity, self.per_unit)];
         if self.louder == 0.0 && self.flicker == 0.0 && self.allowed.is_none() {
-            truths[0] = truths[0].clone().oracle(half);
+            // White noise and a line, the mean and the drift free: what an oracle of the noise is left with.
+            truths[0].oracle = Some(1.96 * 60.0 * N / self.dt_s().sqrt() / free(drives).sqrt());
         }
         let mut seen: Vec<f64> = vec![];
-        for l in self.levels {
-            if seen.contains(l) {
+        for level in &self.levels {
+            if seen.contains(level) {
                 continue;
             }
-            seen.push(*l);
-            let name: &'static str = match (self.kind, *l) {
-                (Kind::Supply, l) if l > 0.0 => "rate@5.5",
-                (Kind::Supply, _) => "rate@4.5",
-                (Kind::Field, l) if l > 0.0 => "rate@0.5",
-                (Kind::Field, _) => "rate@-0.5",
-                (Kind::Shaker, l) if l > 3.0 => "rate@4",
-                (Kind::Shaker, _) => "rate@2",
-            };
-            truths.push(Truth::new("bias_shift", self.per_unit * self.drive(*l)).on(name));
+            seen.push(*level);
+            let channel = format!("rate@{}", reference + level);
+            truths.push(Truth::new("bias_shift", self.per_unit * self.drive(*level)).on(&channel));
             if self.kind == Kind::Shaker {
-                truths.push(Truth::new("angle_random_walk_shift", N * self.louder * l).on(name));
+                truths.push(Truth::new("angle_random_walk_shift", N * self.louder * level).on(&channel));
             }
         }
-        if let (Some(limit), [.., last]) = (self.limits.1, truths.as_mut_slice()) {
-            *last = last.clone().max(limit);
-        }
-        let more =
+        truths
+    }
+
+    fn procedure(&self) -> String {
+        let Named { sensitivity, test, role, unit, reference } = self.kind.named();
+        let louder =
             if self.kind == Kind::Shaker { "[[measurand]]\nid = \"angle_random_walk_shift\"\n" } else { "" };
         let allowed =
             self.allowed.map_or(String::new(), |a| format!("temperature_coefficient = \"{a} deg/h/degC\"\n"));
-        let own = format!(
+        procedure(&format!(
             "[[channel]]\nid = \"level\"\ncolumn = \"level\"\nrole = \"{role}\"\nunit = \"{unit}\"\n\
-             [{table}]\nreference = \"{reference} {unit}\"\nsettling = \"0 s\"\nminimum_interval = \"20 s\"\n\
-             alternations = 1\n{allowed}[[measurand]]\nid = \"{id}\"\n[[measurand]]\nid = \"bias_shift\"\n{more}"
-        );
-        Simulated {
-            csv: csv("time_s,rate_deg_h,temp_degC,level", &[&time, &rate, &temperature, &told]),
-            procedure: procedure(&own),
-            truths,
-        }
+             [{test}]\nreference = \"{reference} {unit}\"\nsettling = \"0 s\"\nminimum_interval = \"20 s\"\n\
+             alternations = 1\n{allowed}[[measurand]]\nid = \"{sensitivity}\"\n[[measurand]]\nid = \"bias_shift\"\n{louder}"
+        ))
     }
 }
 
@@ -169,7 +199,9 @@ fn procedure(own: &str) -> String {
 }
 
 /// A series of switching off and on.
-struct Series {
+#[derive(Deserialize)]
+#[serde(default, deny_unknown_fields)]
+pub struct Runs {
     runs: usize,
     run_s: f64,
     /// Standard deviation between runs, deg/h.
@@ -180,21 +212,15 @@ struct Series {
     per_deg_c: f64,
     /// degC: from the first run to the last, and at random.
     warms: (f64, f64),
-    /// True: the limits stand at the truths of the spread and of the range.
-    at_limits: bool,
 }
 
-impl Series {
-    const NONE: Series = Series {
-        runs: 8,
-        run_s: 150.0,
-        between: 0.0,
-        trend: 0.0,
-        per_deg_c: 0.0,
-        warms: (0.0, 0.3),
-        at_limits: false,
-    };
+impl Default for Runs {
+    fn default() -> Runs {
+        Runs { runs: 8, run_s: 150.0, between: 0.0, trend: 0.0, per_deg_c: 0.0, warms: (0.0, 0.3) }
+    }
+}
 
+impl Runs {
     fn simulated(&self, seed: u64) -> Simulated {
         let mut source = NoiseSource::new(seed);
         let each = self.run_s as usize;
@@ -214,165 +240,21 @@ impl Series {
         }
         let range = biases.iter().fold(f64::NEG_INFINITY, |m: f64, b| m.max(*b))
             - biases.iter().fold(f64::INFINITY, |m: f64, b| m.min(*b));
-        let wide = Truth::new("bias_repeatability_peak_to_peak", range);
-        let mut truths = vec![if self.at_limits { wide.max(range) } else { wide }];
-        if self.trend == 0.0 && self.per_deg_c == 0.0 {
-            let spread = Truth::new("bias_repeatability", self.between);
-            truths.push(if self.at_limits { spread.max(self.between) } else { spread });
-        }
-        truths.push(Truth::new("bias_repeatability_trend", self.trend));
-        truths.push(Truth::new("bias_repeatability_temperature", self.per_deg_c));
-        let own = "[repeatability_test]\nsettling = \"0 s\"\nminimum_run = \"30 s\"\noff = \"5 min\"\nruns = 2\n\
-             [[measurand]]\nid = \"bias_repeatability\"\n[[measurand]]\nid = \"bias_repeatability_peak_to_peak\"\n\
-             [[measurand]]\nid = \"bias_repeatability_trend\"\n[[measurand]]\nid = \"bias_repeatability_temperature\"\n";
+        let ids = [
+            "bias_repeatability",
+            "bias_repeatability_peak_to_peak",
+            "bias_repeatability_trend",
+            "bias_repeatability_temperature",
+        ];
+        let truths = [self.between, range, self.trend, self.per_deg_c];
+        let measured: String = ids.iter().map(|id| format!("[[measurand]]\nid = \"{id}\"\n")).collect();
         let [time, rate, temperature] = &columns;
         Simulated {
             csv: csv("time_s,rate_deg_h,temp_degC", &[time, rate, temperature]),
-            procedure: procedure(own),
-            truths,
+            procedure: procedure(&format!(
+                "[repeatability_test]\nsettling = \"0 s\"\nminimum_run = \"30 s\"\noff = \"5 min\"\nruns = 2\n{measured}"
+            )),
+            truths: ids.into_iter().zip(truths).map(|(id, truth)| Truth::new(id, truth)).collect(),
         }
     }
-}
-
-const FIELD: &[&str] = &["magnetic_sensitivity", "bias_shift"];
-const SUPPLY: &[&str] = &["supply_sensitivity", "bias_shift"];
-const SHAKER: &[&str] = &["vibration_sensitivity", "bias_shift", "angle_random_walk_shift"];
-const RUNS: &[&str] = &[
-    "bias_repeatability",
-    "bias_repeatability_peak_to_peak",
-    "bias_repeatability_trend",
-    "bias_repeatability_temperature",
-];
-const COURSES: &[&str] =
-    &["bias_repeatability_peak_to_peak", "bias_repeatability_trend", "bias_repeatability_temperature"];
-
-const fn case(
-    name: &'static str,
-    edges: &'static [Edge],
-    ids: &'static [&'static str],
-    draw: fn(u64) -> Simulated,
-) -> Case {
-    Case { name, edges, ids, records: 100, draw }
-}
-
-/// Influences and repeatability.
-pub static FAMILY: Family = Family {
-    name: "influence",
-    ids: &[
-        "magnetic_sensitivity",
-        "supply_sensitivity",
-        "vibration_sensitivity",
-        "bias_shift",
-        "angle_random_walk_shift",
-        "bias_repeatability",
-        "bias_repeatability_peak_to_peak",
-        "bias_repeatability_trend",
-        "bias_repeatability_temperature",
-    ],
-    cases: &[
-        case("field without effect", &[Edge::Zero], FIELD, |s| {
-            Turns { limits: (Some(0.1), None), drift: 0.0, ..Turns::of(Kind::Field) }.simulated(s)
-        }),
-        case("supply without effect", &[Edge::Zero], SUPPLY, |s| {
-            Turns { limits: (Some(0.1), None), drift: 0.0, ..Turns::of(Kind::Supply) }.simulated(s)
-        }),
-        case("shaker without effect", &[Edge::Zero], SHAKER, |s| {
-            Turns { limits: (Some(0.1), Some(0.001)), drift: 0.0, ..Turns::of(Kind::Shaker) }.simulated(s)
-        }),
-        case("field, effect below the noise", &[Edge::BelowNoise], FIELD, |s| {
-            Turns { per_unit: 0.005, ..Turns::of(Kind::Field) }.simulated(s)
-        }),
-        case("supply, effect below the noise", &[Edge::BelowNoise], SUPPLY, |s| {
-            Turns { per_unit: -0.005, ..Turns::of(Kind::Supply) }.simulated(s)
-        }),
-        case("shaker, effects below the noise", &[Edge::BelowNoise], SHAKER, |s| {
-            Turns { per_unit: 0.0002, louder: 0.005, ..Turns::of(Kind::Shaker) }.simulated(s)
-        }),
-        case("field, exactly at the limit", &[Edge::Alone, Edge::Grid], FIELD, |s| {
-            Turns { per_unit: 0.2, limits: (Some(0.2), None), ..Turns::of(Kind::Field) }.simulated(s)
-        }),
-        case("supply, exactly at the limit", &[Edge::Alone, Edge::Grid], SUPPLY, |s| {
-            Turns { per_unit: -0.2, limits: (Some(0.2), None), ..Turns::of(Kind::Supply) }.simulated(s)
-        }),
-        case("shaker, exactly at the limits", &[Edge::Alone, Edge::Grid], SHAKER, |s| {
-            Turns {
-                per_unit: 0.005,
-                louder: 0.1,
-                limits: (Some(0.005), Some(0.0008)),
-                ..Turns::of(Kind::Shaker)
-            }
-            .simulated(s)
-        }),
-        case("field without effect, beside a drift and flicker", &[Edge::BesideLarge], FIELD, |s| {
-            Turns { drift: 2.0, flicker: 0.01, limits: (Some(0.1), None), ..Turns::of(Kind::Field) }
-                .simulated(s)
-        }),
-        case("supply without effect, beside a drift and flicker", &[Edge::BesideLarge], SUPPLY, |s| {
-            Turns { drift: -2.0, flicker: 0.01, limits: (Some(0.1), None), ..Turns::of(Kind::Supply) }
-                .simulated(s)
-        }),
-        case("shaker: a large bias beside no noise, beside a drift", &[Edge::BesideLarge], SHAKER, |s| {
-            Turns { per_unit: 0.05, drift: 1.0, ..Turns::of(Kind::Shaker) }.simulated(s)
-        }),
-        case("field without effect, temperature in step with it", &[Edge::Nuisance], FIELD, |s| {
-            Turns { warms: (8.0, 0.05), limits: (Some(0.1), None), ..Turns::of(Kind::Field) }.simulated(s)
-        }),
-        case("supply without effect, temperature in step with it", &[Edge::Nuisance], SUPPLY, |s| {
-            Turns { warms: (8.0, 0.05), limits: (Some(0.1), None), ..Turns::of(Kind::Supply) }.simulated(s)
-        }),
-        case("supply, a little temperature in step that is allowed for", &[Edge::Nuisance], SUPPLY, |s| {
-            Turns {
-                warms: (0.25, 0.05),
-                allowed: Some(0.05),
-                limits: (Some(0.1), None),
-                ..Turns::of(Kind::Supply)
-            }
-            .simulated(s)
-        }),
-        case("shaker without effect, temperature in step with it", &[Edge::Nuisance], SHAKER, |s| {
-            Turns { warms: (1.0, 0.05), limits: (Some(0.005), None), ..Turns::of(Kind::Shaker) }.simulated(s)
-        }),
-        case("field, once with and twice without", &[Edge::Shortest, Edge::Coarsest], FIELD, |s| {
-            Turns { levels: &[0.5], per_unit: 0.2, interval_s: 40.0, ..Turns::of(Kind::Field) }.simulated(s)
-        }),
-        case("supply, once with and twice without", &[Edge::Shortest, Edge::Coarsest], SUPPLY, |s| {
-            Turns { levels: &[0.5], per_unit: 0.2, interval_s: 40.0, ..Turns::of(Kind::Supply) }.simulated(s)
-        }),
-        case("shaker, once with and twice without", &[Edge::Shortest, Edge::Coarsest], SHAKER, |s| {
-            Turns { levels: &[4.0], per_unit: 0.005, interval_s: 40.0, ..Turns::of(Kind::Shaker) }
-                .simulated(s)
-        }),
-        case("runs exactly equal", &[Edge::Zero], RUNS, |s| Series::NONE.simulated(s)),
-        case("runs that differ by less than their noise", &[Edge::BelowNoise], RUNS, |s| {
-            Series { between: 0.003, ..Series::NONE }.simulated(s)
-        }),
-        case("runs exactly at the limits", &[Edge::Alone, Edge::Grid], RUNS, |s| {
-            Series { between: 0.03, at_limits: true, ..Series::NONE }.simulated(s)
-        }),
-        case("runs with a trend alone", &[Edge::Alone], COURSES, |s| {
-            Series { between: 0.01, trend: 0.2, ..Series::NONE }.simulated(s)
-        }),
-        case("runs with a temperature alone", &[Edge::Alone], COURSES, |s| {
-            Series { between: 0.01, per_deg_c: 0.2, ..Series::NONE }.simulated(s)
-        }),
-        case("equal runs beside a large trend and temperature", &[Edge::BesideLarge], COURSES, |s| {
-            Series { trend: 1.0, per_deg_c: 1.0, ..Series::NONE }.simulated(s)
-        }),
-        case("a temperature in step with the order of the runs", &[Edge::Nuisance], COURSES, |s| {
-            Series { between: 0.01, per_deg_c: 0.1, warms: (1.0, 0.05), ..Series::NONE }.simulated(s)
-        }),
-        case("two runs", &[Edge::Shortest, Edge::Coarsest], RUNS, |s| {
-            Series { runs: 2, run_s: 60.0, between: 0.05, ..Series::NONE }.simulated(s)
-        }),
-    ],
-    exempt: &[Exemption {
-        edges: &[Edge::BesideLarge, Edge::Nuisance],
-        ids: &["bias_repeatability"],
-        reason: "what a trend or the temperature does between runs is part of their spread by its definition",
-    }],
-};
-
-/// A supply whose temperature follows the voltage by 8 °C per V, and with it the bias.
-pub fn temperature_in_step(seed: u64) -> Simulated {
-    Turns { warms: (8.0, 0.05), limits: (Some(0.1), None), ..Turns::of(Kind::Supply) }.simulated(seed)
 }

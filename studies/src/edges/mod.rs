@@ -1,33 +1,42 @@
 //! How every measurand behaves where a truth lies at its edge, or where a second effect walks in step with the first.
 //!
-//! Each family of measurands is one file with its cases and a generator of its own, which imports nothing from the analysis,
-//! and one line in [`FAMILIES`] with its study.
+//! Each family of measurands is a table of cases in `studies/cases/edges/`, and a file with the generator of its recordings,
+//! which imports nothing from the analysis. One line in [`FAMILIES`] and a study name both.
 
 pub mod case;
-pub mod influence;
-pub mod noise;
+mod influence;
+mod noise;
 mod on_table;
-pub mod rate_table;
-pub mod small_rates;
+mod rate_table;
+mod small_rates;
+mod table;
 pub mod tally;
-pub mod temperature;
-pub mod tilts;
+mod temperature;
+mod tilts;
 
 use crate::study::{Case, Study};
 use case::{Family, Simulated};
 use sagnac::record::MeasurandRecord;
 use sagnac::{Procedure, Recording, UnitUnderTest};
 use std::path::Path;
+use std::sync::LazyLock;
+use table::Bench;
 
-/// Every family. One more: one file and one line.
-pub static FAMILIES: &[&Family] = &[
-    &influence::FAMILY,
-    &noise::FAMILY,
-    &rate_table::FAMILY,
-    &small_rates::FAMILY,
-    &temperature::FAMILY,
-    &tilts::FAMILY,
-];
+/// Every family.
+pub static FAMILIES: LazyLock<[Family; 6]> = LazyLock::new(|| {
+    [
+        family::<influence::Bench>(include_str!("../../cases/edges/influence.toml")),
+        family::<noise::Rest>(include_str!("../../cases/edges/noise.toml")),
+        family::<rate_table::Bench>(include_str!("../../cases/edges/rate_table.toml")),
+        family::<small_rates::Sweep>(include_str!("../../cases/edges/small_rates.toml")),
+        family::<temperature::Bench>(include_str!("../../cases/edges/temperature.toml")),
+        family::<tilts::TwoAxes>(include_str!("../../cases/edges/tilts.toml")),
+    ]
+});
+
+fn family<B: Bench>(table: &str) -> Family {
+    Family::read::<B>(table).unwrap_or_else(|wrong| panic!("a table of cases: {wrong}"))
+}
 
 const METHOD: &str = "Every measurand where its truth is exactly zero, between the points of the schedule, below the noise, beside \
     a large other effect of its family, with a nuisance in step with the stimulus, in the shortest record and with the coarsest \
@@ -40,31 +49,30 @@ const fn study(id: &'static str, title: &'static str, cases: fn() -> Vec<Case>) 
 }
 
 /// Repeatability, and sensitivities to a field, a supply and vibration.
-pub static INFLUENCE: Study =
-    study("edges-influence", "Influences at their edges", || cases(&influence::FAMILY));
+pub static INFLUENCE: Study = study("edges-influence", "Influences at their edges", || cases("influence"));
 /// Noise of a unit at rest.
-pub static NOISE: Study = study("edges-noise", "Noise at its edges", || cases(&noise::FAMILY));
+pub static NOISE: Study = study("edges-noise", "Noise at its edges", || cases("noise"));
 /// Scale factor and what belongs to it.
 pub static RATE_TABLE: Study =
-    study("edges-rate-table", "Scale factors at their edges", || cases(&rate_table::FAMILY));
+    study("edges-rate-table", "Scale factors at their edges", || cases("rate_table"));
 /// Dead zones and thresholds.
 pub static SMALL_RATES: Study =
-    study("edges-small-rates", "Small rates at their edges", || cases(&small_rates::FAMILY));
+    study("edges-small-rates", "Small rates at their edges", || cases("small_rates"));
 /// Bias over temperature and the warm-up.
 pub static TEMPERATURE: Study =
-    study("edges-temperature", "Temperature at its edges", || cases(&temperature::FAMILY));
+    study("edges-temperature", "Temperature at its edges", || cases("temperature"));
 /// Tilts of the input axis.
-pub static TILTS: Study = study("edges-tilts", "Tilts at their edges", || cases(&tilts::FAMILY));
+pub static TILTS: Study = study("edges-tilts", "Tilts at their edges", || cases("tilts"));
 
-fn cases(family: &'static Family) -> Vec<Case> {
+fn cases(family: &str) -> Vec<Case> {
     let case = |case: &'static case::Case| {
-        Case::new(case.name, move |records, seed| {
+        Case::new(&case.name, move |records, seed| {
             let records = records.min(case.records as u64) as usize;
             let tallies = tally::run(case, records, 1_000_000 * seed, &by_the_library);
             tallies.iter().flat_map(tally::Tally::rows).collect()
         })
     };
-    family.cases.iter().map(case).collect()
+    FAMILIES.iter().filter(|f| f.name == family).flat_map(|f| f.cases.iter().map(case)).collect()
 }
 
 /// Tests the files of a folder by the library.

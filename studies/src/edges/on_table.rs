@@ -26,7 +26,7 @@ pub const fn column(
 
 /// The procedure of a test on a table: time in `time_s`, the columns, `sections` from `[rate_table]` on, and what is
 /// measured.
-pub fn procedure(title: &str, columns: &[Column], sections: &str, ids: &[&str]) -> String {
+pub fn procedure(title: &str, columns: &[Column], sections: &str, ids: &[impl AsRef<str>]) -> String {
     let id = title.to_lowercase().replace(' ', "-");
     let mut text = format!(
         "format = \"procedure/1\"\n[procedure]\nid = \"{id}\"\ntitle = \"{title}\"\nrevision = \"A\"\n\
@@ -40,7 +40,7 @@ pub fn procedure(title: &str, columns: &[Column], sections: &str, ids: &[&str]) 
     }
     let _ = write!(text, "{sections}\n[[instrument]]\nname = \"table\"\ncalibration_due = 2999-12-31\n");
     for id in ids {
-        let _ = writeln!(text, "[[measurand]]\nid = \"{id}\"");
+        let _ = writeln!(text, "[[measurand]]\nid = \"{}\"", id.as_ref());
     }
     text + &format!("[[clause]]\nclause = \"1\"\ntitle = \"{title}\"\nstatus = \"here\"\n")
 }

@@ -55,19 +55,20 @@ pub struct Tally {
 pub fn run(case: &Case, records: usize, first_seed: u64, test: &Tester) -> Vec<Tally> {
     let outcomes: Vec<Vec<Outcome>> =
         (0..records as u64).into_par_iter().map(|i| outcome(case, first_seed + i, test)).collect();
-    let mut keys: Vec<(&str, Option<&str>)> = Vec::new();
-    for truth in outcomes.iter().flatten().map(|o| &o.truth) {
-        if !keys.contains(&(truth.id, truth.channel)) {
-            keys.push((truth.id, truth.channel));
+    let mut names: Vec<String> = Vec::new();
+    for name in outcomes.iter().flatten().map(|o| o.truth.name()) {
+        if !names.contains(&name) {
+            names.push(name);
         }
     }
-    for id in case.ids {
-        assert!(keys.iter().any(|k| k.0 == *id), "{}: no truth of `{id}`", case.name);
+    for id in &case.ids {
+        let told = outcomes.iter().flatten().any(|o| o.truth.id == *id);
+        assert!(told, "{}: no truth of `{id}`", case.name);
     }
-    let of = |key: (&str, Option<&str>)| -> Vec<&Outcome> {
-        outcomes.iter().flatten().filter(|o| (o.truth.id, o.truth.channel) == key).collect()
+    let of = |name: &String| {
+        outcomes.iter().flatten().filter(|o| o.truth.name() == *name).collect::<Vec<&Outcome>>()
     };
-    keys.into_iter().map(|key| Tally::new(&of(key))).collect()
+    names.iter().map(|name| Tally::new(&of(name))).collect()
 }
 
 fn outcome(case: &Case, seed: u64, test: &Tester) -> Vec<Outcome> {
@@ -77,7 +78,7 @@ fn outcome(case: &Case, seed: u64, test: &Tester) -> Vec<Outcome> {
     let rows = test(&simulated, folder.path()).unwrap_or_else(|e| panic!("{}, seed {seed}: {e}", case.name));
     assert!(!rows.is_empty(), "{}, seed {seed}: no rows", case.name);
     let found = |t: &Truth| {
-        rows.iter().find(|r| r.id == t.id && t.channel.is_none_or(|channel| r.channel == channel))
+        rows.iter().find(|r| r.id == t.id && t.channel.as_ref().is_none_or(|channel| r.channel == *channel))
     };
     simulated
         .truths
@@ -124,7 +125,7 @@ impl Tally {
             .collect();
         ratios.sort_by(f64::total_cmp);
         Tally {
-            id: first.channel.map_or(first.id.to_string(), |c| format!("{} {c}", first.id)),
+            id: first.name(),
             records: outcomes.len(),
             stated: count(&|o| matches!(o.stated, Stated::Interval { .. })),
             bounded: count(&|o| matches!(o.stated, Stated::Bound { .. })),

@@ -1,28 +1,17 @@
 //! Simulated recordings evaluated as a run does, without the acceptance around it.
 
-use super::generator::{Recorded, Series, Turns};
-use super::presets::SHAKER;
+use crate::bench::influence::{Recorded, SHAKER, Series, Turns};
+use crate::rate_table::evaluation::channels;
 use sagnac::influence::comparison::{self, Beside, Comparison};
 use sagnac::influence::cut::FileSpan;
 use sagnac::influence::repeatability::{self, Repeatability};
 use sagnac::influence::{ComparisonTest, Influence, RepeatabilityTest, intervals, runs};
 use sagnac::rate_table::blocks::{Blocks, Collector};
-use sagnac::recording::{Channel, ColumnRef, Role, SampleBlock, Sink};
-use sagnac::units::Unit;
+use sagnac::recording::{Role, SampleBlock, Sink};
 
 /// The blocks of a recording, and its level beside.
 fn blocks(r: &Recorded, dt: f64) -> Blocks {
-    let roles = [Role::Rate, Role::Temperature, Role::MagneticField];
-    let list: Vec<Channel> = roles
-        .iter()
-        .map(|role| Channel {
-            id: role.id().into(),
-            column: ColumnRef::Name(role.id().into()),
-            role: *role,
-            unit: role.internal_unit().and_then(|u| Unit::parse(u).ok()).expect("a unit"),
-            scale: 1.0,
-        })
-        .collect();
+    let list = channels(&[Role::Rate, Role::Temperature, Role::MagneticField].map(|r| (r.id(), r)));
     let mut collector = Collector::new(&list, dt, None).beside(vec![2]);
     let mut start = 0;
     for i in 1..=r.time_s.len() {

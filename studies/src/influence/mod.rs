@@ -1,15 +1,13 @@
 //! Intervals of repeatability and of the sensitivities to an influence, against simulated truth.
 
 pub mod evaluation;
-pub mod generator;
-pub mod presets;
 
-use crate::chance::Noise;
-use crate::coverage::Coverage;
+use crate::bench::chance::Noise;
+use crate::bench::influence::{FIELD, series, shaken, turns};
+use crate::bench::influence::{Series, Turns};
+use crate::coverage::{Coverage, over_seeds};
 use crate::study::{Asked, Case, Row, Study};
 use evaluation::{compared, repeated};
-use generator::{Series, Turns};
-use presets::{FIELD, series, shaken, turns};
 use rayon::prelude::*;
 use sagnac::measurand::{BIAS_REPEATABILITY, BIAS_REPEATABILITY_TREND, BIAS_SHIFT, ComparisonEvidence, find};
 
@@ -82,13 +80,11 @@ pub fn comparisons(of: &Sensitivity, records: u64, first: u64) -> Comparisons {
 /// Scatter between runs and trend over them, of many series whose bias scatters by `between` deg/h.
 pub fn repeatability(noise: Noise, between: f64, records: u64, first: u64) -> [Coverage; 2] {
     let s = Series { noise, trend: 0.0, dt: 2.0, ..series(between) };
-    let mut counts = [Coverage::default(), Coverage::default()];
-    let all: Vec<_> = (first..first + records).into_par_iter().map(|seed| repeated(&s, seed)).collect();
-    for found in all {
-        counts[0].take(BIAS_REPEATABILITY.evaluate_runs(&found).first(), between, None);
-        counts[1].take(BIAS_REPEATABILITY_TREND.evaluate_runs(&found).first(), 0.0, None);
-    }
-    counts
+    over_seeds(first, records, |seed| {
+        let found = repeated(&s, seed);
+        [(&BIAS_REPEATABILITY, between), (&BIAS_REPEATABILITY_TREND, 0.0)]
+            .map(|(m, truth)| Coverage::of(m.evaluate_runs(&found).first(), truth, None))
+    })
 }
 
 fn cases() -> Vec<Case> {

@@ -1,7 +1,7 @@
 //! Recordings whose noise and drivers are made by sums that share nothing with the analysis, with one effect of a size set
 //! into them.
 
-use crate::noise_source::{NoiseSource, add};
+use crate::bench::noise_source::{NoiseSource, add};
 use sagnac::effect::Column;
 use sagnac::series::{Faults, Series};
 use std::collections::BTreeMap;

@@ -160,7 +160,8 @@ fn explained(series: Series, claim: &Claim) -> Option<Explanation> {
     explain(series, claim, &Options::default(), &mut |_| {}).ok().map(|o| o.explanation)
 }
 
-fn loaded(place: Place) -> Claim {
+/// The claim of a place, as the program reads it.
+pub fn loaded(place: Place) -> Claim {
     let read = sagnac::config::model::parse("model.toml", claim(place).as_bytes());
     read.map(|m| m.claim).unwrap_or_else(|_| panic!("the claim cannot be read"))
 }

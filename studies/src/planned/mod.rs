@@ -22,7 +22,7 @@ pub static STUDY: Study = Study {
     records: 20,
     cases: || {
         let all = AMBIGUOUS.iter();
-        all.map(|a| Case::new(a.name, |records, seed| rows(a, records, seed))).collect()
+        all.map(|a| Case::new(&a.name, |records, seed| rows(a, records, seed))).collect()
     },
 };
 

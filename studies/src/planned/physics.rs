@@ -1,6 +1,8 @@
 //! What each explanation does to a gyro, written for this study; the library has models of its own.
 
-use crate::noise_source::NoiseSource;
+use crate::bench::EARTH;
+use crate::bench::noise_source::NoiseSource;
+use serde::Deserialize;
 
 /// What chamber and table do, sample by sample.
 pub struct Bench {
@@ -16,15 +18,14 @@ pub struct Bench {
     pub table_angle: Option<Vec<f64>>,
 }
 
-/// Rate of the Earth, deg/h.
-const EARTH_DEG_H: f64 = 15.041_067;
 /// deg/h in 1 deg/s.
 const PER_DEG_S: f64 = 3600.0;
 /// Steps of an integration within a sample.
 const WITHIN: usize = 20;
 
 /// What is true.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Deserialize)]
+#[serde(rename_all = "snake_case")]
 pub enum Truth {
     /// It happened once and is part of the bias.
     Settled,
@@ -120,7 +121,7 @@ impl Truth {
                 delayed(&t, time_s, bench.dt_s).iter().zip(&t).map(|(d, t)| coefficient * (d - t)).collect()
             }
             Truth::Turned { latitude_deg, azimuth_deg, step } => {
-                let horizontal = EARTH_DEG_H * latitude_deg.to_radians().cos();
+                let horizontal = EARTH * latitude_deg.to_radians().cos();
                 let by = turn_for(step, horizontal, azimuth_deg.to_radians());
                 let at =
                     |a: f64, by: f64| horizontal * (a.to_radians() + azimuth_deg.to_radians() + by).cos();

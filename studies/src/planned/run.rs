@@ -2,7 +2,8 @@
 
 use super::ambiguous::Ambiguous;
 use super::physics::{Bench, Truth};
-use crate::noise_source::NoiseSource;
+use crate::bench::EARTH;
+use crate::bench::noise_source::NoiseSource;
 use rayon::prelude::*;
 use sagnac::claim::Claim;
 use sagnac::config::{alternatives, model};
@@ -13,12 +14,12 @@ use sagnac::plan::{Limits, Plan, plan};
 use sagnac::schedule::Schedule;
 use sagnac::series::Series;
 
+/// N, B and K of the gyro, as every model claims them.
+const NOISE: [f64; 3] = [0.002, 0.001, 0.0005];
 /// Noise of the thermometer, °C.
 const THERMOMETER_DEGC: f64 = 0.005;
 /// deg/h in 1 deg/s.
 const PER_DEG_S: f64 = 3600.0;
-/// Rate of the Earth, deg/h.
-const EARTH_DEG_H: f64 = 15.041_067;
 
 /// A planned test carried out.
 pub struct Carried {
@@ -56,7 +57,7 @@ pub fn carried_out(ambiguous: &Ambiguous, records: u64, seed: u64) -> Option<Car
         let rivals: Vec<&str> = others.filter(|kind| Some(*kind) != expected).collect();
         let of = |record: u64| {
             let seed = 1_000_003 * seed + 10_007 * i as u64 + record;
-            let series = recorded(ambiguous, *truth, &planned.schedule, &claim, seed);
+            let series = recorded(*truth, &planned.schedule, &claim, seed);
             let outcome = explain(series, &claim, &Options::default(), &mut |_| {}).ok()?;
             Some(Said::new(&outcome.explanation, expected, &rivals))
         };
@@ -102,7 +103,7 @@ impl Said {
 }
 
 /// The recording of a schedule by a gyro with a truth.
-fn recorded(ambiguous: &Ambiguous, truth: Truth, schedule: &Schedule, claim: &Claim, seed: u64) -> Series {
+fn recorded(truth: Truth, schedule: &Schedule, claim: &Claim, seed: u64) -> Series {
     let dt_s = 1.0 / claim.sample_rate_hz;
     let samples = (schedule.duration_s() / dt_s).round() as usize;
     let mut noise = NoiseSource::new(seed);
@@ -116,7 +117,7 @@ fn recorded(ambiguous: &Ambiguous, truth: Truth, schedule: &Schedule, claim: &Cl
         }
     }
     let added = truth.adds(&bench, &mut noise);
-    let [n, b, k] = ambiguous.noise;
+    let [n, b, k] = NOISE;
     let white = noise.white(n, dt_s, samples);
     let flicker = noise.flicker(b, dt_s, samples);
     // A walk that is larger than claimed stands in the place of the claimed one.
@@ -154,7 +155,7 @@ fn expected(bench: &Bench, claim: &Claim) -> Vec<f64> {
             mean += PER_DEG_S * (1.0 + 1e-6 * claim.mean.scale_factor_ppm.unwrap_or(0.0)) * rate[i];
         }
         if let (Some(angle), Some(earth)) = (&bench.table_angle, claim.mean.earth) {
-            let horizontal = EARTH_DEG_H * earth.latitude_deg.to_radians().cos();
+            let horizontal = EARTH * earth.latitude_deg.to_radians().cos();
             mean += horizontal * (angle[i] + earth.azimuth_deg).to_radians().cos();
         }
         mean

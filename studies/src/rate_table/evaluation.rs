@@ -1,6 +1,6 @@
 //! Simulated tests on a table evaluated as a run does, without the acceptance around it.
 
-use super::bench::{Bench, Recorded};
+use crate::bench::rate_table::{RateTable, Recorded};
 use sagnac::rate_table::blocks::{Blocks, Collector};
 use sagnac::rate_table::{Setup, TableRun};
 use sagnac::recording::{Channel, ColumnRef, Role, SampleBlock, Sink};
@@ -12,19 +12,24 @@ pub fn run_of(channels: &[(Role, Vec<f64>)], dt: f64, setup: &Setup) -> TableRun
     TableRun::new(blocks_of(named, dt), setup)
 }
 
-/// Blocks of a recording of named channels at an interval in s.
-pub fn blocks_of(channels: Vec<(&str, Role, Vec<f64>)>, dt: f64) -> Blocks {
-    let list: Vec<Channel> = channels
+/// Channels by their ids, in the units of the analysis.
+pub fn channels(named: &[(&str, Role)]) -> Vec<Channel> {
+    named
         .iter()
-        .map(|(id, role, _)| Channel {
+        .map(|(id, role)| Channel {
             id: (*id).into(),
             column: ColumnRef::Name((*id).into()),
             role: *role,
             unit: role.internal_unit().and_then(|u| Unit::parse(u).ok()).expect("a unit"),
             scale: 1.0,
         })
-        .collect();
-    let values: Vec<Vec<f64>> = channels.into_iter().map(|c| c.2).collect();
+        .collect()
+}
+
+/// Blocks of a recording of named channels at an interval in s.
+pub fn blocks_of(recorded: Vec<(&str, Role, Vec<f64>)>, dt: f64) -> Blocks {
+    let list = channels(&recorded.iter().map(|(id, role, _)| (*id, *role)).collect::<Vec<_>>());
+    let values: Vec<Vec<f64>> = recorded.into_iter().map(|c| c.2).collect();
     let mut collector = Collector::new(&list, dt, None);
     collector.push(&SampleBlock {
         first_index: 0,
@@ -37,7 +42,7 @@ pub fn blocks_of(channels: Vec<(&str, Role, Vec<f64>)>, dt: f64) -> Blocks {
 }
 
 /// Steps of a recording of a bench, with the setup of the test.
-pub fn on_bench(bench: &Bench, recorded: &Recorded) -> (TableRun, Setup) {
+pub fn on_bench(bench: &RateTable, recorded: &Recorded) -> (TableRun, Setup) {
     let setup = Setup {
         settling_s: 4.0,
         minimum_step_s: 20.0,

@@ -1,8 +1,8 @@
 //! Scale factor and its errors on benches of several kinds.
 
-use super::bench::Bench;
 use super::evaluation::on_bench;
 use super::truths::{told, truths};
+use crate::bench::rate_table::RateTable;
 use crate::coverage::Coverage;
 use crate::study::{Asked, Case, Study};
 use rayon::prelude::*;
@@ -22,10 +22,10 @@ pub static STUDY: Study = Study {
 };
 
 /// Coverage over many simulated tests of every measurand that has a truth.
-pub fn study(bench: &Bench, runs: u64, first: u64) -> Vec<(&'static str, Coverage)> {
+pub fn study(bench: &RateTable, runs: u64, first: u64) -> Vec<(&'static str, Coverage)> {
     let mut counts: Vec<(&'static str, Coverage)> = vec![];
     let evaluated = |seed: u64| -> Vec<(&'static str, Estimate, f64, Option<f64>)> {
-        let bench = Bench { seed, ..bench.clone() };
+        let bench = RateTable { seed, ..bench.clone() };
         let recorded = bench.record();
         let (run, setup) = on_bench(&bench, &recorded);
         let found = scale_factor::evaluate(&run, 0, &setup, &table_extras(&|_| true)).expect("a line");
@@ -58,19 +58,19 @@ pub fn study(bench: &Bench, runs: u64, first: u64) -> Vec<(&'static str, Coverag
 }
 
 /// Benches of the study.
-fn benches() -> Vec<(&'static str, Bench)> {
-    let usual = Bench::default();
+fn benches() -> Vec<(&'static str, RateTable)> {
+    let usual = RateTable::default();
     vec![
         ("usual", usual.clone()),
-        ("drifting", Bench { k: 0.3, b: 0.05, ..usual.clone() }),
-        ("cycles differ", Bench { cycle_ppm: 5.0, ..usual.clone() }),
-        ("hysteresis", Bench { hysteresis_ppm: 3.0, ..usual.clone() }),
-        ("wobble", Bench { tilt: 0.02, dwell_s: 80.0, ..usual }),
+        ("drifting", RateTable { k: 0.3, b: 0.05, ..usual.clone() }),
+        ("cycles differ", RateTable { cycle_ppm: 5.0, ..usual.clone() }),
+        ("hysteresis", RateTable { hysteresis_ppm: 3.0, ..usual.clone() }),
+        ("wobble", RateTable { tilt: 0.02, dwell_s: 80.0, ..usual }),
     ]
 }
 
 fn cases() -> Vec<Case> {
-    let case = |(name, bench): (&'static str, Bench)| {
+    let case = |(name, bench): (&'static str, RateTable)| {
         Case::new(name, move |records, seed| {
             let counts = study(&bench, records, 1_000_000 + 100_000_000 * (seed - 1));
             counts.iter().flat_map(|(id, count)| count.rows(id, Asked::Nothing)).collect()

@@ -1,16 +1,12 @@
 //! Tests on a rate table that is made of geometry and mechanics.
 
-pub mod bench;
-mod drift;
 pub mod evaluation;
 pub mod intervals;
 pub mod positions;
 pub mod power;
-pub mod small;
 pub mod tilts;
 pub mod triads;
 pub mod truths;
-pub mod two_axes;
 pub mod zones;
 
 use crate::study::Study;

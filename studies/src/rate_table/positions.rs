@@ -1,12 +1,11 @@
 //! Scale factor error and bias of positions against the Earth's rotation.
 
-use super::bench::EARTH;
 use super::evaluation::blocks_of;
-use crate::chance::{Chance, Noise, noise};
-use crate::coverage::Coverage;
+use crate::bench::EARTH;
+use crate::bench::chance::{Chance, Noise, noise};
+use crate::coverage::{Coverage, over_seeds};
 use crate::study::{Asked, Case};
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 use sagnac::measurand::{KnownInputEvidence, SCALE_FACTOR_BIAS, SCALE_FACTOR_ERROR};
 use sagnac::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use sagnac::rate_table::known;
@@ -71,16 +70,13 @@ fn in_positions(model: Noise, seed: u64) -> [Coverage; 2] {
     let found = known::positions(&blocks, &list, &stretches, 0, &expected).expect("positions");
     let inputs: Vec<(f64, f64)> = positions.iter().map(|(h, e)| expected((*h, OFF.0), (*e, OFF.1))).collect();
     let [told_bias, told_factor] = told(model, &inputs, EACH_S as f64);
-    let mut counts = [Coverage::default(), Coverage::default()];
     let evidence = KnownInputEvidence { positions: &[found], turns: None };
     let error = &SCALE_FACTOR_ERROR.evaluate_known_input(&evidence)[0];
-    counts[0].take(Some(error), error_ppm, Some(1e6 * told_factor));
-    counts[1].take(
-        Some(&SCALE_FACTOR_BIAS.evaluate_known_input(&evidence)[0]),
-        bias + drift,
-        Some(told_bias),
-    );
-    counts
+    let offset = &SCALE_FACTOR_BIAS.evaluate_known_input(&evidence)[0];
+    [
+        Coverage::of(Some(error), error_ppm, Some(1e6 * told_factor)),
+        Coverage::of(Some(offset), bias + drift, Some(told_bias)),
+    ]
 }
 
 /// Standard uncertainties of bias and factor of a fit given the strengths of the noise. `inputs` have theirs.
@@ -100,20 +96,9 @@ fn told(model: Noise, inputs: &[(f64, f64)], each_s: f64) -> [f64; 2] {
     [of[(0, 0)].sqrt(), of[(1, 1)].sqrt()]
 }
 
-/// Adds the counts of many tests.
-pub(super) fn together(all: Vec<[Coverage; 2]>) -> [Coverage; 2] {
-    let mut sums = [Coverage::default(), Coverage::default()];
-    for counts in all {
-        for (sum, c) in sums.iter_mut().zip(counts) {
-            sum.add(c);
-        }
-    }
-    sums
-}
-
 /// Scale factor error and bias of many tests in positions.
 pub fn positions_study(model: Noise, runs: u64, first: u64) -> [Coverage; 2] {
-    together((first..first + runs).into_par_iter().map(|seed| in_positions(model, seed)).collect())
+    over_seeds(first, runs, |seed| in_positions(model, seed))
 }
 
 pub(super) fn cases() -> Vec<Case> {

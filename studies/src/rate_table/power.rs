@@ -1,6 +1,6 @@
 //! The power of tests that know more of a dead zone than the program does: no test has more.
 
-use super::small::SmallRates;
+use crate::bench::small_rates::SmallRates;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};

@@ -1,11 +1,10 @@
 //! Tilts of the input axis on a table of two axes.
 
-use super::bench::EARTH;
 use super::evaluation::run_of;
-use super::two_axes::TwoAxes;
-use crate::coverage::Coverage;
+use crate::bench::EARTH;
+use crate::bench::two_axes::TwoAxes;
+use crate::coverage::{Coverage, over_seeds};
 use crate::study::{Asked, Case, Study};
-use rayon::prelude::*;
 use sagnac::measurand::{MISALIGNMENT_X, MISALIGNMENT_Y, TableEvidence};
 use sagnac::rate_table::{Setup, alignment};
 use sagnac::recording::Role;
@@ -27,7 +26,7 @@ pub static STUDY: Study = Study {
 
 /// Both tilts over many tests, in mrad.
 pub fn tilts(runs: u64, first: u64) -> [Coverage; 2] {
-    let of = |seed: u64| {
+    over_seeds(first, runs, |seed| {
         let bench = TwoAxes { seed, ..TwoAxes::default() };
         let r = bench.record();
         let setup = Setup { settling_s: 4.0, minimum_step_s: 15.0, ..Setup::default() };
@@ -43,13 +42,6 @@ pub fn tilts(runs: u64, first: u64) -> [Coverage; 2] {
         let gain = 1e3 * (1.0 + 1e-6 * bench.error_ppm);
         let evidence = TableEvidence { alignment, ..TableEvidence::new(0, "rate", &setup, &run.steps) };
         [(&MISALIGNMENT_X, bench.tilt.0), (&MISALIGNMENT_Y, bench.tilt.1)]
-            .map(|(m, tilt)| (m.evaluate_steps(&evidence).into_iter().next(), gain * tilt))
-    };
-    let mut counts = [Coverage::default(), Coverage::default()];
-    for test in (first..first + runs).into_par_iter().map(of).collect::<Vec<_>>() {
-        for (count, (row, truth)) in counts.iter_mut().zip(test) {
-            count.take(row.as_ref(), truth, None);
-        }
-    }
-    counts
+            .map(|(m, tilt)| Coverage::of(m.evaluate_steps(&evidence).first(), gain * tilt, None))
+    })
 }

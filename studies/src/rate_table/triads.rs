@@ -1,12 +1,10 @@
 //! Scale factors and cross-axis terms of a triad that is turned by known angles.
 
-use super::bench::EARTH;
 use super::evaluation::blocks_of;
-use super::positions::together;
-use crate::chance::{Chance, Noise, noise};
-use crate::coverage::Coverage;
+use crate::bench::EARTH;
+use crate::bench::chance::{Chance, Noise, noise};
+use crate::coverage::{Coverage, over_seeds};
 use crate::study::{Asked, Case};
-use rayon::prelude::*;
 use sagnac::measurand::{CROSS_AXIS, KnownInputEvidence, SCALE_FACTOR};
 use sagnac::rate_table::setup::{Input, ReferenceInput};
 use sagnac::rate_table::{known, turns};
@@ -105,7 +103,7 @@ fn of_triad(triad: &Triad, seed: u64) -> [Coverage; 2] {
 
 /// Scale factors and cross-axis terms of many tests.
 pub fn triads(triad: &Triad, runs: u64, first: u64) -> [Coverage; 2] {
-    together((first..first + runs).into_par_iter().map(|seed| of_triad(triad, seed)).collect())
+    over_seeds(first, runs, |seed| of_triad(triad, seed))
 }
 
 /// White noise of a triad.

@@ -1,6 +1,7 @@
 //! The truths of a bench, and a fit that knows its noise.
 
-use super::bench::{Bench, EARTH, Recorded};
+use crate::bench::EARTH;
+use crate::bench::rate_table::{RateTable, Recorded};
 use nalgebra::{DMatrix, DVector};
 use sagnac::rate_table::design::Extra;
 use sagnac::rate_table::noise::Rows;
@@ -9,7 +10,7 @@ use std::collections::BTreeMap;
 
 /// Truths of a bench at the rates of a run, from its own formulas.
 pub fn truths(
-    bench: &Bench,
+    bench: &RateTable,
     recorded: &Recorded,
     found: &scale_factor::ScaleFactor,
 ) -> Vec<(&'static str, f64)> {
@@ -60,7 +61,11 @@ pub fn truths(
 }
 
 /// Standard deviations of a least-squares fit that knows the noise, for what is linear in the response.
-pub fn told(bench: &Bench, run: &TableRun, found: &scale_factor::ScaleFactor) -> BTreeMap<&'static str, f64> {
+pub fn told(
+    bench: &RateTable,
+    run: &TableRun,
+    found: &scale_factor::ScaleFactor,
+) -> BTreeMap<&'static str, f64> {
     let r = &found.response;
     let parts: Vec<_> = run
         .steps

@@ -2,10 +2,9 @@
 
 use super::evaluation::run_of;
 use super::power::{power_told, power_told_but_the_centre};
-use super::small::SmallRates;
-use crate::coverage::Coverage;
+use crate::bench::small_rates::SmallRates;
+use crate::coverage::{Coverage, over_seeds};
 use crate::study::{Asked, Case, Row, Study};
-use rayon::prelude::*;
 use sagnac::estimate::Estimate;
 use sagnac::measurand::{DEAD_ZONE, DEAD_ZONE_NOISE, Measurand, THRESHOLD, TableEvidence};
 use sagnac::rate_table::dead_zone::{self, DeadZone};
@@ -75,20 +74,18 @@ fn found(bench: &SmallRates, known: Option<f64>) -> Tested {
 /// Half width, noise inside the loop and threshold of many tests; `known` is the relative standard uncertainty of a known
 /// scale factor.
 pub fn counted(bench: &SmallRates, known: Option<f64>, runs: u64, first: u64) -> [Coverage; 3] {
-    let mut counts = [Coverage::default(), Coverage::default(), Coverage::default()];
     let threshold = threshold_of(bench);
-    let of = |seed: u64| {
+    over_seeds(first, runs, |seed| {
         let zone = found(&SmallRates { seed, ..bench.clone() }, known);
-        [&DEAD_ZONE, &DEAD_ZONE_NOISE, &THRESHOLD].map(|m| zone.estimate(m))
-    };
-    for [width, noise, half] in (first..first + runs).into_par_iter().map(of).collect::<Vec<_>>() {
-        counts[0].take(Some(&width), bench.half_width, None);
-        if width.value.is_some() {
-            counts[1].take(Some(&noise), bench.loop_noise, None);
-        }
-        counts[2].take(Some(&half), threshold, None);
-    }
-    counts
+        let [width, noise, half] = [&DEAD_ZONE, &DEAD_ZONE_NOISE, &THRESHOLD].map(|m| zone.estimate(m));
+        // Without a zone there is no noise in one.
+        let of_noise = width.value.map(|_| Coverage::of(Some(&noise), bench.loop_noise, None));
+        [
+            Coverage::of(Some(&width), bench.half_width, None),
+            of_noise.unwrap_or_default(),
+            Coverage::of(Some(&half), threshold, None),
+        ]
+    })
 }
 
 /// The input of which half comes through, by quadrature over the noise.

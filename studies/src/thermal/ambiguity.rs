@@ -1,9 +1,9 @@
 //! Units without Shupe effect, lag or hysteresis, and effects over a narrow range: what lag and rate of temperature leave
 //! open.
 
-use super::chamber::{Leg, Unit, programme, record};
 use super::evaluation::{found, over_temperature, unit};
-use crate::chance::{Chance, Noise};
+use crate::bench::chamber::{Leg, Unit, programme, record};
+use crate::bench::chance::{Chance, Noise};
 use crate::coverage::Coverage;
 use crate::study::{Asked, Case, Row};
 use rayon::prelude::*;

@@ -1,7 +1,7 @@
 //! Simulated tests evaluated as a run does, without the acceptance around it, and a unit at random.
 
-use super::chamber::{Recorded, Unit};
-use crate::chance::{Chance, Noise};
+use crate::bench::chamber::{Recorded, Unit};
+use crate::bench::chance::{Chance, Noise};
 use sagnac::estimate::Estimate;
 use sagnac::measurand::{TURN_ON_TRANSIENT, WARM_UP_TIME, find};
 use sagnac::temperature::TemperatureTest;

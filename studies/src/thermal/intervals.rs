@@ -1,8 +1,8 @@
 //! Intervals of what a temperature test measures, at one and two rates, with and without dwells.
 
-use super::chamber::{Leg, Unit, programme, record};
 use super::evaluation::{found, over_temperature, unit};
-use crate::chance::Chance;
+use crate::bench::chamber::{Leg, Unit, programme, record};
+use crate::bench::chance::Chance;
 use crate::coverage::Coverage;
 use crate::study::{Asked, Case, Row};
 use rayon::prelude::*;

@@ -1,10 +1,8 @@
 //! Temperature and warm-up tests of a simulated unit in a chamber.
 
 pub mod ambiguity;
-pub mod chamber;
 pub mod evaluation;
 pub mod intervals;
-pub mod slow_noise;
 pub mod warm_up;
 
 use crate::study::Study;
@@ -30,14 +28,4 @@ pub static AMBIGUITY: Study = Study {
              of the tests, both sides together.",
     records: 200,
     cases: ambiguity::cases,
-};
-
-/// Sensitivity at one rate, by fits that know all but the slow noise.
-pub static SLOW_NOISE: Study = Study {
-    id: "temperature-slow-noise",
-    title: "Sensitivity at one rate of temperature, by what is known of the slow noise",
-    method: "One cycle at 20 °C/h with dwells, whose single period of temperature hardly tells the random walk. Fits that know lag, \
-             play, order and N, and of B and K only a range or a density, beside the program, which knows nothing.",
-    records: 30,
-    cases: slow_noise::cases,
 };

@@ -1,9 +1,9 @@
 //! Warm-ups: their time and transient, and units that drift on when the record ends.
 
-use super::chamber::warm_up as switched_on;
 use super::evaluation::warm_up_rows;
-use crate::chance::{Chance, Noise};
-use crate::coverage::Coverage;
+use crate::bench::chamber::warm_up as switched_on;
+use crate::bench::chance::{Chance, Noise};
+use crate::coverage::{Coverage, over_seeds};
 use crate::study::{Asked, Case, Row, Study};
 use rayon::prelude::*;
 use sagnac::temperature::start::Start;
@@ -98,14 +98,12 @@ fn cases() -> Vec<Case> {
 }
 
 fn two_decays(records: u64, first: u64) -> Vec<Row> {
-    let (mut time, mut transient) = (Coverage::default(), Coverage::default());
-    let all: Vec<_> = (first..first + records).into_par_iter().filter_map(warm_up_of).collect();
-    for warm_up in all {
+    let [time, transient] = over_seeds(first, records, |seed| {
+        let Some(warm_up) = warm_up_of(seed) else { return Default::default() };
         let rows = warm_up_rows(&warm_up.found);
-        let row = |id: &str| rows.iter().find(|e| e.id == id);
-        time.take(row("warm_up_time"), warm_up.time_s, None);
-        transient.take(row("turn_on_transient"), warm_up.transient_deg_h, None);
-    }
+        let truths = [("warm_up_time", warm_up.time_s), ("turn_on_transient", warm_up.transient_deg_h)];
+        truths.map(|(id, truth)| Coverage::of(rows.iter().find(|e| e.id == id), truth, None))
+    });
     [time.rows("warm_up_time", Asked::Nothing), transient.rows("turn_on_transient", Asked::Nothing)].concat()
 }
 

@@ -3,7 +3,7 @@
 use crate::datasheet::{bound, notes, quantity, sheet};
 use crate::support::schema::{closed, validate};
 use crate::support::{root, sagnac};
-use sagnac_studies::noise_source::{NoiseSource, add, csv};
+use sagnac_studies::bench::noise_source::{NoiseSource, add, csv};
 use serde_json::Value;
 use std::fs;
 use tempfile::tempdir;

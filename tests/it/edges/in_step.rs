@@ -1,10 +1,12 @@
 //! A temperature that goes with the voltage: no verdict may come of it.
 
-use sagnac_studies::edges::influence::temperature_in_step;
+use sagnac_studies::edges::FAMILIES;
 
 #[test]
 fn a_temperature_in_step_with_the_level_leaves_no_verdict() {
-    let simulated = temperature_in_step(5);
+    let mut cases = FAMILIES.iter().flat_map(|f| &f.cases);
+    let case = cases.find(|c| c.name == "supply without effect, temperature in step with it").unwrap();
+    let simulated = (case.draw)(5);
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("r.csv"), &simulated.csv).unwrap();
     let limit = "[[limit]]\nmeasurand = \"supply_sensitivity\"\nmax_abs = \"0.1 deg/h/V\"\n";

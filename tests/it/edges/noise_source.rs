@@ -1,6 +1,6 @@
 //! The noise that edges are simulated with, against closed forms.
 
-use sagnac_studies::noise_source::NoiseSource;
+use sagnac_studies::bench::noise_source::NoiseSource;
 
 /// Mean square of the difference of neighbouring means of `m` samples, halved: the Allan variance.
 fn allan_variance(x: &[f64], m: usize) -> f64 {

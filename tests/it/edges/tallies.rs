@@ -1,6 +1,6 @@
 //! What the tallies of edges call wrong.
 
-use sagnac_studies::edges::case::{Standing, Truth};
+use sagnac_studies::edges::case::{LimitKey, Standing, Truth};
 use sagnac_studies::edges::tally::Tally;
 use sagnac_studies::study;
 
@@ -44,9 +44,10 @@ fn a_long_study_is_held_to_what_is_asked() {
 
 #[test]
 fn a_truth_stands_where_its_limit_puts_it() {
-    assert_eq!(Truth::new("x", -2.0).max_abs(2.0).standing(), Standing::AtLimit);
-    assert_eq!(Truth::new("x", -2.0).max_abs(2.1).standing(), Standing::Good);
-    assert_eq!(Truth::new("x", 1.0).min(2.0).standing(), Standing::Bad);
+    let standing = |value, key, limit| Truth::new("x", value).limited(key, limit).standing();
+    assert_eq!(standing(-2.0, LimitKey::MaxAbs, 2.0), Standing::AtLimit);
+    assert_eq!(standing(-2.0, LimitKey::MaxAbs, 2.1), Standing::Good);
+    assert_eq!(standing(1.0, LimitKey::Min, 2.0), Standing::Bad);
     assert_eq!(Truth::new("x", 1.0).oracle(0.1).on("y").standing(), Standing::Unlimited);
-    assert_eq!(Truth::new("x", 1.0).max(0.5).standing(), Standing::Bad);
+    assert_eq!(standing(1.0, LimitKey::Max, 0.5), Standing::Bad);
 }

@@ -5,8 +5,8 @@
 
 mod study;
 
-use sagnac_studies::influence::generator::{Recorded, Series, Turns, linear, squared};
-use sagnac_studies::influence::presets::{FIELD, NOISE, SUPPLY, series, shaken, turns};
+use sagnac_studies::bench::influence::{FIELD, NOISE, SUPPLY, series, shaken, turns};
+use sagnac_studies::bench::influence::{Recorded, Series, Turns, linear, squared};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::PathBuf;

@@ -2,7 +2,7 @@
 //! noise at rest, clipped values are reported.
 
 use crate::support::{result, sagnac};
-use sagnac_studies::noise_source::{NoiseSource, add, csv};
+use sagnac_studies::bench::noise_source::{NoiseSource, add, csv};
 use serde_json::Value;
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Tests on a rate table against a table made of geometry (`sagnac_studies::rate_table::bench`), which imports nothing of the
+//! Tests on a rate table against a table made of geometry (`sagnac_studies::bench::rate_table`), which imports nothing of the
 //! program. The studies are `cargo xtask validate scale-factor misalignment`.
 
 mod motion;
@@ -9,11 +9,11 @@ mod thermometer;
 mod unshown;
 mod zones;
 
-use sagnac_studies::rate_table::bench::Bench;
+use sagnac_studies::bench::rate_table::RateTable;
+use sagnac_studies::bench::small_rates::SmallRates;
+use sagnac_studies::bench::two_axes::TwoAxes;
 use sagnac_studies::rate_table::intervals::study;
-use sagnac_studies::rate_table::small::SmallRates;
 use sagnac_studies::rate_table::tilts::tilts;
-use sagnac_studies::rate_table::two_axes::TwoAxes;
 use std::path::PathBuf;
 
 /// Size of a count of the samples, arcsec.
@@ -23,13 +23,13 @@ fn root(path: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-fn pass() -> Bench {
-    Bench { count_arcsec: COUNT, seed: 41, ..Bench::default() }
+fn pass() -> RateTable {
+    RateTable { count_arcsec: COUNT, seed: 41, ..RateTable::default() }
 }
 
 /// A unit whose nonlinearity is twice what is allowed, and whose scale factor drifts with temperature.
-fn fail() -> Bench {
-    Bench { cubic_ppm: 180.0, ppm_per_c: 140.0, seed: 43, ..pass() }
+fn fail() -> RateTable {
+    RateTable { cubic_ppm: 180.0, ppm_per_c: 140.0, seed: 43, ..pass() }
 }
 
 fn zone() -> SmallRates {
@@ -122,7 +122,7 @@ fn write_the_samples() {
 #[test]
 fn intervals_hold_the_truth() {
     let runs = 24;
-    for (id, count) in study(&Bench::default(), runs, 9_000) {
+    for (id, count) in study(&RateTable::default(), runs, 9_000) {
         // 24 tests at 95 %: fewer than 19 hold once in 1500 studies.
         assert!(count.held >= 19, "{id}: {} of {runs}", count.held);
         if count.errors.len() > 12 {

@@ -2,12 +2,12 @@
 
 use super::runs::run;
 use super::{COUNT, pass, root};
-use sagnac_studies::rate_table::bench::Bench;
+use sagnac_studies::bench::rate_table::RateTable;
 use serde_json::Value;
 
 /// The sample of a good unit with its rows changed: time, counts, rate of the table, angle of the table, temperature.
 fn changed(change: impl Fn(&mut Vec<f64>)) -> Value {
-    let bench: Bench = pass();
+    let bench: RateTable = pass();
     let text = bench.record().csv(COUNT, 0.1);
     let mut out = String::new();
     for (i, line) in text.lines().enumerate() {

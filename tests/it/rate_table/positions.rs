@@ -1,7 +1,7 @@
 //! Positions against the Earth's rotation and turns of a triad by known angles: whether their intervals hold what went in.
 //! The study is `cargo xtask validate positions-and-turns`.
 
-use sagnac_studies::chance::Noise;
+use sagnac_studies::bench::chance::Noise;
 use sagnac_studies::rate_table::positions::{KINDS, positions_study};
 use sagnac_studies::rate_table::triads::{LOUD, Triad, triads};
 

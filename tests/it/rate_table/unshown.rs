@@ -2,7 +2,7 @@
 
 use super::runs::run;
 use super::{root, tilted, two_axes_csv};
-use sagnac_studies::rate_table::two_axes::TwoAxes;
+use sagnac_studies::bench::two_axes::TwoAxes;
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;

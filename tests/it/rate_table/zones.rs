@@ -2,8 +2,8 @@
 //! `cargo xtask validate dead-zones rounded-dead-zones`.
 
 use crate::support::long;
+use sagnac_studies::bench::small_rates::SmallRates;
 use sagnac_studies::rate_table::power::power_told;
-use sagnac_studies::rate_table::small::SmallRates;
 use sagnac_studies::rate_table::zones::{counted, rounded, zones};
 
 #[test]

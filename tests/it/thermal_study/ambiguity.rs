@@ -1,8 +1,8 @@
 //! Units without Shupe effect, lag or hysteresis: what lag and rate of temperature leave open.
 
 use crate::support::long;
+use sagnac_studies::bench::chamber::programme;
 use sagnac_studies::thermal::ambiguity::{plain, tally};
-use sagnac_studies::thermal::chamber::programme;
 
 #[test]
 fn a_unit_with_nothing_but_a_curve_over_temperature_is_not_told_a_shupe_effect() {

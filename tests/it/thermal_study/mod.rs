@@ -2,7 +2,7 @@
 //! mistakes by their names.
 //!
 //! Short studies run here; the long ones are `cargo xtask validate temperature-intervals temperature-single-effects
-//! temperature-slow-noise warm-up-intervals`.
+//! warm-up-intervals`.
 
 mod ambiguity;
 mod mistaken;
@@ -10,8 +10,8 @@ mod samples;
 mod settling;
 
 use sagnac::estimate::Estimate;
-use sagnac_studies::chance::Chance;
-use sagnac_studies::thermal::chamber::{Leg, programme, record};
+use sagnac_studies::bench::chamber::{Leg, programme, record};
+use sagnac_studies::bench::chance::Chance;
 use sagnac_studies::thermal::evaluation::{found, over_temperature, unit, warm_up_rows};
 use sagnac_studies::thermal::intervals::{IDS, study};
 use sagnac_studies::thermal::warm_up::{WarmUp, warm_up_of};

@@ -3,8 +3,8 @@
 //! `cargo test --test it thermal_study samples -- --ignored` writes them anew.
 
 use assert_cmd::Command;
-use sagnac_studies::chance::Noise;
-use sagnac_studies::thermal::chamber::{Leg, Unit, programme, record, warm_up};
+use sagnac_studies::bench::chamber::{Leg, Unit, programme, record, warm_up};
+use sagnac_studies::bench::chance::Noise;
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 

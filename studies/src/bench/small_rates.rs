@@ -1,7 +1,8 @@
 //! A gyro at small rates, with or without a dead zone.
 
-use super::bench::{ARCSEC_PER_TURN, EARTH, Recorded};
+use super::EARTH;
 use super::drift::{Drift, normal};
+use super::rate_table::{ARCSEC_PER_TURN, Recorded};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
 

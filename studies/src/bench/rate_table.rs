@@ -1,17 +1,15 @@
 //! A rate table and a gyro on it as geometry and mechanics. Imports nothing of the program under test.
 
+use super::EARTH;
 use super::drift::{Drift, normal};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
-
-/// Rotation of the Earth, deg/h (7.292115e-5 rad/s).
-pub const EARTH: f64 = 15.041_067;
 
 pub(super) const ARCSEC_PER_TURN: f64 = 1_296_000.0;
 
 /// A gyro on a table about the vertical.
 #[derive(Debug, Clone)]
-pub struct Bench {
+pub struct RateTable {
     /// Deviation of the scale factor from nominal, ppm, at `reference_c`.
     pub error_ppm: f64,
     /// Change with temperature, ppm/degC.
@@ -62,14 +60,14 @@ pub struct Bench {
     pub seed: u64,
 }
 
-impl Default for Bench {
-    fn default() -> Bench {
+impl Default for RateTable {
+    fn default() -> RateTable {
         let up = [0.0, 1.0, 5.0, 10.0, 50.0, 100.0];
         let mut rates: Vec<f64> = up.to_vec();
         rates.extend(up.iter().rev().skip(1));
         rates.extend(up.iter().skip(1).map(|r| -r));
         rates.extend(up.iter().rev().skip(1).take(4).map(|r| -r));
-        Bench {
+        RateTable {
             error_ppm: 40.0,
             ppm_per_c: 12.0,
             reference_c: 25.0,
@@ -119,7 +117,7 @@ pub struct Recorded {
     pub cycles_ppm: Vec<f64>,
 }
 
-impl Bench {
+impl RateTable {
     /// Largest rate, deg/h.
     pub fn full_scale(&self) -> f64 {
         self.rates.iter().fold(0.0, |m: f64, r| m.max(r.abs())) * 3600.0
@@ -132,7 +130,6 @@ impl Bench {
         1e-6 * full * (self.cubic_ppm * x.powi(3) + self.even_ppm * x * x)
     }
 
-    /// The recording.
     /// The recording.
     pub fn record(&self) -> Recorded {
         let mut rng = Xoshiro256PlusPlus::seed_from_u64(self.seed);

@@ -1,7 +1,7 @@
 //! A gyro in a thermal chamber, from physics alone: chamber, housing and coil as differential equations, the play as a
 //! body that is pushed, noise as sums of processes. Uses nothing of the program under test.
 
-use crate::chance::{Chance, Noise, noise};
+use super::chance::{Chance, Noise, noise};
 
 /// A leg of the chamber's programme.
 #[derive(Clone, Copy, Debug)]

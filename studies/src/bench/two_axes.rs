@@ -1,6 +1,6 @@
 //! A gyro on a table of two axes as geometry. Imports nothing of the program under test.
 
-use super::bench::EARTH;
+use super::EARTH;
 use super::drift::normal;
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;

@@ -1,0 +1,15 @@
+//! Units and what they are tested on, from physics alone: nothing here uses the program under test.
+//!
+//! The shipped samples come from these generators, so what they draw, and in which order, stays as it is.
+
+pub mod chamber;
+pub mod chance;
+mod drift;
+pub mod influence;
+pub mod noise_source;
+pub mod rate_table;
+pub mod small_rates;
+pub mod two_axes;
+
+/// Rotation of the Earth, deg/h (7.292115e-5 rad/s).
+pub const EARTH: f64 = 15.041_067;
