@@ -1,64 +1,64 @@
 //! Runs studies and writes `docs/validation/`; started by `cargo xtask validate`.
 
+use clap::Parser;
+use sagnac_studies::laboratory::command::Command;
 use sagnac_studies::results::{CaseResult, Results, code_commit};
 use sagnac_studies::study::Study;
-use sagnac_studies::{STUDIES, index, laboratory, pages};
+use sagnac_studies::{STUDIES, index, pages};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-const USAGE: &str = "usage: cargo xtask validate [STUDY]... [--records N] [--seed N] [--out DIR] [--list] [--index]
-
-Runs Monte Carlo studies and writes their pages in docs/validation/, generated.md with all of one build, and the misses of
-all pages into README.md there. Pages kept by hand are never overwritten. Without a name: all studies.
-A study that was interrupted goes on after its last finished case, as long as the code is the same.
---records  records of each case (default: that of the study)
---seed     first seed (default: 1)
---out      folder for the pages (default: docs/validation/); the misses in README.md stay as they are
---list     names the studies
---index    runs nothing; writes the misses of all pages into README.md
-Cases of the laboratory as folders: laboratory-write, laboratory-seal, laboratory-explain, laboratory-score (run without arguments for help)
-";
-
+/// Runs Monte Carlo studies and writes their pages in docs/validation/, generated.md with all of one build, and the misses
+/// of all pages into README.md there. Pages kept by hand are never overwritten. A study that was interrupted goes on after
+/// its last finished case, as long as the code is the same.
+#[derive(Parser)]
+#[command(name = "cargo xtask validate", args_conflicts_with_subcommands = true)]
 struct Options {
+    /// Cases of the laboratory as folders.
+    #[command(subcommand)]
+    laboratory: Option<Command>,
+    /// Studies; without a name all.
+    #[arg(value_name = "STUDY", value_parser = study)]
     studies: Vec<&'static Study>,
+    /// Records of each case instead of those of the study.
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     records: Option<u64>,
+    /// First seed.
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    /// Folder for the pages instead of `docs/validation/`.
+    /// Folder for the pages instead of docs/validation/; the misses in README.md stay as they are.
+    #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
+    /// Names the studies.
+    #[arg(long)]
+    list: bool,
+    /// Runs nothing; writes the misses of all pages into README.md.
+    #[arg(long)]
+    index: bool,
+}
+
+fn study(id: &str) -> Result<&'static Study, String> {
+    STUDIES.iter().copied().find(|s| s.id == id).ok_or_else(|| format!("no study is named {id}"))
 }
 
 fn main() -> ExitCode {
-    let arguments: Vec<String> = std::env::args().skip(1).collect();
-    if arguments.iter().any(|a| a == "--help" || a == "-h") {
-        print!("{USAGE}");
-        return ExitCode::SUCCESS;
+    let mut options = Options::parse();
+    if let Some(command) = &options.laboratory {
+        return exit_code(command.run().map_err(io::Error::other));
     }
-    if arguments.iter().any(|a| a == "--list") {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("docs").join("validation");
+    if options.list {
         STUDIES.iter().for_each(|s| println!("{:<20} {}", s.id, s.title));
         return ExitCode::SUCCESS;
     }
-    if let Some(done) = laboratory::command::run(&arguments) {
-        return match done {
-            Ok(()) => ExitCode::SUCCESS,
-            Err(message) => {
-                eprintln!("{message}");
-                ExitCode::from(2)
-            }
-        };
-    }
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).with_file_name("docs").join("validation");
-    if arguments.iter().any(|a| a == "--index") {
+    if options.index {
         return exit_code(index::update(&folder));
     }
-    let options = match parse(&arguments) {
-        Ok(options) => options,
-        Err(message) => {
-            eprint!("{message}\n{USAGE}");
-            return ExitCode::from(2);
-        }
-    };
+    if options.studies.is_empty() {
+        options.studies = STUDIES.to_vec();
+    }
     exit_code(validate(&options, &folder))
 }
 
@@ -66,39 +66,10 @@ fn exit_code(done: io::Result<()>) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            eprintln!("failed to validate: {error}");
+            eprintln!("{error}");
             ExitCode::FAILURE
         }
     }
-}
-
-fn parse(arguments: &[String]) -> Result<Options, String> {
-    let mut options = Options { studies: vec![], records: None, seed: 1, out: None };
-    let mut rest = arguments.iter();
-    while let Some(argument) = rest.next() {
-        if argument == "--out" {
-            let folder = rest.next().ok_or("--out lacks a folder")?;
-            options.out = Some(PathBuf::from(folder));
-            continue;
-        }
-        let mut number = || {
-            let text = rest.next().ok_or_else(|| format!("{argument} lacks a number"))?;
-            text.parse::<u64>().map_err(|_| format!("{argument} {text}: not a number"))
-        };
-        match argument.as_str() {
-            "--records" => options.records = Some(number()?.max(1)),
-            "--seed" => options.seed = number()?,
-            id => {
-                let study =
-                    STUDIES.iter().find(|s| s.id == id).ok_or_else(|| format!("no study is named {id}"))?;
-                options.studies.push(*study);
-            }
-        }
-    }
-    if options.studies.is_empty() {
-        options.studies = STUDIES.to_vec();
-    }
-    Ok(options)
 }
 
 fn validate(options: &Options, pages: &Path) -> io::Result<()> {
@@ -162,4 +133,25 @@ fn write_summary(folder: &Path, commit: &str) -> io::Result<()> {
         all.extend(Results::read(&folder.join(format!("{}.json", study.id)))?);
     }
     write_page(&folder.join("generated.md"), &pages::summary(STUDIES, &all, commit))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use clap::CommandFactory;
+
+    #[test]
+    fn a_study_and_a_command_of_the_laboratory_are_told_apart() {
+        Options::command().debug_assert();
+        let asked = |line: &str| Options::try_parse_from(line.split(' '));
+        let study = asked("validate laboratory --records 2").unwrap();
+        assert!(
+            study.laboratory.is_none() && study.studies[0].id == "laboratory" && study.records == Some(2)
+        );
+        let write = asked("validate laboratory-write cases --half held-out --count 2 --seed 4711").unwrap();
+        assert!(matches!(write.laboratory, Some(Command::LaboratoryWrite(_))) && write.studies.is_empty());
+        for wrong in ["validate nothing", "validate lines --records 0", "validate laboratory-seal cases"] {
+            assert!(asked(wrong).is_err(), "{wrong}");
+        }
+    }
 }

@@ -9,115 +9,104 @@ use super::score::Score;
 use super::seal::{opened, seal};
 use super::tally;
 use super::truth::{Family, Half, Strength};
+use clap::{Args, Subcommand};
 use rayon::prelude::*;
 use std::io;
 use std::path::{Path, PathBuf};
 
-/// Help of the commands.
-pub const USAGE: &str =
-    "usage: sagnac-studies laboratory-write DIR [--half HALF] [--family NAME] [--subject NAME] \
-[--strength NAME] [--count N] [--seed N]
-       sagnac-studies laboratory-seal DIR --keys DIR
-       sagnac-studies laboratory-explain DIR [--again]
-       sagnac-studies laboratory-score DIR [--keys DIR] [--wrong]
+/// A command on a folder of cases.
+#[derive(Subcommand)]
+pub enum Command {
+    /// Writes cases, each as a folder with recording.csv, model.toml and truth.json.
+    LaboratoryWrite(Asked),
+    /// Moves every truth.json into a folder of keys and writes their hashes into DIR/SEAL.
+    LaboratorySeal {
+        /// Folder of the cases.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Folder for the keys.
+        #[arg(long, value_name = "DIR")]
+        keys: PathBuf,
+    },
+    /// Explains every folder that has no explain.json yet, through the library.
+    LaboratoryExplain {
+        /// Folder of the cases.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Explains with augmented.toml once more.
+        #[arg(long)]
+        again: bool,
+    },
+    /// Scores the answers in the folders: explain.json, correction.csv, again.txt.
+    LaboratoryScore {
+        /// Folder of the cases.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
+        /// Folder of the keys of sealed cases.
+        #[arg(long, value_name = "DIR")]
+        keys: Option<PathBuf>,
+        /// Lists the cases that are not named right.
+        #[arg(long)]
+        wrong: bool,
+    },
+}
 
-laboratory-write    writes cases, each as a folder with recording.csv, model.toml and truth.json
-  --half      development (default) or held-out; the latter is looked at only to report
-  --family    temperature, driver, unrecorded, table, event, noise, several, unknown or null (default: all)
-  --subject   one subject (default: all of the family)
-  --strength  clear or middling (default: both)
-  --count     cases of each subject and strength (default: 1)
-  --seed      first seed (default: 1)
-laboratory-seal     moves every truth.json into a folder of keys and writes their hashes into DIR/SEAL
-laboratory-explain  explains every folder that has no explain.json yet, through the library
-  --again     explains with augmented.toml once more
-laboratory-score    scores the answers in the folders: explain.json, correction.csv, again.txt
-  --keys      the folder of keys of sealed cases
-  --wrong     lists the cases that are not named right
-";
-
-/// What was asked for on the command line.
-#[derive(Debug, Clone)]
-struct Asked {
+/// Cases that are written.
+#[derive(Args)]
+pub struct Asked {
+    /// Folder for the cases.
+    #[arg(value_name = "DIR")]
     folder: PathBuf,
+    /// Held-out cases are looked at only to report.
+    #[arg(long, value_enum, default_value_t = Half::Development)]
     half: Half,
-    families: Vec<Family>,
+    /// One family instead of all.
+    #[arg(long, value_enum)]
+    family: Option<Family>,
+    /// One subject instead of all of the family.
+    #[arg(long, value_name = "NAME")]
     subject: Option<String>,
-    strengths: Vec<Strength>,
+    /// One strength instead of both.
+    #[arg(long, value_enum)]
+    strength: Option<Strength>,
+    /// Cases of each subject and strength.
+    #[arg(long, value_name = "N", default_value_t = 1)]
     count: u64,
+    /// First seed.
+    #[arg(long, value_name = "N", default_value_t = 1)]
     seed: u64,
-    keys: Option<PathBuf>,
-    flag: bool,
 }
 
-/// Runs one of the commands. `None` if the name is none of them.
-///
-/// # Errors
-/// A message for the user.
-pub fn run(arguments: &[String]) -> Option<Result<(), String>> {
-    let (name, rest) = arguments.split_first()?;
-    let command: fn(&Asked) -> Result<(), String> = match name.as_str() {
-        "laboratory-write" => write,
-        "laboratory-seal" => sealed,
-        "laboratory-explain" => explain,
-        "laboratory-score" => score,
-        _ => return None,
-    };
-    Some(parse(rest).map_err(|message| format!("{message}\n{USAGE}")).and_then(|asked| command(&asked)))
-}
-
-fn parse(arguments: &[String]) -> Result<Asked, String> {
-    let mut asked = Asked {
-        folder: PathBuf::new(),
-        half: Half::Development,
-        families: Family::ALL.to_vec(),
-        subject: None,
-        strengths: Strength::ALL.to_vec(),
-        count: 1,
-        seed: 1,
-        keys: None,
-        flag: false,
-    };
-    let mut rest = arguments.iter();
-    while let Some(argument) = rest.next() {
-        let mut value = || rest.next().ok_or_else(|| format!("{argument} lacks its value"));
-        let number = |text: &String| text.parse::<u64>().map_err(|_| format!("{text}: not a number"));
-        match argument.as_str() {
-            "--half" => asked.half = one(&Half::ALL, |h| h.name(), value()?)?,
-            "--family" => asked.families = vec![one(&Family::ALL, |f| f.name(), value()?)?],
-            "--strength" => asked.strengths = vec![one(&Strength::ALL, |s| s.name(), value()?)?],
-            "--subject" => asked.subject = Some(value()?.clone()),
-            "--count" => asked.count = number(value()?)?,
-            "--seed" => asked.seed = number(value()?)?,
-            "--keys" => asked.keys = Some(PathBuf::from(value()?)),
-            "--again" | "--wrong" => asked.flag = true,
-            option if option.starts_with('-') => return Err(format!("{option} is no option")),
-            folder => asked.folder = PathBuf::from(folder),
+impl Command {
+    /// Runs the command.
+    ///
+    /// # Errors
+    /// A message for the user.
+    pub fn run(&self) -> Result<(), String> {
+        match self {
+            Command::LaboratoryWrite(asked) => write(asked),
+            Command::LaboratorySeal { folder, keys } => sealed(folder, keys),
+            Command::LaboratoryExplain { folder, again } => explain(folder, *again),
+            Command::LaboratoryScore { folder, keys, wrong } => score(folder, keys.as_deref(), *wrong),
         }
     }
-    if asked.folder.as_os_str().is_empty() {
-        return Err("the folder is missing".to_owned());
-    }
-    Ok(asked)
-}
-
-/// The one of several that has a name.
-fn one<T: Copy>(all: &[T], name: impl Fn(T) -> &'static str, asked: &str) -> Result<T, String> {
-    let known = || all.iter().map(|t| name(*t)).collect::<Vec<_>>().join(", ");
-    all.iter().copied().find(|t| name(*t) == asked).ok_or_else(|| format!("{asked} is none of {}", known()))
 }
 
 fn write(asked: &Asked) -> Result<(), String> {
     let mut jobs = vec![];
-    for family in &asked.families {
-        for name in names(*family) {
+    for family in Family::ALL.into_iter().filter(|f| asked.family.is_none_or(|only| only == *f)) {
+        for name in names(family) {
             if asked.subject.as_ref().is_some_and(|s| s != name) {
                 continue;
             }
-            let strengths = if *family == Family::Null { &[Strength::Clear][..] } else { &asked.strengths };
-            for strength in strengths {
+            // Nulls have no strength, and stand for themselves under the first.
+            let asked_for = |s: &Strength| match family {
+                Family::Null => *s == Strength::Clear,
+                _ => asked.strength.is_none_or(|only| only == *s),
+            };
+            for strength in Strength::ALL.into_iter().filter(asked_for) {
                 let all = seeds(name, asked.half, asked.count, asked.seed);
-                jobs.extend(all.into_iter().map(|seed| (name, *strength, seed)));
+                jobs.extend(all.into_iter().map(|seed| (name, strength, seed)));
             }
         }
     }
@@ -142,11 +131,10 @@ fn write(asked: &Asked) -> Result<(), String> {
 }
 
 /// Moves the truths away.
-fn sealed(asked: &Asked) -> Result<(), String> {
-    let Some(keys) = &asked.keys else { return Err(format!("--keys is missing\n{USAGE}")) };
+fn sealed(folder: &Path, keys: &Path) -> Result<(), String> {
     let failed = |e: io::Error| e.to_string();
-    let cases = folders(&asked.folder).map_err(failed)?;
-    println!("{} keys in {}", seal(&cases, &asked.folder, keys).map_err(failed)?, keys.display());
+    let cases = folders(folder).map_err(failed)?;
+    println!("{} keys in {}", seal(&cases, folder, keys).map_err(failed)?, keys.display());
     Ok(())
 }
 
@@ -160,25 +148,25 @@ fn folders(of: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(all)
 }
 
-fn explain(asked: &Asked) -> Result<(), String> {
-    let all = folders(&asked.folder).map_err(|e| format!("{}: {e}", asked.folder.display()))?;
-    let open = |f: &&PathBuf| !f.join("explain.json").exists() || asked.flag && !f.join(AGAIN).exists();
+fn explain(folder: &Path, again: bool) -> Result<(), String> {
+    let all = folders(folder).map_err(|e| format!("{}: {e}", folder.display()))?;
+    let open = |f: &&PathBuf| !f.join("explain.json").exists() || again && !f.join(AGAIN).exists();
     let left: Vec<&PathBuf> = all.iter().filter(open).collect();
-    let failed: Vec<String> = left.par_iter().filter_map(|f| explain_folder(f, asked.flag).err()).collect();
+    let failed: Vec<String> = left.par_iter().filter_map(|f| explain_folder(f, again).err()).collect();
     failed.iter().for_each(|f| eprintln!("{f}"));
     println!("{} of {} folders explained", left.len() - failed.len(), all.len());
     if failed.is_empty() { Ok(()) } else { Err(format!("{} failed", failed.len())) }
 }
 
-fn score(asked: &Asked) -> Result<(), String> {
+fn score(folder: &Path, keys: Option<&Path>, list_wrong: bool) -> Result<(), String> {
     let failed = |e: io::Error| e.to_string();
     let mut scores = vec![];
-    for at in folders(&asked.folder).map_err(failed)? {
-        let truth = match &asked.keys {
+    for at in folders(folder).map_err(failed)? {
+        let truth = match keys {
             None => folder::truth(&at),
             Some(keys) => {
                 let name = at.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-                opened(&asked.folder, keys, &name).and_then(|key| Ok(serde_json::from_slice(&key)?))
+                opened(folder, keys, &name).and_then(|key| Ok(serde_json::from_slice(&key)?))
             }
         };
         let truth = truth.map_err(failed)?;
@@ -203,7 +191,7 @@ fn score(asked: &Asked) -> Result<(), String> {
         }
     }
     let wrong = |s: &&Score| if s.family == Family::Null { s.detected } else { !s.named };
-    for s in scores.iter().filter(|_| asked.flag).filter(wrong) {
+    for s in scores.iter().filter(|_| list_wrong).filter(wrong) {
         println!("{:<48} first: {:<24} explained {:?}", s.case, s.first, s.explained);
     }
     Ok(())
