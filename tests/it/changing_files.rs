@@ -3,8 +3,9 @@
 
 #![cfg(unix)]
 
+use crate::support::quick::Quick;
 use crate::support::synthetic::recording;
-use crate::support::{files, limits, names, procedure, program, result, sagnac, sample};
+use crate::support::{files, names, procedure, program, result};
 use sagnac::i18n::{Lang, Localize};
 use sagnac::ingest::{IngestError, IngestErrorKind, open};
 use std::io::Write;
@@ -154,10 +155,7 @@ fn a_run_on_a_changing_recording_leaves_a_whole_result() {
 }
 
 fn run_into(folder: &Path, out: &str) -> crate::support::Said {
-    sagnac(
-        folder,
-        &["run", &procedure(), &sample("pass"), "--limits", &limits(), "--serial", "SN-1", "--out", out],
-    )
+    Quick::new("pass").run(folder, &["--out", out])
 }
 
 #[test]
@@ -191,18 +189,8 @@ fn a_disk_that_fills_up_at_any_moment_leaves_the_earlier_result() {
         let output = Command::new("sh")
             .current_dir(dir.path())
             .args(["-c", &format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$0\" \"$@\""), program()])
-            .args([
-                "run",
-                &procedure(),
-                &sample("fail"),
-                "--limits",
-                &limits(),
-                "--serial",
-                "SN-1",
-                "--force",
-                "--out",
-                "out",
-            ])
+            .args(Quick::new("fail").args())
+            .args(["--force", "--out", "out"])
             .output()
             .unwrap();
         let err = String::from_utf8(output.stderr).unwrap();

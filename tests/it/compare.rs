@@ -1,6 +1,7 @@
 //! The verb `compare`, as a user runs it.
 
-use crate::support::{procedure, result, root, sagnac, sample, shipped};
+use crate::support::shared::{SharedRun, analyzed_once, shared, shared_input, tested_once};
+use crate::support::{root, sagnac, sample, shipped};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::tempdir;
@@ -41,9 +42,9 @@ fn number(folder: &Path, row: usize, name: &str) -> f64 {
 #[test]
 fn a_recording_and_its_result_give_the_same_comparison() {
     let dir = tempdir().unwrap();
-    let said = sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
-    assert_eq!(said.code, 0);
-    let (table, all) = compare(dir.path(), &[&sample("pass"), "a", "a/result.json"]);
+    let analysed = analyzed_once("pass").path();
+    let record = format!("{analysed}/result.json");
+    let (table, all) = compare(dir.path(), &[&sample("pass"), analysed, &record]);
     assert_eq!(all["format"], "comparison/1");
     let units = all["units"].as_array().unwrap();
     assert_eq!(units.len(), 3);
@@ -78,8 +79,8 @@ fn a_recording_and_its_result_give_the_same_comparison() {
 
 #[test]
 fn the_octaves_add_up_to_the_drift() {
-    let dir = tempdir().unwrap();
-    let (_, all) = compare(dir.path(), &[&sample("pass")]);
+    let run = shared(&["compare", &sample("pass")], "c");
+    let all = json(&run.out.join("comparison.json"));
     let o = &all["units"][0]["detail"]["octaves"];
     let windows = o["windows"].as_f64().unwrap();
     let sum: f64 = o["octaves"]
@@ -91,19 +92,25 @@ fn the_octaves_add_up_to_the_drift() {
     let sigma = o["sigma"].as_f64().unwrap();
     assert_eq!(windows, 2048.0);
     assert!((sum * windows / (windows - 1.0) / (sigma * sigma) - 1.0).abs() < 1e-9);
-    assert!(dir.path().join("c/figures/octaves_1.svg").is_file());
-    assert!(dir.path().join("c/figures/ratios.svg").is_file());
+    assert!(run.out.join("figures/octaves_1.svg").is_file());
+    assert!(run.out.join("figures/ratios.svg").is_file());
+}
+
+/// The sample that passes, compared under limits of which one is on nothing that is compared.
+fn compared_with_limits() -> &'static SharedRun {
+    let head = "format = \"limits/1\"\n[limits]\nid = \"x\"\ntitle = \"X\"\nrevision = \"A\"\n";
+    let limit = |id| format!("[[limit]]\nmeasurand = \"{id}\"\nmax = \"0.01 deg/h\"\n");
+    let limits = shared_input("compared-limits.toml", || {
+        [head.to_owned(), limit("static_bias"), limit("russian_drift_100s"), limit("bias_instability")]
+            .concat()
+    });
+    shared(&["compare", &sample("pass"), "--limits", &limits], "c")
 }
 
 #[test]
 fn a_limit_is_judged_against_the_figure_it_names() {
-    let dir = tempdir().unwrap();
-    let limits = dir.path().join("l.toml");
-    let text = "format = \"limits/1\"\n[limits]\nid = \"x\"\ntitle = \"X\"\nrevision = \"A\"\n\
-        [[limit]]\nmeasurand = \"russian_drift_100s\"\nmax = \"0.01 deg/h\"\n\
-        [[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.01 deg/h\"\n";
-    std::fs::write(&limits, text).unwrap();
-    let (table, all) = compare(dir.path(), &[&sample("pass"), "--limits", "l.toml"]);
+    let run = compared_with_limits();
+    let (table, all) = (&run.said.out, json(&run.out.join("comparison.json")));
     let verdict = |id: &str| {
         let rows = all["units"][0]["quantities"].as_array().unwrap();
         rows.iter().find(|q| q["id"] == id).unwrap()["verdict"].as_str().unwrap().to_owned()
@@ -117,18 +124,11 @@ fn a_limit_is_judged_against_the_figure_it_names() {
 
 #[test]
 fn a_limit_on_what_is_not_compared_is_told_to_be_left_out() {
-    let dir = tempdir().unwrap();
-    let text = "format = \"limits/1\"\n[limits]\nid = \"x\"\ntitle = \"X\"\nrevision = \"A\"\n\
-        [[limit]]\nmeasurand = \"static_bias\"\nmax = \"0.01 deg/h\"\n\
-        [[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.01 deg/h\"\n";
-    std::fs::write(dir.path().join("l.toml"), text).unwrap();
-    compare(dir.path(), &[&sample("pass"), "--limits", "l.toml"]);
-    let page = std::fs::read_to_string(dir.path().join("c/comparison.md")).unwrap();
+    let page = compared_with_limits().text("comparison.md");
     assert_eq!(page.matches("Limits on Static bias are not applied here").count(), 1, "{page}");
     // A result says so of the limits it was judged by.
-    let run = ["run", &procedure(), &sample("pass"), "--limits", "l.toml", "--serial", "7", "--out", "r"];
-    sagnac(dir.path(), &run);
-    compare(dir.path(), &["r"]);
+    let dir = tempdir().unwrap();
+    compare(dir.path(), &[tested_once("pass").path()]);
     let page = std::fs::read_to_string(dir.path().join("c/comparison.md")).unwrap();
     assert!(page.contains("Static bias"), "{page}");
     assert_eq!(page.matches("are not applied here").count(), 1, "{page}");
@@ -140,7 +140,7 @@ fn a_unit_against_the_name_of_the_column_is_told() {
     compare(dir.path(), &[&sample("pass"), "--unit", "deg/s"]);
     let page = std::fs::read_to_string(dir.path().join("c/comparison.md")).unwrap();
     assert!(page.contains("states deg/h but is read in deg/s"), "{page}");
-    let said = sagnac(dir.path(), &["analyze", &sample("pass"), "--unit", "deg/s", "--out", "a"]);
+    let said = &shared(&["analyze", &sample("pass"), "--rate", "rate_deg_h", "--unit", "deg/s"], "a").said;
     assert!(said.err.contains("column `rate_deg_h` states deg/h"), "{}", said.err);
     let said = sagnac(dir.path(), &["analyze", &sample("pass"), "--unit", "°/h", "--out", "b"]);
     assert!(!said.err.contains("states"), "{}", said.err);
@@ -149,8 +149,7 @@ fn a_unit_against_the_name_of_the_column_is_told() {
 #[test]
 fn an_older_result_says_what_is_missing() {
     let dir = tempdir().unwrap();
-    sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
-    let mut old = result(&dir.path().join("a"));
+    let mut old = analyzed_once("pass").result().clone();
     old.as_object_mut().unwrap().remove("comparison");
     std::fs::write(dir.path().join("old.json"), old.to_string()).unwrap();
     let (table, all) = compare(dir.path(), &["old.json"]);
@@ -184,7 +183,7 @@ fn what_cannot_be_compared_is_refused_with_code_2() {
 #[test]
 fn a_refusal_says_what_is_wrong_with_the_file() {
     let dir = tempdir().unwrap();
-    sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
+    analyzed_once("pass").copy_to(&dir.path().join("a"));
     let whole = std::fs::read(dir.path().join("a/result.json")).unwrap();
     std::fs::write(dir.path().join("cut.json"), &whole[..3000]).unwrap();
     std::fs::write(dir.path().join("wrong.json"), "{\"format\": result}").unwrap();
@@ -208,7 +207,7 @@ fn a_refusal_says_what_is_wrong_with_the_file() {
 #[test]
 fn the_same_recording_twice_is_told() {
     let dir = tempdir().unwrap();
-    sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
+    analyzed_once("pass").copy_to(&dir.path().join("a"));
     let (table, all) = compare(dir.path(), &["a", &sample("fail"), &sample("pass")]);
     let told: Vec<bool> = all["units"]
         .as_array()
@@ -223,7 +222,7 @@ fn the_same_recording_twice_is_told() {
 #[test]
 fn a_result_is_never_replaced_by_a_comparison_nor_the_other_way() {
     let dir = tempdir().unwrap();
-    sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "a"]);
+    analyzed_once("pass").copy_to(&dir.path().join("a"));
     let said = sagnac(dir.path(), &["compare", "--published", "--out", "a"]);
     assert_eq!(said.code, 2, "{said:?}");
     assert!(dir.path().join("a/result.json").is_file());
@@ -264,9 +263,7 @@ fn a_short_recording_has_no_drift_and_says_so() {
 #[test]
 fn the_guide_names_every_column_of_the_table() {
     let guide = std::fs::read_to_string(shipped("docs/guide/compare.md")).unwrap();
-    let dir = tempdir().unwrap();
-    compare(dir.path(), &[&sample("pass")]);
-    let text = std::fs::read_to_string(dir.path().join("c/comparison.csv")).unwrap();
+    let text = shared(&["compare", &sample("pass")], "c").text("comparison.csv");
     for column in text.lines().next().unwrap().split(',') {
         assert!(guide.contains(&format!("`{column}`")), "{column} is not in the guide");
     }

@@ -1,7 +1,9 @@
 //! `run --each`: every recording is a unit of its own, with a folder each and an index over all. And several files are
 //! one recording only where `--join` says so.
 
+use crate::support::quick::recording;
 use crate::support::schema::{closed, validate};
+use crate::support::shared::{SharedRun, shared, shared_input};
 use crate::support::{Said, files, names, sagnac, sagnac_as_typed, sagnac_with, shipped};
 use quick_xml::Reader;
 use quick_xml::events::{BytesStart, Event};
@@ -13,26 +15,40 @@ use tempfile::{TempDir, tempdir};
 /// A quick test with limits of its own.
 const PROCEDURE: &str = "supply-sensitivity";
 
-/// A recording that states no serial number.
-fn text(sample: &str) -> String {
-    let text = std::fs::read_to_string(shipped(&format!("samples/supply-sensitivity-{sample}.csv"))).unwrap();
-    let (stated, rest) = text.split_once('\n').unwrap();
-    assert!(stated.starts_with("# serial: "), "{stated}");
-    rest.to_owned()
+/// A recording that passes and tells no serial number, one that fails and tells it, one of another unit than its manifest
+/// says, and one that cannot be read; with the recording of that manifest.
+fn texts() -> [(&'static str, String); 5] {
+    [
+        (NAMED[0], recording("pass")),
+        (NAMED[1], format!("# serial: SN-1002\n{}", recording("fail"))),
+        (
+            NAMED[2],
+            "format = \"manifest/1\"\nserial = \"SN-1003\"\n[[file]]\npath = \"other.csv\"\n".to_owned(),
+        ),
+        (NAMED[3], "time_s,rate_deg_h\nbroken\n".to_owned()),
+        ("lot/other.csv", format!("# serial: SN-9\n{}", recording("pass"))),
+    ]
 }
 
-/// A recording that passes and tells no serial number, one that fails and tells it, one of another unit than its manifest
-/// says, and one that cannot be read.
+/// A folder with them.
 fn lot() -> TempDir {
     let dir = tempdir().unwrap();
-    let write = |name: &str, text: &str| std::fs::write(dir.path().join("lot").join(name), text).unwrap();
     std::fs::create_dir(dir.path().join("lot")).unwrap();
-    write("SN-1001.csv", &text("pass"));
-    write("b.csv", &format!("# serial: SN-1002\n{}", text("fail")));
-    write("other.csv", &format!("# serial: SN-9\n{}", text("pass")));
-    write("c.toml", "format = \"manifest/1\"\nserial = \"SN-1003\"\n[[file]]\npath = \"other.csv\"\n");
-    write("d.csv", "time_s,rate_deg_h\nbroken\n");
+    texts().iter().for_each(|(name, text)| std::fs::write(dir.path().join(name), text).unwrap());
     dir
+}
+
+/// The paths of those that are named, as other tests read them.
+fn shared_lot() -> [String; 4] {
+    let [a, b, c, d, _] = texts().map(|(name, text)| shared_input(name, || text));
+    [a, b, c, d]
+}
+
+/// Them tested.
+pub fn tested_lot() -> &'static SharedRun {
+    let recordings = shared_lot();
+    let recordings: Vec<&str> = recordings.iter().map(String::as_str).collect();
+    shared(&[&["run", PROCEDURE], recordings.as_slice(), &["--each"]].concat(), "out")
 }
 
 const NAMED: [&str; 4] = ["lot/SN-1001.csv", "lot/b.csv", "lot/c.toml", "lot/d.csv"];
@@ -238,18 +254,13 @@ fn page(out: &Path) {
 
 #[test]
 fn a_unit_of_a_lot_has_the_result_of_a_run_on_its_own() {
-    let dir = lot();
-    each(dir.path(), &NAMED, &["--out", "out"]);
-    for (recording, folder, serial) in [
-        ("lot/SN-1001.csv", "SN-1001", Some("SN-1001")),
-        ("lot/b.csv", "SN-1002", None),
-        ("lot/c.toml", "SN-1003", None),
-        ("lot/d.csv", "d", Some("d")),
-    ] {
+    let dir = tempdir().unwrap();
+    let of_lot = [("SN-1001", Some("SN-1001")), ("SN-1002", None), ("SN-1003", None), ("d", Some("d"))];
+    for (recording, (folder, serial)) in shared_lot().iter().zip(of_lot) {
         let mut args = vec!["run", PROCEDURE, recording, "--out", folder];
         args.extend(serial.iter().flat_map(|s| ["--serial", *s]));
         sagnac(dir.path(), &args);
-        let (alone, of_lot) = (dir.path().join(folder), dir.path().join("out").join(folder));
+        let (alone, of_lot) = (dir.path().join(folder), tested_lot().out.join(folder));
         assert_eq!(steady(&alone.join("result.json")), steady(&of_lot.join("result.json")), "{folder}");
         assert_eq!(names(&alone), names(&of_lot));
         let tables = |at: &Path| {
@@ -315,17 +326,17 @@ fn a_missing_column_is_said_at_the_line_of_the_procedure_once_for_all_units() {
 #[test]
 fn a_lot_is_rendered_anew_in_another_language() {
     let dir = lot();
-    each(dir.path(), &NAMED, &["--out", "out"]);
-    let said = sagnac(dir.path(), &["report", "out", "--lang", "ru", "--out", "ru"]);
+    let run = tested_lot();
+    let said = sagnac(dir.path(), &["report", run.path(), "--lang", "ru", "--out", "ru"]);
     assert_eq!((said.code, said.err.as_str(), said.out.as_str()), (0, "", "ru\n"));
-    let at = |lang: &str, name: &str| std::fs::read_to_string(dir.path().join(lang).join(name)).unwrap();
+    let at = |name: &str| std::fs::read_to_string(dir.path().join("ru").join(name)).unwrap();
     for name in ["index.json", "index.csv", "junit.xml", "SN-1002/result.json"] {
-        assert_eq!(at("out", name), at("ru", name), "{name} depends on the language");
+        assert_eq!(run.text(name), at(name), "{name} depends on the language");
     }
     for (name, word) in
         [("index.html", "Не годны"), ("SN-1002/report.html", "не годен"), ("index.md", "Партия")]
     {
-        let found = at("ru", name).to_lowercase().contains(&word.to_lowercase());
+        let found = at(name).to_lowercase().contains(&word.to_lowercase());
         assert!(found || name == "index.md", "{name}: {word}");
     }
     let said = each(dir.path(), &NAMED, &["--out", "o", "--lang", "ru"]);
@@ -350,7 +361,8 @@ fn refused(dir: &Path, args: &[&str], fragments: &[&str]) {
 #[test]
 fn a_serial_number_that_is_not_one_units_own_is_refused_by_name() {
     let dir = lot();
-    std::fs::write(dir.path().join("lot/e.csv"), format!("# serial: sn 1002\n{}", text("pass"))).unwrap();
+    std::fs::write(dir.path().join("lot/e.csv"), format!("# serial: sn 1002\n{}", recording("pass")))
+        .unwrap();
     let run = |more: &[&'static str]| [&["run", PROCEDURE], more, &["--each", "--out", "o"]].concat();
     refused(
         dir.path(),
@@ -393,7 +405,7 @@ fn serial_numbers_are_taken_from_names_and_compared_with_the_recordings() {
     for (unit, stated) in [("SN-7", "SN-7"), ("SN-8", "SN-9")] {
         std::fs::create_dir_all(dir.path().join("lot").join(unit)).unwrap();
         let path = dir.path().join("lot").join(unit).join("supply.csv");
-        std::fs::write(path, format!("# serial: {stated}\n{}", text("pass"))).unwrap();
+        std::fs::write(path, format!("# serial: {stated}\n{}", recording("pass"))).unwrap();
     }
     let said = each(dir.path(), &["lot/*/supply.csv"], &["--serial-from", "{serial}/*", "--out", "o"]);
     assert_eq!(said.code, 3, "{said:?}");

@@ -1,7 +1,8 @@
 //! `sagnac model`: from a recording, or its result, to a claim that other recordings are held against.
 
+use crate::support::shared::tested_once;
 use crate::support::synthetic::white;
-use crate::support::{limits, procedure, sagnac, sample};
+use crate::support::{sagnac, sample};
 use sagnac::config::model::load;
 use std::fmt::Write;
 use tempfile::tempdir;
@@ -56,9 +57,8 @@ fn the_model_of_one_recording_fits_the_next_and_not_one_with_a_step() {
 fn the_model_of_a_result_is_that_of_its_recording() {
     let dir = tempdir().unwrap();
     let at = dir.path();
-    let run = ["run", &procedure(), &sample("pass"), "--limits", &limits(), "--serial", "SN-1", "--out", "r"];
-    assert_eq!(sagnac(at, &run).code, 0);
-    assert_eq!(sagnac(at, &["model", "r", "--out", "of-result.toml"]).code, 0);
+    let tested = tested_once("pass").path();
+    assert_eq!(sagnac(at, &["model", tested, "--out", "of-result.toml"]).code, 0);
     assert_eq!(sagnac(at, &["model", &sample("pass"), "--out", "of-recording.toml"]).code, 0);
     let (result, recording) =
         (load(&at.join("of-result.toml")).unwrap(), load(&at.join("of-recording.toml")).unwrap());
@@ -75,8 +75,8 @@ fn the_model_of_a_result_is_that_of_its_recording() {
     let said = sagnac(at, &["explain", &sample("pass"), "--model", "of-result.toml", "--out", "e"]);
     assert!(said.code == 0, "{said:?}");
     for (args, why) in [
-        (vec!["model", "r", "--from", "1h", "--out", "x.toml"], "name the recording"),
-        (vec!["model", "r", "--rate", "nowhere", "--out", "x.toml"], "choose one with --rate"),
+        (vec!["model", tested, "--from", "1h", "--out", "x.toml"], "name the recording"),
+        (vec!["model", tested, "--rate", "nowhere", "--out", "x.toml"], "choose one with --rate"),
         (vec!["model", "missing.csv", "--out", "x.toml"], "missing.csv"),
     ] {
         let said = sagnac(at, &args);

@@ -1,6 +1,7 @@
 //! `sagnac plan` as a user has it: from an ambiguous recording to a schedule, and to a recording of it that decides.
 
 use crate::support::schema::validate;
+use crate::support::shared::{SharedRun, shared, shared_input};
 use crate::support::{Said, sagnac, sagnac_as_typed};
 use sagnac_studies::planned::ambiguous::AMBIGUOUS;
 use sagnac_studies::planned::carried_out;
@@ -22,12 +23,25 @@ const RAMP: &str =
 const TRUTH: &str =
     "[[effect]]\nkind = \"temp_linear\"\n[effect.parameters]\ncoefficient_deg_h_per_degC = 0.016\n";
 
-/// A recording of a single ramp in which a drift and a temperature coefficient are the same, and what it was made from.
-fn ramp(folder: &Path) {
-    std::fs::write(folder.join("model.toml"), MODEL).unwrap();
-    std::fs::write(folder.join("truth.toml"), format!("{MODEL}{TRUTH}{RAMP}")).unwrap();
-    let made = sagnac(folder, &["simulate", "truth.toml", "--duration", "4h", "--out", "r.csv"]);
-    assert_eq!(made.code, 0, "{made:?}");
+/// A recording of a single ramp in which a drift and a temperature coefficient are the same.
+fn ramp() -> &'static str {
+    let truth = shared_input("ramp-truth.toml", || format!("{MODEL}{TRUTH}{RAMP}"));
+    shared(&["simulate", &truth, "--duration", "4h"], "r.csv").path()
+}
+
+/// What the recording is held against.
+fn model() -> String {
+    shared_input("ramp-model.toml", || MODEL.to_owned())
+}
+
+/// That recording explained.
+fn ramp_explained() -> &'static SharedRun {
+    shared(&["explain", ramp(), "--model", &model()], "e")
+}
+
+/// The test that tells its causes apart, planned.
+pub fn ramp_planned() -> &'static SharedRun {
+    shared(&["plan", ramp_explained().path(), "--model", &model(), "--budget", "8h"], "p")
 }
 
 fn json(path: &Path) -> Value {
@@ -40,32 +54,35 @@ fn planned(folder: &Path, explained: &str, more: &[&str]) -> Said {
 
 #[test]
 fn a_drift_and_a_coefficient_are_planned_apart_and_the_planned_test_decides() {
-    let dir = tempdir().unwrap();
-    ramp(dir.path());
-    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
-    assert_eq!(said.code, 1, "{said:?}");
-    let effects = json(&dir.path().join("e/explain.json"))["effects"].clone();
+    let explained = ramp_explained();
+    assert_eq!(explained.said.code, 1, "{:?}", explained.said);
+    let effects = json(&explained.out.join("explain.json"))["effects"].clone();
     let kinds = [effects[0]["kind"].clone(), effects[0]["equivalents"].clone()];
     let told = serde_json::to_string(&kinds).unwrap();
     assert!(told.contains("temp_linear") && told.contains("rate_ramp"), "{told}");
-    let alternatives = std::fs::read_to_string(dir.path().join("e/alternatives.toml")).unwrap();
+    let alternatives = explained.text("alternatives.toml");
     assert!(alternatives.contains("slope_deg_h_per_h"), "{alternatives}");
 
-    let said = planned(dir.path(), "e", &["--budget", "8h"]);
+    let dir = tempdir().unwrap();
+    std::fs::write(dir.path().join("model.toml"), MODEL).unwrap();
+    std::fs::write(dir.path().join("truth.toml"), format!("{MODEL}{TRUTH}{RAMP}")).unwrap();
+    let run = ramp_planned();
+    let said = &run.said;
     assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
     assert!(said.out.contains("DECIDES") && said.out.contains("separate"), "{}", said.out);
-    let plan = json(&dir.path().join("p/plan.json"));
+    let plan = json(&run.out.join("plan.json"));
     let schema: Value = serde_json::from_str(&sagnac(dir.path(), &["schema", "plan"]).out).unwrap();
     validate(&schema, &schema, &plan, "plan").unwrap();
     let schedule = &plan["schedule"];
     assert!(schedule["probability"].as_f64().unwrap() >= 0.95, "{schedule}");
     assert!(schedule["duration_h"].as_f64().unwrap() <= 8.0, "{schedule}");
     for file in ["report.html", "report.md", "schedule.toml"] {
-        assert!(dir.path().join("p").join(file).is_file(), "{file}");
+        assert!(run.out.join(file).is_file(), "{file}");
     }
 
     // Carried out by the true unit, the test names the truth alone.
-    let next = ["simulate", "truth.toml", "--schedule", "p/schedule.toml", "--out", "n.csv", "--seed", "5"];
+    let schedule = format!("{}/schedule.toml", run.path());
+    let next = ["simulate", "truth.toml", "--schedule", &schedule, "--out", "n.csv", "--seed", "5"];
     let said = sagnac(dir.path(), &next);
     assert_eq!(said.code, 0, "{said:?}");
     let said = sagnac(dir.path(), &["explain", "n.csv", "--model", "model.toml", "--out", "n"]);
@@ -76,12 +93,12 @@ fn a_drift_and_a_coefficient_are_planned_apart_and_the_planned_test_decides() {
     assert_eq!(effects[0]["equivalents"], Value::Array(vec![]), "{effects}");
 
     // The page is rendered anew in another language, and the recording itself is as good as its explanation.
-    let said = sagnac(dir.path(), &["report", "p", "--lang", "ru", "--out", "ru"]);
+    let said = sagnac(dir.path(), &["report", run.path(), "--lang", "ru", "--out", "ru"]);
     assert_eq!(said.code, 0, "{said:?}");
     assert!(std::fs::read_to_string(dir.path().join("ru/report.md")).unwrap().contains("Следующий опыт"));
     let said = sagnac(
         dir.path(),
-        &["plan", "r.csv", "--model", "model.toml", "--budget", "8h", "--out", "direct", "--format", "json"],
+        &["plan", ramp(), "--model", "model.toml", "--budget", "8h", "--out", "direct", "--format", "json"],
     );
     assert_eq!(said.code, 0, "{said:?}");
     let direct: Value = serde_json::from_str(&said.out).unwrap();
@@ -91,15 +108,15 @@ fn a_drift_and_a_coefficient_are_planned_apart_and_the_planned_test_decides() {
 #[test]
 fn a_budget_that_is_too_small_and_a_missing_chamber_are_said() {
     let dir = tempdir().unwrap();
-    ramp(dir.path());
-    sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
-    let said = planned(dir.path(), "e", &["--budget", "30min"]);
+    std::fs::write(dir.path().join("model.toml"), MODEL).unwrap();
+    let explained = ramp_explained().path();
+    let said = planned(dir.path(), explained, &["--budget", "30min"]);
     assert_eq!(said.code, 3, "{said:?}");
     let outcome = json(&dir.path().join("p/plan.json"))["outcome"].clone();
     assert!(outcome == "too_short" || outcome == "undecidable", "{outcome}");
     let russian = [
         "plan",
-        "e",
+        explained,
         "--model",
         "model.toml",
         "--out",
@@ -133,8 +150,8 @@ fn nothing_to_tell_apart_is_said() {
 #[test]
 fn what_cannot_be_planned_is_diagnosed() {
     let dir = tempdir().unwrap();
-    ramp(dir.path());
-    sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    std::fs::write(dir.path().join("model.toml"), MODEL).unwrap();
+    ramp_explained().copy_to(&dir.path().join("e"));
     let refused = |args: &[&str], says: &str| {
         let all = [&["plan"], args, &["--model", "model.toml", "--out", "q"]].concat();
         let said = sagnac_as_typed(dir.path(), &all, &[]);

@@ -4,6 +4,8 @@ mod diagnostics;
 mod report;
 mod verbs;
 
+use crate::support::quick::Quick;
+use crate::support::shared::tested_once;
 use crate::support::{altered, limits, measurand, names, procedure, result, sagnac, sample};
 use std::path::Path;
 use tempfile::tempdir;
@@ -41,26 +43,21 @@ fn help_of_every_verb_ends_with_an_example() {
 
 #[test]
 fn samples_give_their_verdicts() {
-    let dir = tempdir().unwrap();
     for (name, code, verdict) in [
         ("pass", 0, "pass"),
         ("fail", 1, "fail"),
         ("indeterminate", 3, "indeterminate"),
         ("faults", 3, "indeterminate"),
     ] {
-        let out = dir.path().join(name);
-        let said = sagnac(
-            dir.path(),
-            &["run", &procedure(), &sample(name), "--limits", &limits(), "--serial", "SN-1", "--out", name],
-        );
+        let run = tested_once(name);
+        let said = &run.said;
         assert_eq!(said.code, code, "{name}: {said:?}");
-        assert_eq!(result(&out)["verdict"], verdict, "{name}");
+        assert_eq!(run.result()["verdict"], verdict, "{name}");
         assert!(said.out.starts_with(&verdict.to_uppercase()), "{name}: {}", said.out);
-        let place = format!("\nReport: {name}/report.html\n");
-        assert!(said.out.contains(&place), "{name}: {}", said.out);
+        assert!(said.out.contains("\nReport: r/report.html\n"), "{name}: {}", said.out);
         assert_eq!(said.err, "", "no terminal, no progress");
         assert_eq!(
-            names(&out),
+            names(&run.out),
             [
                 "SHA256SUMS",
                 "figures",
@@ -75,15 +72,13 @@ fn samples_give_their_verdicts() {
             ],
             "{name}"
         );
-        crate::support::assert_no_nan(&out);
+        crate::support::assert_no_nan(&run.out);
     }
 }
 
 #[test]
 fn faults_of_the_sample_are_found_where_they_were_put() {
-    let dir = tempdir().unwrap();
-    sagnac(dir.path(), &["run", &procedure(), &sample("faults"), "--serial", "SN-1", "--out", "o"]);
-    let integrity = &result(&dir.path().join("o"))["integrity"];
+    let integrity = &tested_once("faults").result()["integrity"];
     // From examples/make_samples.rs: sample i stands in row i + 1, 90 rows fewer after the gap, one more after the
     // repeated row. The row whose stamp jumps back leaves a hole of one sample in the time base.
     let expected = [
@@ -118,8 +113,8 @@ fn faults_of_the_sample_are_found_where_they_were_put() {
 #[test]
 fn a_missing_serial_is_an_error_and_the_report_is_written() {
     let dir = tempdir().unwrap();
-    let unnamed = altered(dir.path(), "unnamed.csv", &sample("pass"), &[("# serial: SN-0001\n", "")]);
-    let run = ["run", &procedure(), &unnamed, "--limits", &limits(), "--out", "o"];
+    let quick = Quick::new("pass");
+    let run = ["run", &quick.procedure, &quick.recording, "--limits", &quick.limits, "--out", "o"];
     for serial in [None, Some(""), Some("  ")] {
         let mut args = run.to_vec();
         args.extend(serial.map(|s| ["--serial", s]).into_iter().flatten());
@@ -129,7 +124,11 @@ fn a_missing_serial_is_an_error_and_the_report_is_written() {
         let result = result(&dir.path().join("o"));
         assert_eq!(result["verdict"], "error", "{serial:?}");
         assert_eq!(result["errors"][0]["id"], "error.serial_missing");
-        assert_eq!(measurand(&result, "static_bias")["verdict"], "pass", "rows are evaluated all the same");
+        assert_eq!(
+            measurand(&result, "supply_sensitivity")["verdict"],
+            "pass",
+            "rows are evaluated all the same"
+        );
     }
 }
 

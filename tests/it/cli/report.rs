@@ -1,6 +1,7 @@
 //! `sagnac report`: results rendered anew without their recordings.
 
-use crate::support::{limits, names, procedure, root, sagnac, sample, shipped};
+use crate::support::shared::{SharedRun, analyzed_once, phased_once, shared, tested_once};
+use crate::support::{names, root, sagnac, sample, shipped};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -26,80 +27,58 @@ fn differences(a: &Path, b: &Path) -> Vec<String> {
     a.keys().chain(b.keys()).filter(|k| a.get(*k) != b.get(*k)).cloned().collect()
 }
 
-/// Renders `o` anew in English, and in Russian and from there in English again.
-fn comes_out_the_same(dir: &Path) {
+/// Renders a result anew in English, and in Russian and from there in English again.
+fn comes_out_the_same(result: &SharedRun) {
+    let folder = tempdir().unwrap();
+    let dir = folder.path();
     let render = |from: &str, lang: &str, to: &str| {
         let said = sagnac(dir, &["report", from, "--lang", lang, "--out", to]);
         assert_eq!((said.code, said.err.as_str()), (0, ""), "{from}: {said:?}");
         assert_eq!(said.out, format!("{to}\n"));
     };
     let at = |name: &str| dir.join(name);
-    render("o", "en", "again");
-    assert_eq!(differences(&at("o"), &at("again")), [""; 0]);
-    render("o", "ru", "ru");
-    let words = differences(&at("o"), &at("ru"));
+    render(result.path(), "en", "again");
+    assert_eq!(differences(&result.out, &at("again")), [""; 0]);
+    render(result.path(), "ru", "ru");
+    let words = differences(&result.out, &at("ru"));
     let of_words =
         |name: &String| [".html", ".md", ".svg", "SHA256SUMS"].iter().any(|end| name.ends_with(end));
     assert!(words.len() > 2 && words.iter().all(of_words), "{words:?}");
     render("ru", "en", "back");
-    assert_eq!(differences(&at("o"), &at("back")), [""; 0]);
+    assert_eq!(differences(&result.out, &at("back")), [""; 0]);
 }
 
 #[test]
 fn a_run_an_analysis_and_a_test_of_several_phases_come_out_the_same() {
-    let runs: [&[&str]; 4] = [
-        &["run", &procedure(), &sample("pass"), "--limits", &limits(), "--serial", "SN-1"],
-        &["analyze", &sample("faults")],
-        &["run", &shipped("procedures/acceptance.toml"), &shipped("samples/acceptance-fail.toml")],
-        // Shorter than what is required, so that nothing is evaluated.
-        &["run", &shipped("procedures/scale-factor.toml"), &sample("pass"), "--serial", "SN-1"],
-    ];
-    for args in runs {
-        let dir = tempdir().unwrap();
-        let said = sagnac(dir.path(), &[args, &["--lang", "en", "--out", "o"]].concat());
-        assert!(dir.path().join("o/result.json").is_file(), "{args:?}: {said:?}");
-        comes_out_the_same(dir.path());
-    }
+    comes_out_the_same(tested_once("pass"));
+    comes_out_the_same(analyzed_once("faults"));
+    comes_out_the_same(phased_once("fail"));
+    // Shorter than what is required, so that nothing is evaluated.
+    let short = ["run", &shipped("procedures/scale-factor.toml"), &sample("pass"), "--serial", "SN-1"];
+    comes_out_the_same(shared(&short, "r"));
 }
 
 #[test]
 fn an_explanation_comes_out_the_same_alone_and_in_a_run() {
-    let dir = tempdir().unwrap();
-    let model = root().join("samples/model-step.toml").display().to_string();
-    let family = root().join("samples/model-static.toml").display().to_string();
-    assert_eq!(sagnac(dir.path(), &["simulate", &model, "--out", "step.csv", "--duration", "1h"]).code, 0);
-    let said = sagnac(dir.path(), &["explain", "step.csv", "--model", &family, "--lang", "en", "--out", "o"]);
-    assert!(dir.path().join("o/explain.json").is_file(), "{said:?}");
-    comes_out_the_same(dir.path());
-
-    let dir_of_run = tempdir().unwrap();
-    let text = "format = \"procedure/1\"\n[procedure]\nid = \"p\"\ntitle = \"P\"\nrevision = \"A\"\n\
-         [unit_under_test]\nserial_required = false\n\
-         [[channel]]\nid = \"time\"\ncolumn = \"time_s\"\nrole = \"time\"\nunit = \"s\"\n\
-         [[channel]]\nid = \"rate\"\ncolumn = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/h\"\n\
-         [[measurand]]\nid = \"static_bias\"\n[measurand.options]\nearth_rate = \"keep\"\n\
-         [explain]\nmodel = \"model.toml\"\n";
-    fs::copy(&family, dir_of_run.path().join("model.toml")).unwrap();
-    fs::write(dir_of_run.path().join("p.toml"), text).unwrap();
-    let recording = dir.path().join("step.csv").display().to_string();
-    let said = sagnac(dir_of_run.path(), &["run", "p.toml", &recording, "--lang", "en", "--out", "o"]);
-    assert!(dir_of_run.path().join("o/explain/report.html").is_file(), "{said:?}");
-    comes_out_the_same(dir_of_run.path());
+    comes_out_the_same(crate::explain::step());
+    let run = crate::explain::in_run::unlike_its_family();
+    assert!(run.out.join("explain/report.html").is_file(), "{:?}", run.said);
+    comes_out_the_same(run);
 }
 
 #[test]
 fn comparisons_come_out_the_same() {
-    for what in [sample("indeterminate"), "--published".to_owned()] {
+    for what in [sample("pass"), "--published".to_owned()] {
         let dir = tempdir().unwrap();
-        let said = sagnac(dir.path(), &["compare", &what, "--lang", "en", "--out", "o"]);
-        assert_eq!(said.code, 0, "{said:?}");
+        let compared = shared(&["compare", &what], "c");
+        assert_eq!(compared.said.code, 0, "{:?}", compared.said);
         let render = |from: &str, lang: &str, to: &str| {
             let said = sagnac(dir.path(), &["report", from, "--lang", lang, "--out", to]);
             assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
         };
-        render("o", "ru", "ru");
+        render(compared.path(), "ru", "ru");
         render("ru", "en", "back");
-        assert_eq!(differences(&dir.path().join("o"), &dir.path().join("back")), [""; 0]);
+        assert_eq!(differences(&compared.out, &dir.path().join("back")), [""; 0]);
         let page = fs::read_to_string(dir.path().join("ru/comparison.md")).unwrap();
         assert!(page.contains(if what == "--published" { "ОИУС" } else { "σ100" }), "{page}");
     }
@@ -109,8 +88,7 @@ fn comparisons_come_out_the_same() {
 fn forms_are_chosen_and_what_is_missing_is_said() {
     let dir = tempdir().unwrap();
     let at = |name: &str| dir.path().join(name);
-    let run = ["run", &procedure(), &sample("indeterminate"), "--serial", "SN-1", "--out", "o"];
-    sagnac(dir.path(), &run);
+    tested_once("indeterminate").copy_to(&at("o"));
     let report = |args: &[&str]| sagnac(dir.path(), &[&["report", "o", "--lang", "en"], args].concat());
     assert_eq!(report(&["--format", "html", "--out", "h"]).code, 0);
     assert_eq!(names(&at("h")), ["SHA256SUMS", "report.html", "result.json"]);
@@ -118,6 +96,7 @@ fn forms_are_chosen_and_what_is_missing_is_said() {
     let of_both = [
         "SHA256SUMS",
         "figures",
+        "limits.toml",
         "measurands.csv",
         "procedure.toml",
         "report.md",
@@ -140,6 +119,7 @@ fn forms_are_chosen_and_what_is_missing_is_said() {
     let less = [
         "SHA256SUMS",
         "junit.xml",
+        "limits.toml",
         "measurands.csv",
         "procedure.toml",
         "report.html",

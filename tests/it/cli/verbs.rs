@@ -1,26 +1,26 @@
 //! The verbs beside `run`: analyze, check, schema, selftest.
 
-use crate::support;
-use crate::support::{altered, limits, measurand, names, procedure, result, sagnac, sample};
+use crate::support::shared::{SharedRun, shared};
+use crate::support::{altered, limits, measurand, names, procedure, sagnac, sample};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 use tempfile::tempdir;
 
-/// The averaging times of an estimator in a `sigma_tau.csv`.
-fn taus(path: &Path, estimator: &str) -> Vec<String> {
-    let text = std::fs::read_to_string(path).unwrap();
+/// The averaging times of an estimator in the `sigma_tau.csv` of a result.
+fn taus(run: &SharedRun, estimator: &str) -> Vec<String> {
+    let text = run.text("sigma_tau.csv");
     let rows = text.lines().filter_map(|l| l.strip_prefix(&format!("{estimator},")));
     rows.map(|l| l.split(',').next().unwrap().to_owned()).collect()
 }
 
-fn analyze(folder: &Path, recording: &str, options: &[&str]) -> Value {
-    let args = [&["analyze", recording, "--out", "o"], options].concat();
-    let said = sagnac(folder, &args);
-    assert_eq!(said.code, 0, "{args:?}: {said:?}");
-    assert!(said.out.starts_with("NO LIMITS"), "{}", said.out);
-    crate::support::assert_no_nan(&folder.join("o"));
-    result(&folder.join("o"))
+/// A sample analysed with options.
+fn analyze(name: &str, options: &[&str]) -> &'static SharedRun {
+    let run = shared(&[&["analyze", &sample(name)], options].concat(), "a");
+    assert_eq!(run.said.code, 0, "{options:?}: {:?}", run.said);
+    assert!(run.said.out.starts_with("NO LIMITS"), "{}", run.said.out);
+    crate::support::assert_no_nan(&run.out);
+    run
 }
 
 fn refused(folder: &Path, options: &[&str], fragments: &[&str]) {
@@ -40,14 +40,13 @@ fn number(value: &Value) -> f64 {
 
 #[test]
 fn analyze_goes_by_the_names_of_the_columns() {
-    let dir = tempdir().unwrap();
-    let found = analyze(dir.path(), &sample("pass"), &[]);
+    let found = analyze("pass", &[]).result();
     assert_eq!(found["verdict"], "none");
     assert!(found["procedure"].is_null());
     // The sample was made with N = 0.002 and B = 0.003.
-    let n = measurand(&found, "angle_random_walk");
+    let n = measurand(found, "angle_random_walk");
     assert!((number(&n["value"]) / 0.002 - 1.0).abs() < 0.02, "{n}");
-    let b = &measurand(&found, "bias_instability")["interval"];
+    let b = &measurand(found, "bias_instability")["interval"];
     assert!(number(&b["low"]) < 0.003 && 0.003 < number(&b["high"]), "{b}");
     let roles: Vec<&str> = found["recording"][0]["columns"]
         .as_array()
@@ -60,19 +59,17 @@ fn analyze_goes_by_the_names_of_the_columns() {
 
 #[test]
 fn analyze_takes_columns_by_name_and_by_position() {
-    let dir = tempdir().unwrap();
-    let by_name = analyze(dir.path(), &sample("pass"), &["--rate", "rate_deg_h"]);
-    let by_position = analyze(dir.path(), &sample("pass"), &["--rate", "2", "--time", "1"]);
+    let by_name = analyze("pass", &["--rate", "rate_deg_h"]).result();
+    let by_position = analyze("pass", &["--rate", "2", "--time", "1"]).result();
     assert_eq!(by_name["measurands"], by_position["measurands"]);
 }
 
 #[test]
 fn a_unit_scales_every_angle() {
-    let dir = tempdir().unwrap();
-    let own = analyze(dir.path(), &sample("pass"), &[]);
-    let scaled = analyze(dir.path(), &sample("pass"), &["--rate", "rate_deg_h", "--unit", "deg/s"]);
+    let own = analyze("pass", &[]).result();
+    let scaled = analyze("pass", &["--rate", "rate_deg_h", "--unit", "deg/s"]).result();
     for id in ["static_bias", "angle_random_walk", "bias_instability", "russian_drift_100s"] {
-        let ratio = number(&measurand(&scaled, id)["value"]) / number(&measurand(&own, id)["value"]);
+        let ratio = number(&measurand(scaled, id)["value"]) / number(&measurand(own, id)["value"]);
         assert!((ratio / 3600.0 - 1.0).abs() < 1e-3, "{id}: {ratio}");
     }
 }
@@ -80,33 +77,32 @@ fn a_unit_scales_every_angle() {
 #[test]
 fn without_stamps_the_sample_rate_is_the_time_base() {
     let dir = tempdir().unwrap();
-    let own = analyze(dir.path(), &sample("pass"), &[]);
-    let same = analyze(dir.path(), &sample("pass"), &["--time", "none", "--sample-rate", "0.1"]);
+    let own = analyze("pass", &[]).result();
+    let same = analyze("pass", &["--time", "none", "--sample-rate", "0.1"]).result();
     assert_eq!(own["measurands"], same["measurands"]);
-    let faster = analyze(dir.path(), &sample("pass"), &["--time", "none", "--sample-rate", "10"]);
+    let run = analyze("pass", &["--time", "none", "--sample-rate", "10"]);
+    let faster = run.result();
     assert_eq!(number(&faster["recording"][0]["sample_interval_s"]), 0.1);
-    assert_eq!(taus(&dir.path().join("o/sigma_tau.csv"), "oadev")[..3], ["0.1", "0.2", "0.4"]);
+    assert_eq!(taus(run, "oadev")[..3], ["0.1", "0.2", "0.4"]);
     // White noise: σ(τ) = N/√τ, so the same σ at a tenth of a tenth of the interval is a tenth of N.
     let n = |r: &Value| number(&measurand(r, "angle_random_walk")["value"]);
-    assert!((n(&faster) / n(&own) - 0.1).abs() < 1e-3);
+    assert!((n(faster) / n(own) - 0.1).abs() < 1e-3);
     refused(dir.path(), &["--time", "none"], &["no time column", "--sample-rate HZ"]);
 }
 
 #[test]
 fn averaging_times_are_those_asked_for() {
-    let dir = tempdir().unwrap();
-    let table = dir.path().join("o/sigma_tau.csv");
-    analyze(dir.path(), &sample("pass"), &["--taus", "10,100,3000"]);
+    let listed = analyze("pass", &["--taus", "10,100,3000"]);
     for estimator in ["oadev", "mdev", "hdev", "totdev"] {
-        assert_eq!(taus(&table, estimator), ["10", "100", "3000"], "{estimator}");
+        assert_eq!(taus(listed, estimator), ["10", "100", "3000"], "{estimator}");
     }
-    let listed = std::fs::read_to_string(&table).unwrap();
-    analyze(dir.path(), &sample("pass"), &["--taus", "10,100,3000", "--exact"]);
-    assert_eq!(listed, std::fs::read_to_string(&table).unwrap(), "short records are always exact");
-    analyze(dir.path(), &sample("pass"), &["--taus", "decade"]);
-    assert_eq!(taus(&table, "oadev")[..8], ["10", "20", "30", "40", "50", "60", "80", "100"]);
-    analyze(dir.path(), &sample("pass"), &["--taus", "octave"]);
-    assert_eq!(taus(&table, "oadev")[..5], ["10", "20", "40", "80", "160"]);
+    let exact = analyze("pass", &["--taus", "10,100,3000", "--exact"]);
+    let table = "sigma_tau.csv";
+    assert_eq!(listed.text(table), exact.text(table), "short records are always exact");
+    let decade = analyze("pass", &["--taus", "decade"]);
+    assert_eq!(taus(decade, "oadev")[..8], ["10", "20", "30", "40", "50", "60", "80", "100"]);
+    let octave = analyze("pass", &["--taus", "octave"]);
+    assert_eq!(taus(octave, "oadev")[..5], ["10", "20", "40", "80", "160"]);
 }
 
 #[test]

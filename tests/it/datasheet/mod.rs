@@ -8,8 +8,15 @@ mod rows;
 mod samples;
 mod tables;
 
+use crate::support::shared::{SharedRun, shared};
+use crate::support::shipped;
 use serde_json::Value;
 use std::path::Path;
+
+/// The data sheet of the sample lot.
+pub fn of_the_lot() -> &'static SharedRun {
+    shared(&["datasheet", &shipped("samples/lot/*/result.json"), "--lang", "en"], "sheet")
+}
 
 /// The data sheet in a folder.
 fn sheet(folder: &Path) -> Value {

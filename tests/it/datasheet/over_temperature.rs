@@ -1,19 +1,16 @@
 //! Bias over temperature of a lot, from results with compensation tables beside them.
 
 use crate::datasheet::sheet;
-use crate::support::{root, sagnac};
+use crate::support::pairs::sample_once;
+use crate::support::sagnac;
 
 #[test]
 fn units_with_compensation_tables_are_told_over_temperature() {
     let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
-    let sample = |name: &str| root().join("samples").join(name).display().to_string();
-    let (pass, fail) = (sample("temperature-pass.csv"), sample("temperature-fail.csv"));
-    for (recording, serial) in [(&pass, "T-1"), (&fail, "T-2")] {
-        let said = sagnac(at, &["run", "temperature-ramp", recording, "--serial", serial, "--out", serial]);
-        assert!(matches!(said.code, 0 | 1 | 3), "{said:?}");
-    }
-    let said = sagnac(at, &["datasheet", "T-1/result.json", "T-2/result.json", "--out", "s"]);
+    let result = |name: &str| format!("{}/result.json", sample_once(name).path());
+    let (pass, fail) = (result("temperature-pass"), result("temperature-fail"));
+    let said = sagnac(at, &["datasheet", &pass, &fail, "--out", "s"]);
     assert_eq!(said.code, 0, "{said:?}");
     let sheet = sheet(&at.join("s"));
     let curve = &sheet["temperature_curves"][0];

@@ -1,6 +1,6 @@
 //! The rows that a sheet file chooses, and what the sheet says of limits.
 
-use super::{bound, quantity, sheet};
+use super::{bound, of_the_lot, quantity, sheet};
 use crate::support::{root, sagnac};
 use tempfile::tempdir;
 
@@ -14,11 +14,9 @@ fn rows_names_units_and_footnotes_are_those_of_the_file() {
     let dir = tempdir().unwrap();
     std::fs::write(dir.path().join("s.toml"), FILE).unwrap();
     let results = root().join("samples/lot/*/result.json").display().to_string();
-    let all = sagnac(dir.path(), &["datasheet", &results, "--out", "all"]);
-    assert_eq!(all.code, 0, "{all:?}");
     let said = sagnac(dir.path(), &["datasheet", &results, "--sheet", "s.toml", "--out", "own"]);
     assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
-    let (all, own) = (sheet(&dir.path().join("all")), sheet(&dir.path().join("own")));
+    let (all, own) = (sheet(&of_the_lot().out), sheet(&dir.path().join("own")));
     let ids: Vec<&str> =
         own["quantities"].as_array().unwrap().iter().map(|q| q["id"].as_str().unwrap()).collect();
     assert_eq!(ids, ["bias_instability", "angle_random_walk"]);
@@ -38,11 +36,7 @@ fn rows_names_units_and_footnotes_are_those_of_the_file() {
 
 #[test]
 fn what_more_units_would_promise_and_what_a_limit_risks_is_said() {
-    let dir = tempdir().unwrap();
-    let results = root().join("samples/lot/*/result.json").display().to_string();
-    let said = sagnac(dir.path(), &["datasheet", &results, "--out", "s"]);
-    assert_eq!(said.code, 0, "{said:?}");
-    let all = sheet(&dir.path().join("s"));
+    let all = sheet(&of_the_lot().out);
     let arw = quantity(&all, "angle_random_walk");
     let more = &arw["outlook"][0];
     let now = bound(arw, "measured", "upper");

@@ -1,6 +1,6 @@
 //! The shipped results of a lot: 30 simulated units of which the population is known.
 
-use crate::datasheet::{bound, notes, quantity, sheet};
+use crate::datasheet::{bound, notes, of_the_lot, quantity, sheet};
 use crate::support::schema::{closed, validate};
 use crate::support::{root, sagnac};
 use sagnac_studies::bench::noise_source::{NoiseSource, add, csv};
@@ -60,17 +60,15 @@ fn write_the_samples() {
 #[test]
 fn the_shipped_lot_tells_the_population_that_it_is_from() {
     let dir = tempdir().unwrap();
-    let pattern = root().join("samples/lot/*/result.json");
-    let args = ["datasheet", &pattern.to_string_lossy(), "--lang", "en", "--out", "sheet"];
-    let said = sagnac(dir.path(), &args);
+    let run = of_the_lot();
+    let said = &run.said;
     assert_eq!(said.code, 0, "{said:?}");
     assert!(
         said.out.contains("units: 30; lots: 3") && said.out.contains("Angle random walk"),
         "{}",
         said.out
     );
-    let out = dir.path().join("sheet");
-    let found = sheet(&out);
+    let found = sheet(&run.out);
     assert_eq!(
         (&found["format"], &found["units"], &found["lots"]),
         (&"datasheet/1".into(), &30.into(), &3.into())
@@ -101,15 +99,15 @@ fn the_shipped_lot_tells_the_population_that_it_is_from() {
     assert_eq!(found["curves"][0]["units"].as_array().unwrap().len(), 30);
 
     // The limits are of a kind that the program takes.
-    let checked = sagnac(dir.path(), &["check", "sheet/limits.toml", "--lang", "en"]);
+    let checked = sagnac(dir.path(), &["check", &format!("{}/limits.toml", run.path()), "--lang", "en"]);
     assert_eq!(checked.code, 0, "{checked:?}");
-    let limits: toml::Table = toml::from_str(&fs::read_to_string(out.join("limits.toml")).unwrap()).unwrap();
+    let limits: toml::Table = toml::from_str(&run.text("limits.toml")).unwrap();
     assert!(limits["limit"].as_array().unwrap().len() > 8);
     for (page, words) in [("datasheet.html", "<svg"), ("datasheet.md", "With a confidence of 95 %")] {
-        assert!(fs::read_to_string(out.join(page)).unwrap().contains(words), "{page}");
+        assert!(run.text(page).contains(words), "{page}");
     }
     // In the other language, from the data sheet alone.
-    let said = sagnac(dir.path(), &["report", "sheet", "--lang", "ru", "--out", "ru"]);
+    let said = sagnac(dir.path(), &["report", run.path(), "--lang", "ru", "--out", "ru"]);
     assert_eq!(said.code, 0, "{said:?}");
     let page = fs::read_to_string(dir.path().join("ru/datasheet.html")).unwrap();
     assert!(page.contains("Сводка показателей партии") && !page.contains("datasheet."), "a text is missing");

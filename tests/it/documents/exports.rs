@@ -8,7 +8,7 @@ use std::fs::{self, File};
 
 #[test]
 fn quantities_come_back_to_the_bit_from_csv_and_parquet() {
-    let dir = tested("pass", "");
+    let dir = tested("pass");
     let made = sagnac(dir.path(), &["report", "r", "--format", "csv,parquet,junit", "--out", "forms"]);
     assert_eq!(made.code, 0, "{made:?}");
     let record = result(&dir.path().join("r"));
@@ -49,7 +49,7 @@ const LABORATORY: &str = "format = \"laboratory/1\"\nlanguages = [\"en\", \"ru\"
 
 #[test]
 fn a_certificate_names_what_it_lacks_and_has_the_numbers_of_the_result() {
-    let dir = tested("pass", "");
+    let dir = tested("pass");
     let at = dir.path();
     let asked =
         |more: &[&str]| sagnac(at, &[&["report", "r", "--format", "dcc,atml", "--out", "c"], more].concat());

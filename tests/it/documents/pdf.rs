@@ -47,7 +47,7 @@ fn a_report_is_the_same_twice_and_checked_without_its_folder() {
     if skipped() {
         return;
     }
-    let dir = tested("pass", "");
+    let dir = tested("pass");
     let at = dir.path();
     for (out, lang, pages) in [("en", "en", "all"), ("ru", "ru", "all"), ("one", "en", "summary")] {
         let args =

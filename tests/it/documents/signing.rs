@@ -1,7 +1,8 @@
 //! Signatures: a chain that holds, and every way in which it does not.
 
 use crate::documents::{tested, verified};
-use crate::support::{Said, sagnac};
+use crate::support::quick::Quick;
+use crate::support::{Said, altered, sagnac};
 use ssh_key::{LineEnding, PrivateKey};
 use std::fs;
 use std::path::Path;
@@ -17,13 +18,16 @@ fn put(dir: &Path, verb: &str, key: &str, more: &[&str]) -> Said {
     sagnac(dir, &[&[verb, "r", "--key", key], more].concat())
 }
 
-/// The procedure asks for two signatures by two keys.
-const BOTH: &str = "signatures = [\"tested\", \"approved\"]\n";
-
 #[test]
 fn two_keys_sign_one_after_the_other() {
-    let dir = tested("pass", BOTH);
+    let dir = tempfile::tempdir().unwrap();
     let at = dir.path();
+    let quick = Quick::new("pass");
+    // The procedure asks for two signatures by two keys.
+    let both = [("[report]\n", "[report]\nsignatures = [\"tested\", \"approved\"]\n")];
+    let procedure = altered(at, "p.toml", &quick.procedure, &both);
+    let run = Quick { procedure, ..quick };
+    assert_eq!(run.run(at, &["--out", "r"]).code, 0);
     key(at, "anna", 1);
     key(at, "lead", 2);
     let (code, said) = verified(at, &["r"]);
@@ -61,7 +65,7 @@ fn two_keys_sign_one_after_the_other() {
 
 #[test]
 fn a_changed_folder_is_not_signed_and_a_changed_signature_does_not_hold() {
-    let dir = tested("pass", "");
+    let dir = tested("pass");
     let at = dir.path();
     key(at, "anna", 1);
     key(at, "lead", 2);
@@ -69,7 +73,7 @@ fn a_changed_folder_is_not_signed_and_a_changed_signature_does_not_hold() {
     let said = put(at, "sign", "anna", &[]);
     assert!(said.code == 2 && said.err.contains("report.md: changed"), "{said:?}");
 
-    let dir = tested("pass", "");
+    let dir = tested("pass");
     let at = dir.path();
     key(at, "anna", 1);
     key(at, "lead", 2);
@@ -104,7 +108,7 @@ fn a_changed_folder_is_not_signed_and_a_changed_signature_does_not_hold() {
 
 #[test]
 fn a_result_that_takes_the_place_of_another_is_not_the_signed_one() {
-    let (dir, other) = (tested("pass", ""), tested("fail", ""));
+    let (dir, other) = (tested("pass"), tested("fail"));
     let at = dir.path();
     key(at, "anna", 1);
     put(at, "sign", "anna", &[]);
@@ -115,7 +119,7 @@ fn a_result_that_takes_the_place_of_another_is_not_the_signed_one() {
 
 #[test]
 fn a_row_is_waived_beside_its_verdict() {
-    let dir = tested("fail", "");
+    let dir = tested("fail");
     let at = dir.path();
     key(at, "anna", 1);
     key(at, "lead", 2);
@@ -148,7 +152,7 @@ fn a_row_is_waived_beside_its_verdict() {
 
 #[test]
 fn a_key_of_another_kind_or_none_is_refused() {
-    let dir = tested("pass", "");
+    let dir = tested("pass");
     let at = dir.path();
     fs::write(at.join("nonsense"), "no key").unwrap();
     let rsa = "ssh-rsa AAAAB3NzaC1yc2EAAAADAQABAAAAgQCqGKukO1De7zhZj6+H0qtjTkVxwTCpvKe4eCZ0FPqri0cb2JZfXJ/DgYSF6vUp\
@@ -163,7 +167,7 @@ fn a_key_of_another_kind_or_none_is_refused() {
 
 #[test]
 fn openssh_agrees() {
-    let dir = tested("pass", "");
+    let dir = tested("pass");
     let at = dir.path();
     key(at, "anna", 1);
     put(at, "sign", "anna", &[]);

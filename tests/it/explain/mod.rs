@@ -2,11 +2,12 @@
 
 mod clock;
 mod columns;
-mod in_run;
+pub mod in_run;
 mod on_table;
-mod several;
+pub mod several;
 mod simulation;
 
+use crate::support::shared::{SharedRun, shared, shared_input};
 use crate::support::synthetic::white;
 use crate::support::{root, sagnac, shipped};
 use serde_json::Value;
@@ -29,14 +30,19 @@ fn case(folder: &Path, name: &str, seed: u64, step: f64) {
 
 /// A recording of white noise and a course, and its model, in a folder.
 fn with(folder: &Path, name: &str, seed: u64, course: impl Fn(usize) -> f64) {
+    std::fs::write(folder.join(name), rows(seed, course)).unwrap();
+    std::fs::write(folder.join("model.toml"), MODEL).unwrap();
+}
+
+/// The text of such a recording.
+fn rows(seed: u64, course: impl Fn(usize) -> f64) -> String {
     let mut text = String::from("time_s,rate_deg_h,temp_degC\n");
     for i in 0..4000usize {
         let rate = 5.0 + 60.0 * N * white(seed, i as u64) + course(i);
         let temperature = 20.0 + (i as f64 / 900.0).sin() + 0.01 * white(seed + 1, i as u64);
         let _ = writeln!(text, "{i},{rate:.6},{temperature:.4}");
     }
-    std::fs::write(folder.join(name), text).unwrap();
-    std::fs::write(folder.join("model.toml"), MODEL).unwrap();
+    text
 }
 
 fn json(path: &Path) -> Value {
@@ -53,14 +59,29 @@ fn names(folder: &Path) -> Vec<String> {
     names
 }
 
+/// The model of the recordings.
+fn model() -> String {
+    shared_input("explain-model.toml", || MODEL.to_owned())
+}
+
+/// A recording with a step, whose thermometer has a name of its own.
+fn recording_with_a_step() -> String {
+    shared_input("step.csv", || {
+        rows(15, |i| if i >= AT { 0.2 } else { 0.0 }).replacen("temp_degC", "Housing [degC]", 1)
+    })
+}
+
+/// That recording, explained.
+pub fn step() -> &'static SharedRun {
+    shared(&["explain", &recording_with_a_step(), "--model", &model()], "e")
+}
+
 #[test]
 fn a_step_is_found_and_the_loop_closes() {
-    let dir = tempdir().unwrap();
-    case(dir.path(), "r.csv", 15, 0.2);
-    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    let run = step();
+    let (said, e) = (&run.said, &run.out);
     assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
     assert!(said.out.starts_with("MISMATCH EXPLAINED  ") && said.out.contains("bias step"), "{}", said.out);
-    let e = dir.path().join("e");
     let files = [
         "SHA256SUMS",
         "alternatives.toml",
@@ -70,7 +91,7 @@ fn a_step_is_found_and_the_loop_closes() {
         "report.html",
         "report.md",
     ];
-    assert_eq!(names(&e), files);
+    assert_eq!(names(e), files);
     let all = json(&e.join("explain.json"));
     assert_eq!((all["format"].as_str(), all["verdict"].as_str()), (Some("explain/1"), Some("mismatch")));
     let first = &all["effects"][0];
@@ -94,25 +115,17 @@ fn a_step_is_found_and_the_loop_closes() {
         assert!(e.join(link.0).is_file(), "{} is linked and not there", link.0);
     }
 
-    let again = sagnac(
-        dir.path(),
-        &["explain", "r.csv", "--model", "e/augmented.toml", "--out", "f", "--lang", "ru"],
-    );
+    let (dir, augmented) = (tempdir().unwrap(), format!("{}/augmented.toml", run.path()));
+    let args = ["explain", &recording_with_a_step(), "--model", &augmented, "--out", "f", "--lang", "ru"];
+    let again = sagnac(dir.path(), &args);
     assert_eq!((again.code, again.err.as_str()), (0, ""), "{again:?}");
     assert!(again.out.starts_with("СОГЛАСУЕТСЯ  "), "{}", again.out);
 }
 
 #[test]
 fn candidates_stand_by_what_they_are_worth_and_columns_under_their_own_names() {
-    let dir = tempdir().unwrap();
-    case(dir.path(), "r.csv", 15, 0.2);
-    let path = dir.path().join("r.csv");
-    let text = std::fs::read_to_string(&path).unwrap().replacen("temp_degC", "Housing [degC]", 1);
-    std::fs::write(&path, text).unwrap();
-    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
-    assert_eq!(said.code, 1, "{said:?}");
-    let e = dir.path().join("e");
-    let all = json(&e.join("explain.json"));
+    let run = step();
+    let all = json(&run.out.join("explain.json"));
     let worth: Vec<f64> = all["candidates"]
         .as_array()
         .unwrap()
@@ -123,7 +136,7 @@ fn candidates_stand_by_what_they_are_worth_and_columns_under_their_own_names() {
     let column = &all["columns"][0];
     assert_eq!((&column["name"], &column["recorded_as"]), (&"temp_degC".into(), &"Housing [degC]".into()));
     for page in ["report.html", "report.md"] {
-        let page = std::fs::read_to_string(e.join(page)).unwrap();
+        let page = run.text(page);
         assert!(page.contains("Housing [degC]") && !page.contains("temp_degC"), "{page}");
     }
 }

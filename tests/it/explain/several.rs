@@ -1,7 +1,8 @@
 //! Several recordings of one unit, explained together.
 
-use super::{json, names, with};
+use super::{json, model, names, rows, with};
 use crate::support::sagnac;
+use crate::support::shared::{SharedRun, shared, shared_input};
 use tempfile::tempdir;
 
 /// Temperature as [`with`] writes it, without the noise of its sensor.
@@ -9,21 +10,31 @@ fn temperature(i: usize) -> f64 {
     (i as f64 / 900.0).sin()
 }
 
+/// Recordings of a unit whose bias follows its temperature.
+const RECORDINGS: [&str; 4] = ["a.csv", "b.csv", "c.csv", "d.csv"];
+
+fn recording(i: usize) -> String {
+    shared_input(&format!("joint-{}", RECORDINGS[i]), || rows(300 + 10 * i as u64, |k| 0.05 * temperature(k)))
+}
+
+/// Them explained together.
+pub fn joint() -> &'static SharedRun {
+    let recordings = [0, 1, 2, 3].map(recording);
+    let mut args = vec!["explain"];
+    args.extend(recordings.iter().map(String::as_str));
+    let model = model();
+    args.extend(["--model", &model]);
+    shared(&args, "all")
+}
+
 #[test]
 fn what_recordings_share_is_found_with_all_of_them() {
     let dir = tempdir().unwrap();
-    let files = ["a.csv", "b.csv", "c.csv", "d.csv"];
-    for (i, file) in files.iter().enumerate() {
-        with(dir.path(), file, 300 + 10 * i as u64, |k| 0.05 * temperature(k));
-    }
-    let mut args = vec!["explain"];
-    args.extend(files);
-    args.extend(["--model", "model.toml", "--out", "all"]);
-    let said = sagnac(dir.path(), &args);
+    let run = joint();
+    let (said, all) = (&run.said, &run.out);
     assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
-    let all = dir.path().join("all");
     assert_eq!(
-        names(&all),
+        names(all),
         ["SHA256SUMS", "augmented.toml", "joint.json", "recordings", "report.html", "report.md"]
     );
     let joint = json(&all.join("joint.json"));
@@ -36,7 +47,7 @@ fn what_recordings_share_is_found_with_all_of_them() {
     let slack = 0.5 * (high - low);
     assert!(low - slack < 0.05 && 0.05 < high + slack, "{ci}");
     for (i, recording) in joint["recordings"].as_array().unwrap().iter().enumerate() {
-        assert_eq!(recording["name"], files[i]);
+        assert!(recording["name"].as_str().unwrap().ends_with(RECORDINGS[i]), "{recording}");
         assert_eq!(recording["together"]["verdict"], "consistent", "{recording}");
         let own = all.join(recording["folder"].as_str().unwrap()).join("explain.json");
         assert_eq!(json(&own)["verdict"], "consistent");
@@ -44,13 +55,14 @@ fn what_recordings_share_is_found_with_all_of_them() {
     assert!(said.out.contains("d.csv"), "{}", said.out);
 
     // The folder renders anew, in the other language as well.
-    let anew = sagnac(dir.path(), &["report", "all", "--lang", "ru", "--out", "anew"]);
+    let anew = sagnac(dir.path(), &["report", run.path(), "--lang", "ru", "--out", "anew"]);
     assert_eq!((anew.code, anew.err.as_str()), (0, ""), "{anew:?}");
     let page = std::fs::read_to_string(dir.path().join("anew/report.html")).unwrap();
     assert!(page.contains("Общее для записей"), "{page}");
 
     // With the shared effect in the model nothing is left.
-    let args = ["explain", "a.csv", "--model", "all/augmented.toml", "--out", "again"];
+    let augmented = format!("{}/augmented.toml", run.path());
+    let args = ["explain", &recording(0), "--model", &augmented, "--out", "again"];
     assert_eq!(sagnac(dir.path(), &args).code, 0);
 }
 

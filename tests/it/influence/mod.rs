@@ -5,6 +5,7 @@
 
 mod study;
 
+use crate::support::pairs::sample_once;
 use sagnac_studies::bench::influence::{FIELD, NOISE, SUPPLY, series, shaken, turns};
 use sagnac_studies::bench::influence::{Recorded, Series, Turns, linear, squared};
 use serde_json::Value;
@@ -97,28 +98,31 @@ fn holds(result: &Value, id: &str, truth: f64) {
 #[test]
 fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
     let names = ["bias-repeatability", "magnetic-sensitivity", "supply-sensitivity", "vibration"];
-    for (i, name) in names.iter().enumerate() {
-        let procedure = path(&format!("procedures/{name}.toml"));
-        for (j, (end, code)) in [("pass", 0), ("fail", 1)].into_iter().enumerate() {
-            let serial = format!("SN-{:04}", 111 + 2 * i + j);
-            let (got, result) = run(&procedure, &path(&format!("samples/{name}-{end}.csv")), &serial);
-            assert_eq!(got, code, "{name}-{end}: {:#} {:#}", result["summary"], result["measurands"]);
+    for name in &names {
+        for (end, code) in [("pass", 0), ("fail", 1)] {
+            let run = sample_once(&format!("{name}-{end}"));
+            let result = run.result();
+            assert_eq!(
+                run.said.code, code,
+                "{name}-{end}: {:#} {:#}",
+                result["summary"], result["measurands"]
+            );
             match (*name, end) {
                 ("bias-repeatability", _) if result["integrity"]["missing_samples"] != 0 => {
                     panic!("switching off is no gap: {}", result["integrity"])
                 }
-                ("bias-repeatability", "pass") => holds(&result, "bias_repeatability", 0.02),
-                ("bias-repeatability", _) => holds(&result, "bias_repeatability", 0.3),
-                ("magnetic-sensitivity", "pass") => holds(&result, "magnetic_sensitivity", 0.05),
-                ("magnetic-sensitivity", _) => holds(&result, "magnetic_sensitivity", 0.6),
-                ("supply-sensitivity", "pass") => holds(&result, "supply_sensitivity", 0.02),
-                ("supply-sensitivity", _) => holds(&result, "supply_sensitivity", -0.6),
+                ("bias-repeatability", "pass") => holds(result, "bias_repeatability", 0.02),
+                ("bias-repeatability", _) => holds(result, "bias_repeatability", 0.3),
+                ("magnetic-sensitivity", "pass") => holds(result, "magnetic_sensitivity", 0.05),
+                ("magnetic-sensitivity", _) => holds(result, "magnetic_sensitivity", 0.6),
+                ("supply-sensitivity", "pass") => holds(result, "supply_sensitivity", 0.02),
+                ("supply-sensitivity", _) => holds(result, "supply_sensitivity", -0.6),
                 (_, "pass") => {
-                    holds(&result, "vibration_sensitivity", 0.001);
+                    holds(result, "vibration_sensitivity", 0.001);
                     // N at 2 g is 1.1 times that at rest.
-                    holds(&result, "angle_random_walk_shift", 0.1 * NOISE.n);
+                    holds(result, "angle_random_walk_shift", 0.1 * NOISE.n);
                 }
-                _ => holds(&result, "angle_random_walk_shift", 0.6 * NOISE.n),
+                _ => holds(result, "angle_random_walk_shift", 0.6 * NOISE.n),
             }
         }
     }
@@ -160,11 +164,7 @@ fn files_of_a_manifest_are_the_runs() {
     assert_eq!(code, 0, "{:#}", result["summary"]);
     let means = result["interval_means"].as_array().unwrap();
     assert_eq!((means.len(), means[3]["name"].as_str()), (8, Some("run3.csv")));
-    let (_, one) = run(
-        &path("procedures/bias-repeatability.toml"),
-        &path("samples/bias-repeatability-pass.csv"),
-        "SN-0111",
-    );
+    let one = sample_once("bias-repeatability-pass").result();
     for (a, b) in means.iter().zip(one["interval_means"].as_array().unwrap()) {
         let (a, b) = (a["mean_deg_h"].as_f64().unwrap(), b["mean_deg_h"].as_f64().unwrap());
         assert!((a - b).abs() < 0.004, "{a} {b}");
@@ -219,16 +219,12 @@ fn a_declared_influence_is_not_one_that_acted() {
 
 #[test]
 fn every_condition_says_how_it_is_known() {
-    let (_, result) = run(
-        &path("procedures/supply-sensitivity.toml"),
-        &path("samples/supply-sensitivity-pass.csv"),
-        "SN-0115",
-    );
+    let result = sample_once("supply-sensitivity-pass").result();
     for c in result["conditions"].as_array().unwrap() {
         assert!(c["evidence"].is_string(), "{c}");
     }
-    assert_eq!(condition(&result, "influence_acted")["evidence"], "recorded");
-    assert_eq!(condition(&result, "calibration")["evidence"], "declared");
+    assert_eq!(condition(result, "influence_acted")["evidence"], "recorded");
+    assert_eq!(condition(result, "calibration")["evidence"], "declared");
     assert!(result["interval_means"].as_array().unwrap().iter().all(|m| m["evidence"] == "recorded"));
 }
 

@@ -1,6 +1,6 @@
 //! The changes of a sample.
 
-use crate::metamorphic::pairs::Pair;
+use crate::support::pairs::Pair;
 
 /// What is done to a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

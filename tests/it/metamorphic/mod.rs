@@ -4,11 +4,10 @@
 //! condition that is not met, a fault, or a row that says why it is undecided.
 
 mod changes;
-mod pairs;
 
+use crate::support::pairs::{PAIRS, Pair};
 use crate::support::{result, sagnac, shipped};
 use changes::Change;
-use pairs::{PAIRS, Pair};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::path::Path;

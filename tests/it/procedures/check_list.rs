@@ -1,6 +1,8 @@
 //! Which checks were made, and why the others were not: in the result and in both reports, from what was executed.
 
-use crate::support::{altered, limits, procedure, result, sagnac, sample, shipped};
+use crate::support::pairs::sample_once;
+use crate::support::shared::tested_once;
+use crate::support::{altered, limits, procedure, result, sagnac, sample};
 use serde_json::Value;
 use std::path::Path;
 use tempfile::tempdir;
@@ -23,11 +25,11 @@ fn a_check_that_lacks_what_it_needs_is_listed_with_the_reason() {
     let dir = tempdir().unwrap();
     let limits = limits();
     let more = ["--limits", limits.as_str(), "--serial", "SN-0001"];
-    let r = run(dir.path(), &procedure(), &sample("pass"), &more);
-    assert_eq!((check(&r, "earth_rate")["status"].as_str()), Some("made"));
-    assert_eq!(check(&r, "earth_rate")["evidence"], "earth_rate");
-    assert_eq!(check(&r, "serial_number")["status"], "made");
-    assert_eq!(check(&r, "column_units")["status"], "made");
+    let r = tested_once("pass").result();
+    assert_eq!((check(r, "earth_rate")["status"].as_str()), Some("made"));
+    assert_eq!(check(r, "earth_rate")["evidence"], "earth_rate");
+    assert_eq!(check(r, "serial_number")["status"], "made");
+    assert_eq!(check(r, "column_units")["status"], "made");
     // Without the site the sign of the output cannot be checked, and the report says so.
     std::fs::write(
         dir.path().join("bare.toml"),
@@ -72,34 +74,23 @@ fn a_check_that_lacks_what_it_needs_is_listed_with_the_reason() {
 
 #[test]
 fn every_kind_of_test_lists_its_checks() {
-    let dir = tempdir().unwrap();
-    let of = |name: &str| shipped(&format!("procedures/{name}.toml"));
-    let csv = |name: &str| shipped(&format!("samples/{name}.csv"));
-    for (name, recording, ids) in [
-        (
-            "scale-factor",
-            "scale-factor-pass",
-            &["table_response", "table_reached", "earth_sign", "clock_by_turns"][..],
-        ),
-        ("multi-position", "multi-position-pass", &["earth_in_positions"]),
-        (
-            "magnetic-sensitivity",
-            "magnetic-sensitivity-pass",
-            &["temperature_in_step", "earth_rate", "noise_level"],
-        ),
-        ("bias-repeatability", "bias-repeatability-pass", &["earth_rate", "distribution"]),
-        ("warm-up", "warm-up-pass", &["earth_rate", "temperature_unit"]),
+    for (name, ids) in [
+        ("scale-factor-pass", &["table_response", "table_reached", "earth_sign", "clock_by_turns"][..]),
+        ("multi-position-pass", &["earth_in_positions"]),
+        ("magnetic-sensitivity-pass", &["temperature_in_step", "earth_rate", "noise_level"]),
+        ("bias-repeatability-pass", &["earth_rate", "distribution"]),
+        ("warm-up-pass", &["earth_rate", "temperature_unit"]),
     ] {
-        let r = run(dir.path(), &of(name), &csv(recording), &["--serial", "SN-1"]);
+        let r = sample_once(name).result();
         for id in ids.iter().chain(&["plausible", "full_scale", "column_units", "serial_number"]) {
-            check(&r, id);
+            check(r, id);
         }
         for c in r["checks"].as_array().unwrap() {
             assert_eq!(c["status"] == "made", c["reason"].is_null(), "{name}: {c}");
             assert_eq!(c["status"] == "made", c["evidence"].is_string(), "{name}: {c}");
         }
     }
-    assert_eq!(check(&result(&dir.path().join("r")), "plausible")["status"], "made");
+    assert_eq!(check(sample_once("warm-up-pass").result(), "plausible")["status"], "made");
 }
 
 #[test]

@@ -1,5 +1,6 @@
 //! Procedures of several phases from the command line.
 
+use crate::support::shared::phased_once;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
@@ -29,18 +30,9 @@ fn one_report_covers_all_phases_and_the_worst_verdict_is_that_of_the_whole() {
     for (end, code, verdicts) in
         [("pass", 0, ["pass", "pass", "pass"]), ("fail", 1, ["pass", "fail", "pass"])]
     {
-        let folder = tempfile::tempdir().unwrap();
-        let out = folder.path().join("report");
-        let manifest = root(&format!("samples/acceptance-{end}.toml")).to_string_lossy().into_owned();
-        let done = sagnac(&["run", &acceptance(), &manifest, "--lang", "en"], &out);
-        assert_eq!(
-            done.status.code(),
-            Some(code),
-            "{} {}",
-            said(&done),
-            String::from_utf8_lossy(&done.stdout)
-        );
-        let whole = result(&out);
+        let run = phased_once(end);
+        assert_eq!(run.said.code, code, "{:?}", run.said);
+        let (out, whole) = (&run.out, run.result());
         assert_eq!(whole["procedure"]["id"], "acceptance");
         assert_eq!(whole["unit_under_test"]["serial"], "SN-0111");
         let phases = whole["phases"].as_array().unwrap();
@@ -65,7 +57,7 @@ fn one_report_covers_all_phases_and_the_worst_verdict_is_that_of_the_whole() {
         }
         assert_eq!(whole["measurands"].as_array().unwrap().len(), rows);
         assert_eq!(whole["recording"].as_array().unwrap().len(), 3);
-        let page = std::fs::read_to_string(out.join("report.html")).unwrap();
+        let page = run.text("report.html");
         let mut ids: Vec<&str> =
             page.match_indices(" id=\"").filter_map(|(i, m)| page[i + m.len()..].split('"').next()).collect();
         let all = ids.len();

@@ -1,5 +1,7 @@
 //! Table tests from the command line: every shipped procedure on its samples, and every mistake by its name.
 
+use crate::support::pairs::sample_once;
+use crate::support::shared::shared;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -28,20 +30,19 @@ pub fn run(procedure: &Path, recording: &Path) -> (i32, Value) {
 
 #[test]
 fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
-    for (name, sample, code) in [
-        ("scale-factor", "scale-factor-pass", 0),
-        ("scale-factor", "scale-factor-fail", 1),
-        ("threshold", "threshold-pass", 0),
-        ("threshold", "threshold-fail", 1),
-        ("misalignment", "misalignment-pass", 0),
-        ("misalignment", "misalignment-fail", 1),
-        ("multi-position", "multi-position-pass", 0),
-        ("multi-position", "multi-position-software", 3),
+    for (sample, code) in [
+        ("scale-factor-pass", 0),
+        ("scale-factor-fail", 1),
+        ("threshold-pass", 0),
+        ("threshold-fail", 1),
+        ("misalignment-pass", 0),
+        ("misalignment-fail", 1),
+        ("multi-position-pass", 0),
+        ("multi-position-software", 3),
     ] {
-        let procedure = root(&format!("procedures/{name}.toml"));
-        let (got, result) = run(&procedure, &root(&format!("samples/{sample}.csv")));
-        assert_eq!(got, code, "{sample}: {:#}", result["summary"]);
-        assert!(!result["measurands"].as_array().unwrap().is_empty(), "{sample}");
+        let run = sample_once(sample);
+        assert_eq!(run.said.code, code, "{sample}: {:#}", run.result()["summary"]);
+        assert!(!run.result()["measurands"].as_array().unwrap().is_empty(), "{sample}");
     }
 }
 
@@ -290,17 +291,8 @@ fn steps_are_shown_with_the_unit_that_reads_well_and_what_was_recorded() {
         ("threshold", "ru", "от −13,717 град/ч до −11,216 град/ч", "Скорость, град/ч", false),
         ("scale-factor", "en", "from −100.00 °/s to 100.00 °/s", "Rate, °/s", true),
     ] {
-        let folder = tempfile::tempdir().unwrap();
-        let out = folder.path().join("report");
-        let status = Command::new(env!("CARGO_BIN_EXE_sagnac"))
-            .arg("run")
-            .arg(root(&format!("procedures/{name}.toml")))
-            .arg(root(&format!("samples/{name}-pass.csv")))
-            .args(["--serial", "SN-1", "--lang", lang, "--out"])
-            .arg(&out)
-            .output()
-            .unwrap();
-        assert_eq!(status.status.code(), Some(0));
+        let run = sample_once(&format!("{name}-pass"));
+        let out = &shared(&["report", run.path(), "--lang", lang], "report").out;
         let text = std::fs::read_to_string(out.join("report.md")).unwrap();
         assert!(text.contains(sentence) && text.contains(column), "{name} {lang}: {text}");
         assert_eq!(text.contains("Temperature, °C |") || text.contains("Температура, °C |"), temperatures);

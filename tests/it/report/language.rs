@@ -2,6 +2,8 @@
 
 use crate::report::russian::sentences;
 use crate::support::corpus::{cases, problems};
+use crate::support::shared::{shared, tested_once};
+use crate::support::{limits, procedure, sample};
 use sagnac::config::procedure::{parse_limits, parse_procedure};
 use sagnac::i18n::{Lang, Localize, table};
 use std::collections::BTreeSet;
@@ -486,36 +488,19 @@ fn machine_readable(folder: &Path) -> (String, Vec<u8>) {
 
 #[test]
 fn results_for_programs_are_the_same_in_every_language() {
-    let dir = tempfile::tempdir().unwrap();
-    let mut outcomes = vec![];
-    for lang in ["en", "ru"] {
-        let folder = dir.path().join(lang);
-        let out = folder.display().to_string();
-        let (code, said, err) = sagnac(
-            &[
-                "run",
-                "procedures/static-bias.toml",
-                "samples/unit-faults.csv",
-                "--limits",
-                "procedures/limits/sample-unit.toml",
-                "--serial",
-                "SN-0042",
-                "--out",
-                &out,
-                "--lang",
-                lang,
-            ],
-            &[],
-        );
-        assert_eq!(err, "");
-        let html = std::fs::read_to_string(folder.join("report.html")).unwrap();
-        assert!(html.contains(&format!("<html lang=\"{lang}\">")));
-        outcomes.push((code, machine_readable(&folder), said, html));
+    let english = tested_once("faults");
+    let (procedure, faults, limits) = (procedure(), sample("faults"), limits());
+    let args = ["run", &procedure, &faults, "--limits", &limits, "--serial", "SN-1", "--lang", "ru"];
+    let russian = shared(&args, "r");
+    for (lang, run) in [("en", english), ("ru", russian)] {
+        assert_eq!(run.said.err, "");
+        assert!(run.text("report.html").contains(&format!("<html lang=\"{lang}\">")));
     }
-    assert_eq!(outcomes[0].0, outcomes[1].0);
-    assert!(outcomes[0].1 == outcomes[1].1, "result.json or sigma_tau.csv depends on the language");
-    assert_ne!(outcomes[0].2, outcomes[1].2);
-    assert!(outcomes[1].2.starts_with("НЕ "), "{}", outcomes[1].2);
+    assert_eq!(english.said.code, russian.said.code);
+    let same = machine_readable(&english.out) == machine_readable(&russian.out);
+    assert!(same, "result.json or sigma_tau.csv depends on the language");
+    assert_ne!(english.said.out, russian.said.out);
+    assert!(russian.said.out.starts_with("НЕ "), "{}", russian.said.out);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 //! column is cut.
 
 use crate::report::browser::{browser, required};
+use crate::support::shared::shared;
 use crate::support::{root, sagnac};
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -37,10 +38,12 @@ const MARK: &str = "https://mark.invalid/";
 fn run(folder: &Path, (procedure, recording, more): (&str, &str, &[&str])) -> PathBuf {
     let file = root().join("procedures").join(procedure).with_extension("toml").display().to_string();
     let sample = root().join("samples").join(recording).display().to_string();
-    let out = format!("{procedure}-en");
-    let said = sagnac(folder, &[&["run", &file, &sample, "--lang", "en", "--out", &out], more].concat());
-    assert!(folder.join(&out).join("report.html").is_file(), "{procedure}: {said:?}");
-    folder.join(out)
+    let run = shared(&[&["run", &file, &sample, "--lang", "en"], more].concat(), "r");
+    assert!(run.out.join("report.html").is_file(), "{procedure}: {:?}", run.said);
+    // A mark is put into a copy.
+    let out = folder.join(format!("{procedure}-en"));
+    run.copy_to(&out);
+    out
 }
 
 fn chromium(browser: &Path, folder: &Path, args: &[&str], page: &Path) -> Vec<u8> {

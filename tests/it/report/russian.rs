@@ -1,43 +1,29 @@
 //! The Russian report of every shipped procedure on its sample: no English sentence in it, neither of the program nor of
 //! the procedure.
 
-use crate::support::{program, root, sagnac, steady};
+use crate::support;
+use crate::support::pairs::sample_once;
+use crate::support::shared::{SharedRun, phased_once, shared};
+use crate::support::{procedure, root, sagnac, shipped, steady};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// A shipped procedure, its shortest sample, the serial number of that and limits where there are any.
-struct Case {
-    procedure: &'static str,
-    sample: &'static str,
-    serial: &'static str,
-    limits: Option<&'static str>,
-}
-
-const fn case(procedure: &'static str, sample: &'static str, serial: &'static str) -> Case {
-    Case { procedure, sample, serial, limits: None }
-}
-
-const CASES: &[Case] = &[
-    case("acceptance", "acceptance-fail.toml", "SN-0111"),
-    case("bias-repeatability", "bias-repeatability-fail.csv", "SN-0112"),
-    case("magnetic-sensitivity", "magnetic-sensitivity-fail.csv", "SN-0114"),
-    case("misalignment", "misalignment-fail.csv", "SN-0111"),
-    case("multi-position", "multi-position-software.csv", "SN-0111"),
-    case("scale-factor", "scale-factor-fail.csv", "SN-0111"),
-    Case { limits: Some("oius-501"), ..case("static-bias", "unit-faults.csv", "SN-0001") },
-    case("supply-sensitivity", "supply-sensitivity-fail.csv", "SN-0116"),
-    Case {
-        limits: Some("sample-temperature"),
-        ..case("temperature-ramp", "temperature-aborted.csv", "SN-0103")
-    },
-    Case {
-        limits: Some("sample-temperature"),
-        ..case("temperature-soak", "temperature-soak-fail.csv", "SN-0105")
-    },
-    case("threshold", "threshold-fail.csv", "SN-0111"),
-    case("vibration", "vibration-fail.csv", "SN-0118"),
-    Case { limits: Some("sample-warm-up"), ..case("warm-up", "warm-up-fail.csv", "SN-0107") },
+/// The shipped procedures, each with its shortest sample that says most.
+const CASES: &[(&str, &str)] = &[
+    ("acceptance", "acceptance-fail"),
+    ("bias-repeatability", "bias-repeatability-fail"),
+    ("magnetic-sensitivity", "magnetic-sensitivity-fail"),
+    ("misalignment", "misalignment-fail"),
+    ("multi-position", "multi-position-software"),
+    ("scale-factor", "scale-factor-fail"),
+    ("static-bias", "unit-faults"),
+    ("supply-sensitivity", "supply-sensitivity-fail"),
+    ("temperature-ramp", "temperature-aborted"),
+    ("temperature-soak", "temperature-soak-fail"),
+    ("threshold", "threshold-fail"),
+    ("vibration", "vibration-fail"),
+    ("warm-up", "warm-up-fail"),
 ];
 
 /// Words in a row that make a sentence.
@@ -134,32 +120,32 @@ fn english(folder: &Path, cited: &mut BTreeSet<&'static str>) -> Vec<String> {
     found.into_iter().collect()
 }
 
-fn run(case: &Case, folder: &Path, lang: &str) {
-    let (procedure, sample) =
-        (format!("procedures/{}.toml", case.procedure), format!("samples/{}", case.sample));
-    let limits = case.limits.map(|l| format!("procedures/limits/{l}.toml"));
-    let out = folder.display().to_string();
-    let mut args = vec!["run", &procedure, &sample, "--serial", case.serial, "--out", &out, "--lang", lang];
-    args.extend(limits.iter().flat_map(|l| ["--limits", l.as_str()]));
-    let said = sagnac(root(), &args);
-    assert!([0, 1, 3].contains(&said.code), "{} of {}: {}", case.procedure, program(), said.err);
+/// The result of a sample; the faults under limits that hold published values alone.
+fn tested(sample: &str) -> &'static SharedRun {
+    match sample {
+        "acceptance-fail" => phased_once("fail"),
+        "unit-faults" => {
+            let limits = shipped("procedures/limits/oius-501.toml");
+            let args = ["run", &procedure(), &support::sample("faults"), "--limits", &limits];
+            shared(&[&args[..], &["--serial", "SN-0001"]].concat(), "r")
+        }
+        _ => sample_once(sample),
+    }
 }
 
 #[test]
 fn no_shipped_procedure_gives_an_english_sentence_in_a_russian_report() {
-    let dir = tempfile::tempdir().unwrap();
-    let names: BTreeSet<&str> = CASES.iter().map(|c| c.procedure).collect();
+    let names: BTreeSet<&str> = CASES.iter().map(|c| c.0).collect();
     let shipped = std::fs::read_dir(root().join("procedures")).unwrap().map(|e| e.unwrap().path());
     let shipped = shipped.filter(|p| p.extension().is_some_and(|e| e == "toml"));
     let shipped: Vec<String> =
         shipped.map(|p| p.file_stem().unwrap().to_string_lossy().into_owned()).collect();
     assert_eq!(shipped.iter().map(String::as_str).collect::<BTreeSet<_>>(), names);
     let (mut wrong, mut cited) = (vec![], BTreeSet::new());
-    for case in CASES {
-        let folder = dir.path().join(case.procedure);
-        run(case, &folder, "ru");
-        let found = english(&folder, &mut cited);
-        wrong.extend(found.into_iter().map(|sentence| format!("{}: {sentence}", case.procedure)));
+    for (procedure, sample) in CASES {
+        let rendered = shared(&["report", tested(sample).path(), "--lang", "ru"], "ru");
+        let found = english(&rendered.out, &mut cited);
+        wrong.extend(found.into_iter().map(|sentence| format!("{procedure}: {sentence}")));
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
     let idle: Vec<_> = CITED.iter().filter(|title| !cited.contains(*title)).collect();
@@ -169,20 +155,21 @@ fn no_shipped_procedure_gives_an_english_sentence_in_a_russian_report() {
 #[test]
 fn a_result_renders_in_the_other_language_without_its_procedure() {
     let dir = tempfile::tempdir().unwrap();
-    let case = CASES.iter().find(|c| c.procedure == "magnetic-sensitivity").unwrap();
-    let [english, russian, again] = ["en", "ru", "again"].map(|name| dir.path().join(name));
-    run(case, &english, "en");
-    run(case, &russian, "ru");
-    let [from, to] = [&english, &again].map(|p| p.display().to_string());
-    let said = sagnac(root(), &["report", &from, "--lang", "ru", "--out", &to]);
-    assert_eq!(said.code, 0, "{}", said.err);
+    let [procedure, sample] =
+        ["procedures/magnetic-sensitivity.toml", "samples/magnetic-sensitivity-fail.csv"].map(shipped);
+    let run = ["run", &procedure, &sample, "--serial", "SN-0114", "--lang", "ru", "--out", "ru"];
+    let said = sagnac(dir.path(), &run);
+    assert_eq!(said.code, 1, "{said:?}");
+    let russian = dir.path().join("ru");
+    let english = sample_once("magnetic-sensitivity-fail");
+    let again = &shared(&["report", english.path(), "--lang", "ru"], "ru").out;
     let read = |folder: &Path| {
         let json = std::fs::read_to_string(folder.join("result.json")).unwrap();
         let json: Value = serde_json::from_str(&json).unwrap();
         let text = steady(&std::fs::read_to_string(folder.join("report.md")).unwrap(), &json);
         (text, json)
     };
-    let ((direct, _), (rendered, json)) = (read(&russian), read(&again));
+    let ((direct, _), (rendered, json)) = (read(&russian), read(again));
     assert_eq!(rendered, direct);
     assert!(rendered.contains("# Чувствительность к магнитному полю"), "{rendered}");
     assert_eq!(json["procedure"]["title"], "Sensitivity to a magnetic field");

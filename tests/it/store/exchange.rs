@@ -1,9 +1,9 @@
 //! Results from elsewhere, and tables for others.
 
 use crate::store::{kept, store, store_says, with_store, write_result, write_results};
-use crate::support::{
-    files, limits, names, procedure, result_table, sagnac, sagnac_as_typed, sample, shipped,
-};
+use crate::support::quick::Quick;
+use crate::support::shared::analyzed_once;
+use crate::support::{files, names, result_table, sagnac, sagnac_as_typed, shipped};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::RowAccessor;
 use std::fs::{self, File};
@@ -88,9 +88,9 @@ fn the_table_has_a_row_for_each_measurand() {
 #[test]
 fn copies_of_recordings_leave_the_store_and_are_found_again() {
     let dir = with_store();
-    fs::copy(sample("pass"), dir.path().join("unit.csv")).unwrap();
-    let (procedure, limits) = (procedure(), limits());
-    let run = ["run", &procedure, "unit.csv", "--limits", &limits, "--serial", "1", "--out", "r"];
+    let quick = Quick::new("pass");
+    fs::copy(&quick.recording, dir.path().join("unit.csv")).unwrap();
+    let run = ["run", &quick.procedure, "unit.csv", "--serial", "SN-1", "--out", "r"];
     let said = sagnac(dir.path(), &[&run[..], &["--store", "store", "--keep-recording"]].concat());
     assert_eq!(said.code, 0, "{said:?}");
     let copies = dir.path().join("store/recordings");
@@ -109,7 +109,7 @@ fn copies_of_recordings_leave_the_store_and_are_found_again() {
     assert!(said.out.contains("Moved copies of recordings: 1"), "{said:?}");
     assert!(names(&copies).is_empty());
     let (_, bytes) = files(&dir.path().join("archive")).remove(0);
-    assert!(bytes == fs::read(sample("pass")).unwrap());
+    assert!(bytes == fs::read(&quick.recording).unwrap());
     assert_eq!(kept(&dir.path().join("store")), before);
     places();
     store(dir.path(), &["verify", "store"]);
@@ -121,7 +121,7 @@ fn what_is_no_test_is_refused_and_the_rest_comes_in() {
     write_results(&dir.path().join("made"), 1);
     fs::create_dir_all(dir.path().join("made/broken")).unwrap();
     fs::write(dir.path().join("made/broken/result.json"), "{\"format\": \"result/1\"").unwrap();
-    assert_eq!(sagnac(dir.path(), &["analyze", &sample("pass"), "--out", "made/analysis"]).code, 0);
+    analyzed_once("pass").copy_to(&dir.path().join("made/analysis"));
     let said = store_says(dir.path(), &["import", "store", "made"]);
     assert_eq!(said.code, 1, "{said:?}");
     assert!(said.out.contains("Added: 2; there already: 0; refused: 2"), "{said:?}");

@@ -1,25 +1,25 @@
 //! Runs with a store.
 
 use crate::store::{a_result, kept, store, with_store, write_result};
-use crate::support::{altered, limits, procedure, result, sagnac, sagnac_with, sample};
+use crate::support::quick::Quick;
+use crate::support::{Said, altered, limits, procedure, result, sagnac, sagnac_with, sample, shipped};
 use serde_json::Value;
 use std::path::Path;
 
-fn run(folder: &Path, sample_name: &str, limits: &str, out: &str, more: &[&str]) -> crate::support::Said {
-    let (procedure, sample) = (procedure(), sample(sample_name));
-    let args = ["run", &procedure, &sample, "--limits", limits, "--serial", "SN-1", "--out", out];
-    sagnac(folder, &[&args[..], more].concat())
+fn run(folder: &Path, end: &str, out: &str, more: &[&str]) -> Said {
+    Quick::new(end).run(folder, &[&["--out", out], more].concat())
 }
 
 #[test]
 fn every_attempt_is_kept_and_the_next_one_tells_of_it() {
     let dir = with_store();
-    let first = run(dir.path(), "fail", &limits(), "a", &["--store", "store"]);
+    let first = run(dir.path(), "fail", "a", &["--store", "store"]);
     assert_eq!(first.code, 1, "{first:?}");
     assert!(first.out.contains("Kept in store as "), "{}", first.out);
     assert!(!first.out.contains("Attempt"), "{}", first.out);
-    let changed = altered(dir.path(), "limits.toml", &limits(), &[("[limits]", "# anew\n[limits]")]);
-    let second = run(dir.path(), "pass", &changed, "b", &["--store", "store"]);
+    let quick = Quick::new("pass");
+    let changed = altered(dir.path(), "limits.toml", &quick.limits, &[("[limits]", "# anew\n[limits]")]);
+    let second = Quick { limits: changed, ..quick }.run(dir.path(), &["--out", "b", "--store", "store"]);
     assert_eq!(second.code, 0, "{second:?}");
     for part in ["Attempt 2 at this test", "1: fail on", "Limits changed between attempts 1 and 2"] {
         assert!(second.out.contains(part), "{part}: {}", second.out);
@@ -46,7 +46,7 @@ fn every_attempt_is_kept_and_the_next_one_tells_of_it() {
 #[test]
 fn without_a_store_nothing_changes() {
     let dir = with_store();
-    let plain = run(dir.path(), "pass", &limits(), "a", &[]);
+    let plain = run(dir.path(), "pass", "a", &[]);
     assert!(!plain.out.contains("Kept"), "{}", plain.out);
     let record = result(&dir.path().join("a"));
     assert_eq!(record.get("attempt"), None);
@@ -57,10 +57,9 @@ fn without_a_store_nothing_changes() {
 #[test]
 fn the_store_is_named_by_the_option_the_environment_or_the_settings() {
     let dir = with_store();
-    let (procedure, limits, pass) = (procedure(), limits(), sample("pass"));
+    let quick = Quick::new("pass");
     let run = |out: &str, more: &[&str], environment: &[(&str, &str)]| {
-        let args = ["run", &procedure, &pass, "--limits", &limits, "--serial", "SN-1", "--out", out];
-        sagnac_with(dir.path(), &[&args[..], more].concat(), environment)
+        sagnac_with(dir.path(), &[&quick.args()[..], &["--out", out], more].concat(), environment)
     };
     let count = || kept(&dir.path().join("store")).len();
     assert_eq!(run("a", &[], &[("SAGNAC_STORE", "store")]).code, 0);
@@ -82,17 +81,18 @@ fn the_store_is_named_by_the_option_the_environment_or_the_settings() {
 #[test]
 fn units_have_what_the_table_and_the_manifest_know_of_them() {
     let dir = with_store();
+    let Quick { procedure, recording, limits } = Quick::new("pass");
     let demanding = altered(
         dir.path(),
         "procedure.toml",
-        &procedure(),
+        &procedure,
         &[("[unit_under_test]\n", "[unit_under_test]\nrequires = [\"lot\", \"build_date\"]\n")],
     );
     std::fs::write(dir.path().join("units.csv"), "serial,lot,build_date,coil\nSN-001,L7,2026-02-01,K12\n")
         .unwrap();
-    std::fs::copy(sample("pass"), dir.path().join("unit.csv")).unwrap();
+    std::fs::copy(recording, dir.path().join("unit.csv")).unwrap();
     let run = |recording: &str, out: &str, more: &[&str]| {
-        let args = ["run", &demanding, recording, "--limits", &limits(), "--out", out];
+        let args = ["run", &demanding, recording, "--limits", &limits, "--out", out];
         sagnac(dir.path(), &[&args[..], more].concat())
     };
     let lacking = run("unit.csv", "a", &["--serial", "1"]);
@@ -118,22 +118,12 @@ fn units_have_what_the_table_and_the_manifest_know_of_them() {
 fn the_units_of_a_lot_are_kept_one_by_one() {
     let dir = with_store();
     for name in ["pass", "fail"] {
-        std::fs::copy(sample(name), dir.path().join(format!("u-{name}.csv"))).unwrap();
+        let sample = shipped(&format!("samples/supply-sensitivity-{name}.csv"));
+        std::fs::copy(sample, dir.path().join(format!("u-{name}.csv"))).unwrap();
     }
-    let (procedure, limits) = (procedure(), limits());
-    let args = [
-        "run",
-        &procedure,
-        "u-*.csv",
-        "--each",
-        "--serial-from",
-        "{stem}",
-        "--limits",
-        &limits,
-        "--store",
-        "store",
-        "--out",
-    ];
+    let procedure = Quick::new("pass").procedure;
+    let args =
+        ["run", &procedure, "u-*.csv", "--each", "--serial-from", "{stem}", "--store", "store", "--out"];
     for (out, number) in [("x", 1), ("y", 2)] {
         let said = sagnac(dir.path(), &[&args[..], &[out]].concat());
         // Each recording states another serial number than its name.
@@ -150,7 +140,9 @@ fn the_units_of_a_lot_are_kept_one_by_one() {
 fn a_correction_supersedes_and_both_stay() {
     let dir = with_store();
     for (name, at, value) in [("a", "2026-03-01T10:00:00Z", 1.2), ("b", "2026-03-01T11:00:00Z", 0.7)] {
-        write_result(dir.path(), name, &a_result("SN-1", "L", at, value));
+        let mut result = a_result("SN-1", "L", at, value);
+        result["procedure"]["id"] = "supply-sensitivity".into();
+        write_result(dir.path(), name, &result);
         store(dir.path(), &["import", "store", name]);
     }
     let addresses = kept(&dir.path().join("store"));
@@ -169,7 +161,7 @@ fn a_correction_supersedes_and_both_stay() {
     assert!(said.code == 2 && said.err.contains("begins with `zzzz`"), "{said:?}");
     assert_eq!(kept(&dir.path().join("store")).len(), 2);
     store(dir.path(), &["verify", "store"]);
-    let next = run(dir.path(), "pass", &limits(), "c", &["--store", "store"]);
+    let next = run(dir.path(), "pass", "c", &["--store", "store"]);
     assert!(next.out.contains("1: superseded; 2: pass"), "{}", next.out);
 }
 

@@ -2,8 +2,11 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 pub mod corpus;
+pub mod pairs;
+pub mod quick;
 pub mod real;
 pub mod schema;
+pub mod shared;
 pub mod synthetic;
 pub mod tested;
 
@@ -139,8 +142,24 @@ pub fn measurand<'a>(result: &'a Value, id: &str) -> &'a Value {
     rows.iter().find(|m| m["id"] == id).unwrap_or_else(|| panic!("no {id}"))
 }
 
-/// Every file below a folder, by its path in it, sorted.
-pub fn files(folder: &Path) -> Vec<(PathBuf, Vec<u8>)> {
+/// Files of a folder by their paths in it, sorted.
+pub type Files = Vec<(PathBuf, Vec<u8>)>;
+
+/// The files of a result without the moment of its making, and without the list of hashes, which are those of files with
+/// the clock in them.
+pub fn steady_files(folder: &Path) -> Files {
+    let at = result(folder)["session"]["evaluated_at"].as_str().unwrap().to_owned();
+    let shown = format!("{} {} UTC", &at[..10], &at[11..19]);
+    let without = |bytes: Vec<u8>| {
+        let text = String::from_utf8(bytes).unwrap();
+        text.replace(&at[..19], "<clock>").replace(&shown, "<clock>").into_bytes()
+    };
+    let all = files(folder).into_iter().filter(|(path, _)| !path.ends_with("SHA256SUMS"));
+    all.map(|(path, bytes)| (path, without(bytes))).collect()
+}
+
+/// Every file below a folder.
+pub fn files(folder: &Path) -> Files {
     let mut found = Vec::new();
     let mut open = vec![folder.to_owned()];
     while let Some(next) = open.pop() {

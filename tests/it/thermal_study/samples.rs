@@ -2,6 +2,7 @@
 //!
 //! `cargo test --test it thermal_study samples -- --ignored` writes them anew.
 
+use crate::support::pairs::sample_once;
 use assert_cmd::Command;
 use sagnac_studies::bench::chamber::{Leg, Unit, programme, record, warm_up};
 use sagnac_studies::bench::chance::Noise;
@@ -89,11 +90,6 @@ pub fn run(procedure: &str, limits: &str, sample: &str, serial: &str) -> (i32, s
     let text = std::fs::read_to_string(report.join("result.json")).unwrap_or_default();
     let result =
         serde_json::from_str(&text).unwrap_or_else(|_| panic!("{}", String::from_utf8_lossy(&done.stderr)));
-    if procedure.contains("temperature") && sample.contains("-pass") {
-        for name in ["compensation.toml", "compensation.json", "compensation.h"] {
-            assert!(report.join(name).exists(), "{name}");
-        }
-    }
     (done.status.code().unwrap(), result)
 }
 
@@ -113,23 +109,26 @@ fn holds(result: &serde_json::Value, id: &str, truth: f64) {
 
 #[test]
 fn ramps_pass_fail_and_break_off() {
-    let (procedure, limits) =
-        ("procedures/temperature-ramp.toml", "procedures/limits/sample-temperature.toml");
-    let (code, result) = run(procedure, limits, "samples/temperature-pass.csv", "SN-0101");
-    assert_eq!(code, 0, "{:#}", result["summary"]);
+    let run = sample_once("temperature-pass");
+    let result = run.result();
+    assert_eq!(run.said.code, 0, "{:#}", result["summary"]);
+    for name in ["compensation.toml", "compensation.json", "compensation.h"] {
+        assert!(run.out.join(name).exists(), "{name}");
+    }
     let u = good();
     let (pp, rms, slope, _) = u.statistics(-40.0, 60.0);
-    holds(&result, "bias_over_temperature_peak_to_peak", pp);
-    holds(&result, "bias_over_temperature_3sigma", 3.0 * rms);
-    holds(&result, "bias_temperature_sensitivity", slope);
-    holds(&result, "bias_temperature_rate_sensitivity", u.shupe);
-    holds(&result, "thermal_lag", u.lag_s);
-    holds(&result, "thermal_hysteresis", 2.0 * u.hysteresis.0);
-    holds(&result, "angle_random_walk_at_temperature", u.noise.n);
-    let (code, result) = run(procedure, limits, "samples/temperature-fail.csv", "SN-0102");
-    assert_eq!((code, result["verdict"].as_str()), (1, Some("fail")));
-    let (code, result) = run(procedure, limits, "samples/temperature-aborted.csv", "SN-0103");
-    assert_eq!(code, 3);
+    holds(result, "bias_over_temperature_peak_to_peak", pp);
+    holds(result, "bias_over_temperature_3sigma", 3.0 * rms);
+    holds(result, "bias_temperature_sensitivity", slope);
+    holds(result, "bias_temperature_rate_sensitivity", u.shupe);
+    holds(result, "thermal_lag", u.lag_s);
+    holds(result, "thermal_hysteresis", 2.0 * u.hysteresis.0);
+    holds(result, "angle_random_walk_at_temperature", u.noise.n);
+    let fails = sample_once("temperature-fail");
+    assert_eq!((fails.said.code, fails.result()["verdict"].as_str()), (1, Some("fail")));
+    let aborted = sample_once("temperature-aborted");
+    assert_eq!(aborted.said.code, 3);
+    let result = aborted.result();
     let course = result["conditions"].as_array().unwrap().iter().find(|c| c["id"] == "temperature_course");
     assert!(course.unwrap()["note"].as_str().unwrap().contains("too early"), "{course:?}");
 }
@@ -195,19 +194,16 @@ fn likely_mistakes_are_named() {
 
 #[test]
 fn soaks_pass_and_fail() {
-    let (procedure, limits) =
-        ("procedures/temperature-soak.toml", "procedures/limits/sample-temperature.toml");
-    let (code, result) = run(procedure, limits, "samples/temperature-soak-pass.csv", "SN-0104");
-    assert_eq!(code, 0, "{:#}", result["summary"]);
-    holds(&result, "bias_temperature_sensitivity", good().statistics(-40.0, 60.0).2);
-    assert_eq!(run(procedure, limits, "samples/temperature-soak-fail.csv", "SN-0105").0, 1);
+    let run = sample_once("temperature-soak-pass");
+    assert_eq!(run.said.code, 0, "{:#}", run.result()["summary"]);
+    let slope = good().statistics(-40.0, 60.0).2;
+    holds(run.result(), "bias_temperature_sensitivity", slope);
+    assert_eq!(sample_once("temperature-soak-fail").said.code, 1);
 }
 
 #[test]
 fn warm_ups_pass_and_fail() {
-    let (procedure, limits) = ("procedures/warm-up.toml", "procedures/limits/sample-warm-up.toml");
-    let (code, result) = run(procedure, limits, "samples/warm-up-pass.csv", "SN-0106");
-    assert_eq!(code, 0, "{:#}", result["summary"]);
-    let (code, _) = run(procedure, limits, "samples/warm-up-fail.csv", "SN-0107");
-    assert_eq!(code, 1);
+    let run = sample_once("warm-up-pass");
+    assert_eq!(run.said.code, 0, "{:#}", run.result()["summary"]);
+    assert_eq!(sample_once("warm-up-fail").said.code, 1);
 }

@@ -1,5 +1,21 @@
 //! The shipped samples with their procedures, as `samples/README.md` lists them.
 
+use super::shared::{SharedRun, shared};
+use super::shipped;
+
+/// A shipped sample tested as its pair says.
+pub fn sample_once(sample: &str) -> &'static SharedRun {
+    let pair = PAIRS.iter().find(|p| p.sample == sample).unwrap_or_else(|| panic!("{sample}"));
+    let procedure = shipped(&format!("procedures/{}.toml", pair.procedure));
+    let recording = shipped(&format!("samples/{sample}.csv"));
+    let limits = pair.limits.map(|l| shipped(&format!("procedures/limits/{l}.toml")));
+    let mut args = vec!["run", &procedure, &recording, "--serial", pair.serial];
+    args.extend(limits.iter().flat_map(|l| ["--limits", l.as_str()]));
+    let run = shared(&args, "r");
+    assert_eq!(run.said.code, pair.code, "{sample}: {:?}", run.said);
+    run
+}
+
 /// A sample and what it is judged by.
 pub struct Pair {
     /// Name of the sample.
