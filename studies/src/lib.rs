@@ -19,6 +19,7 @@ pub mod lot_bounds;
 pub mod noticeable;
 pub mod pages;
 pub mod planned;
+pub mod predicted_power;
 pub mod rate_table;
 pub mod results;
 pub mod sibling_alarms;
@@ -35,6 +36,7 @@ pub static STUDIES: &[&Study] = &[
     &whole_runs::INTERVALS,
     &whole_runs::LINES,
     &false_lines::STUDY,
+    &predicted_power::STUDY,
     &goodness_of_fit::STUDY,
     &comparison::STUDY,
     &comparison::PUBLISHED,

@@ -202,8 +202,8 @@ mod tests {
 
     #[test]
     fn a_unit_of_the_same_population_is_alarmed_as_often_as_stated() {
-        // 600 lots: 6 at 1 %, with a standard deviation of 2.4; 60 at 10 %, with 7.3.
-        let p_values: Vec<f64> = (0..600)
+        // The study is `sibling-alarms`. Of 60 lots 6 at 10 %, with a standard deviation of 2.3; a mean of 0.5, with 0.037.
+        let p_values: Vec<f64> = (0..60)
             .map(|seed| {
                 let mut all = units(17, 1000 + seed);
                 let unit = all.pop().unwrap();
@@ -211,6 +211,8 @@ mod tests {
             })
             .collect();
         let below = |bound: f64| p_values.iter().filter(|p| **p < bound).count();
-        assert!(below(0.01) <= 15 && (38..=82).contains(&below(0.1)), "{} {}", below(0.01), below(0.1));
+        assert!(below(0.01) <= 4 && below(0.1) <= 15, "{} {}", below(0.01), below(0.1));
+        let mean = p_values.iter().sum::<f64>() / 60.0;
+        assert!((mean - 0.5).abs() < 0.15, "{mean}");
     }
 }

@@ -432,7 +432,7 @@ mod tests {
 
     #[test]
     fn sums_over_bins_scatter_as_stated() {
-        let (runs, samples) = (400, 1 << 14);
+        let (runs, samples) = (200, 1 << 14);
         let sums: Vec<f64> = (0..runs)
             .map(|seed| {
                 let mut welch = WelchAccumulator::with_segment(1024);
@@ -444,8 +444,8 @@ mod tests {
         welch.push(&vec![0.0; samples], false);
         let stated = 2.0 / (510.0 * welch.finish().spectrum.averages_in_sums);
         let variance = sums.iter().map(|s| (s - 1.0).powi(2)).sum::<f64>() / runs as f64;
-        // Of 400: 1 ± 0.071.
-        assert!((variance / stated - 1.0).abs() < 0.25, "{variance} {stated}");
+        // Of 200: 1 ± 0.1.
+        assert!((variance / stated - 1.0).abs() < 0.3, "{variance} {stated}");
     }
 
     #[test]

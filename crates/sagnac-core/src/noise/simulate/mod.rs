@@ -201,7 +201,7 @@ mod tests {
             [(NoiseType::AngleRandomWalk, 1), (NoiseType::Flicker, 2), (NoiseType::RateRandomWalk, 3)]
         {
             let model = NoiseModel::default().with(term, 1.0);
-            let runs = 600;
+            let runs = 100;
             let mut power = vec![0.0; n];
             for run in 0..runs {
                 for (p, c) in power.iter_mut().zip(dct2(&record(&model, seed * 10_000 + run, n))) {
@@ -282,7 +282,7 @@ mod tests {
             Composite { bandwidth: Some(Bandwidth::MovingAverage { samples: 4 }), ..Composite::from(white) },
         ];
         for (case, model) in cases.into_iter().enumerate() {
-            let runs = 400;
+            let runs = 60;
             let mut power = vec![0.0; n];
             for run in 0..runs {
                 let setup = Setup::for_record(case as u64 * 10_000 + run, 1.0, n as u64);
