@@ -53,7 +53,8 @@ pub fn shared(args: &[&str], out: &str) -> &'static SharedRun {
     let run = *RUNS.lock().unwrap().entry(typed.join("\0")).or_insert_with(|| Box::leak(Box::default()));
     run.get_or_init(|| {
         let folder = tempfile::tempdir_in(home()).unwrap().keep();
-        let said = sagnac_as_typed(&folder, &typed, &[]);
+        // In English, whatever the language of the machine.
+        let said = sagnac_as_typed(&folder, &typed, &[("LC_ALL", "C.UTF-8")]);
         make_read_only(&folder, true);
         SharedRun { said, out: folder.join(out), record: OnceLock::new() }
     })

@@ -15,7 +15,7 @@ fn values(effect: &dyn Effect, numbers: &[f64], lists: Vec<(&'static str, Vec<f6
 
 #[test]
 fn simulated_spectra_have_the_density_that_fits_use() {
-    let (n, runs) = (2048usize, 200u64);
+    let (n, runs) = (2048usize, 60u64);
     let white = NoiseModel { n: 0.01, ..NoiseModel::default() };
     let cases: [(&str, Vec<f64>); 7] = [
         ("markov_short", vec![2.0, 0.5]),
