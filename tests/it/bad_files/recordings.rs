@@ -4,7 +4,6 @@
 //! The recordings are made here from one sound recording of 1000 samples at 1 Hz. Its sample i stands in row i + 1 and
 //! in line i + 2.
 
-use crate::support;
 use crate::support::synthetic::{HEADER, recording, white, with};
 use crate::support::{both, result};
 use serde_json::Value;

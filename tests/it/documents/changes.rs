@@ -1,15 +1,13 @@
 //! A changed byte in any file of a folder of any kind is found.
 
 use crate::documents::tested;
+use crate::support::long;
 use crate::support::shared::{SharedRun, analyzed_once, shared, tested_once};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use sagnac::verify::{Finding, Folder, hashes};
 use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Changes over all folders.
-const CHANGES: usize = 2000;
 
 /// A folder of every kind.
 fn folders(dir: &Path) -> Vec<PathBuf> {
@@ -35,6 +33,7 @@ fn folders(dir: &Path) -> Vec<PathBuf> {
 fn any_changed_byte_in_any_folder_is_found() {
     let dir = tempfile::tempdir().unwrap();
     let folders = folders(dir.path());
+    let changes = long::cases("any_changed_byte_in_any_folder_is_found", &[(); 2000], 400).len();
     let mut chance = Xoshiro256PlusPlus::seed_from_u64(32);
     let unharmed =
         |at: &Path| Folder::at(at).is_ok_and(|f| !hashes(&f, "signatures").iter().any(Finding::differs));
@@ -42,7 +41,7 @@ fn any_changed_byte_in_any_folder_is_found() {
         assert!(unharmed(at), "{}: {:?}", at.display(), hashes(&Folder::at(at).unwrap(), "signatures"));
         let files: Vec<PathBuf> =
             crate::support::files(at).into_iter().map(|(name, _)| at.join(name)).collect();
-        for _ in 0..CHANGES.div_ceil(folders.len()) {
+        for _ in 0..changes.div_ceil(folders.len()) {
             let file = &files[chance.random_range(0..files.len())];
             let good = fs::read(file).unwrap();
             let mut bad = good.clone();

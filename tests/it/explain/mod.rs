@@ -419,7 +419,8 @@ fn held_out_rms_can_be_computed_again_from_the_recording() {
 #[test]
 fn an_effect_many_times_the_noise_has_no_step_beside_it() {
     let dir = tempdir().unwrap();
-    for seed in [41, 42, 43] {
+    let name = "an_effect_many_times_the_noise_has_no_step_beside_it";
+    for seed in crate::support::long::cases(name, &[41, 42, 43], 1) {
         let degrees = |i: usize| {
             let turn = std::f64::consts::TAU * i as f64;
             20.0 + 2.0 * (turn / 700.0).sin() + 0.5 * (turn / 180.0).sin()

@@ -99,7 +99,7 @@ fn compared(folder: &Path, recording: &str, simulation: &str) -> (i32, Value, St
 #[test]
 fn a_recording_is_consistent_with_itself() {
     let dir = tempdir().unwrap();
-    for process in crate::support::long::cases("a_recording_is_consistent_with_itself", &PROCESSES, 3) {
+    for process in long::cases("a_recording_is_consistent_with_itself", &PROCESSES, 3) {
         draw(process, &dir.path().join("x.csv"), 11);
         let (code, all, out) = compared(dir.path(), "x.csv", "x.csv");
         assert_eq!((code, all["verdict"].as_str()), (0, Some("consistent")), "{process}: {out}");
@@ -115,8 +115,9 @@ fn a_recording_is_consistent_with_itself() {
 fn two_draws_of_one_process_are_consistent() {
     let dir = tempdir().unwrap();
     let mut false_alarms = vec![];
-    for process in PROCESSES {
-        for seed in crate::support::long::cases("two_draws_of_one_process_are_consistent", &[21, 31], 1) {
+    let name = "two_draws_of_one_process_are_consistent";
+    for process in long::cases(name, &PROCESSES, 3) {
+        for seed in long::cases(name, &[21, 31], 1) {
             draw(process, &dir.path().join("s.csv"), seed);
             draw(process, &dir.path().join("x.csv"), seed + 100);
             let (code, all, _) = compared(dir.path(), "x.csv", "s.csv");
@@ -132,9 +133,9 @@ fn two_draws_of_one_process_are_consistent() {
 fn what_the_recording_has_beyond_its_simulation_is_named() {
     let dir = tempdir().unwrap();
     let temperature: Vec<f64> = (0..ROWS).map(|i| 20.0 + 8.0 * (i as f64 / 600.0).sin()).collect();
-    for (kind, seed) in
-        [("bias_step", 41), ("line", 42), ("excess_arw", 43), ("markov_long", 44), ("temp_linear", 45)]
-    {
+    let kinds =
+        [("bias_step", 41), ("markov_long", 44), ("temp_linear", 45), ("line", 42), ("excess_arw", 43)];
+    for (kind, seed) in long::cases("what_the_recording_has_beyond_its_simulation_is_named", &kinds, 3) {
         let with = (kind == "temp_linear").then_some(temperature.as_slice());
         put(&dir.path().join("s.csv"), &noise(seed), with, |_| true);
         let mut rate = noise(seed + 100);

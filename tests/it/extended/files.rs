@@ -1,8 +1,6 @@
 //! Hard records as files: through the program, and no value that is no number in anything that it writes.
 
 use crate::extended::exact::records::{Record, hard_records};
-use crate::support;
-use crate::support::long;
 use crate::support::{both, files, result};
 use rayon::prelude::*;
 use std::fmt::Write;

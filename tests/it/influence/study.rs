@@ -1,8 +1,5 @@
 //! Intervals against simulated truth, in short. The study is `cargo xtask validate influence-intervals`.
 
-use crate::support::long;
-use sagnac_studies::bench::influence::Series;
-use sagnac_studies::bench::influence::series;
 use sagnac_studies::coverage::Coverage;
 use sagnac_studies::influence::evaluation::repeated;
 use sagnac_studies::influence::{KINDS, comparisons, repeatability, sensitivities};

@@ -1,6 +1,5 @@
 //! Several files as one recording, by name, by pattern and by manifest; and manifests that cannot be used.
 
-use crate::support;
 use crate::support::synthetic::white;
 use crate::support::{corpus, result, root, sagnac};
 use sagnac::config::manifest;

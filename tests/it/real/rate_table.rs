@@ -1,6 +1,5 @@
 //! Table tests on real recordings, where the folder named by `SAGNAC_REAL_DATA` holds them.
 
-use crate::support;
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;

@@ -1,6 +1,5 @@
 //! Decisions about a text file that its user makes, in a procedure and on the command line.
 
-use crate::support;
 use crate::support::synthetic::white;
 use assert_cmd::Command;
 use sagnac::config::procedure::parse_procedure;

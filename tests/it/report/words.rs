@@ -1,7 +1,6 @@
 //! Every id that a run can write into a result has words, asked of what writes them: the conditions, the measurands and
 //! real runs over the samples.
 
-use crate::support;
 use crate::support::tested::tested;
 use sagnac::acceptance::condition::checks::CheckLog;
 use sagnac::acceptance::condition::stability_track::{Extreme, StabilityFacts, StabilityKey};

@@ -2,6 +2,7 @@
 #![allow(dead_code, reason = "each test file uses its own part")]
 
 pub mod corpus;
+pub mod long;
 pub mod pairs;
 pub mod quick;
 pub mod real;

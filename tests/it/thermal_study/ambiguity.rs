@@ -1,7 +1,5 @@
 //! Units without Shupe effect, lag or hysteresis: what lag and rate of temperature leave open.
 
-use crate::support::long;
-use sagnac_studies::bench::chamber::programme;
 use sagnac_studies::thermal::ambiguity::{plain, tally};
 
 #[test]

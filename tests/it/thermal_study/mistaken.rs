@@ -1,6 +1,5 @@
 //! Recordings over temperature and of the warm-up that are not what they seem: by their sign, their Earth rate, their start.
 
-use crate::support::long;
 use crate::thermal_study::samples::{root, row, run};
 use serde_json::Value;
 
