@@ -1,7 +1,6 @@
 //! `run --each`: every recording is a unit of its own, with a folder each and an index over all. And several files are
 //! one recording only where `--join` says so.
 
-use crate::support::quick::recording;
 use crate::support::schema::{closed, validate};
 use crate::support::shared::{SharedRun, shared, shared_input};
 use crate::support::{Said, files, names, sagnac, sagnac_as_typed, sagnac_with, shipped};
@@ -14,6 +13,15 @@ use tempfile::{TempDir, tempdir};
 
 /// A quick test with limits of its own.
 const PROCEDURE: &str = "supply-sensitivity";
+
+/// The text of a sample without its line that states the serial number.
+fn recording(end: &str) -> String {
+    let path = shipped(&format!("samples/supply-sensitivity-{end}.csv"));
+    let text = std::fs::read_to_string(path).unwrap();
+    let (stated, rest) = text.split_once('\n').unwrap();
+    assert!(stated.starts_with("# serial: "), "{stated}");
+    rest.to_owned()
+}
 
 /// A recording that passes and tells no serial number, one that fails and tells it, one of another unit than its manifest
 /// says, and one that cannot be read; with the recording of that manifest.

@@ -1,5 +1,6 @@
 //! Intervals against simulated truth, in short. The study is `cargo xtask validate influence-intervals`.
 
+use sagnac_studies::bench::influence::{Series, series};
 use sagnac_studies::coverage::Coverage;
 use sagnac_studies::influence::evaluation::repeated;
 use sagnac_studies::influence::{KINDS, comparisons, repeatability, sensitivities};

@@ -1,6 +1,7 @@
 //! Dead zones, with and without noise inside the loop that rounds them off. The studies are
 //! `cargo xtask validate dead-zones rounded-dead-zones`.
 
+use sagnac_studies::bench::small_rates::SmallRates;
 use sagnac_studies::rate_table::power::power_told;
 use sagnac_studies::rate_table::zones::{counted, rounded, zones};
 

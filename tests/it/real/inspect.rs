@@ -1,6 +1,5 @@
 //! `sagnac inspect` on real recordings, where the folder named by SAGNAC_REAL_DATA holds them.
 
-
 fn told(file: &str) -> Option<String> {
     let (name, inner) = file.split_once('/').unwrap();
     let path = crate::support::real::set(name)?.join(inner);

@@ -2,7 +2,7 @@
 
 use crate::store::{a_result, kept, store, with_store, write_result};
 use crate::support::quick::Quick;
-use crate::support::{Said, altered, limits, procedure, result, sagnac, sagnac_with, sample, shipped};
+use crate::support::{Said, altered, limits, procedure, result, sagnac, sagnac_with, sample};
 use serde_json::Value;
 use std::path::Path;
 
@@ -118,8 +118,8 @@ fn units_have_what_the_table_and_the_manifest_know_of_them() {
 fn the_units_of_a_lot_are_kept_one_by_one() {
     let dir = with_store();
     for name in ["pass", "fail"] {
-        let sample = shipped(&format!("samples/supply-sensitivity-{name}.csv"));
-        std::fs::copy(sample, dir.path().join(format!("u-{name}.csv"))).unwrap();
+        let rows = std::fs::read_to_string(Quick::new(name).recording).unwrap();
+        std::fs::write(dir.path().join(format!("u-{name}.csv")), format!("# serial: SN-7\n{rows}")).unwrap();
     }
     let procedure = Quick::new("pass").procedure;
     let args =
@@ -141,7 +141,7 @@ fn a_correction_supersedes_and_both_stay() {
     let dir = with_store();
     for (name, at, value) in [("a", "2026-03-01T10:00:00Z", 1.2), ("b", "2026-03-01T11:00:00Z", 0.7)] {
         let mut result = a_result("SN-1", "L", at, value);
-        result["procedure"]["id"] = "supply-sensitivity".into();
+        result["procedure"]["id"] = "quick".into();
         write_result(dir.path(), name, &result);
         store(dir.path(), &["import", "store", name]);
     }

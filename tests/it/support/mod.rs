@@ -95,18 +95,24 @@ pub fn short_procedure(folder: &Path) -> String {
     altered(folder, "short.toml", &procedure(), &[("warm_up = \"30 min\"", "warm_up = \"10 s\"")])
 }
 
-/// Analyses a recording into `a` and tests it into `r`. Whatever it is: no panic, exit codes as documented, no value
-/// that is no number in what was written.
+/// Analyses a recording into `a`. Whatever it is: no panic, exit codes as documented, no value that is no number in what
+/// was written.
+pub fn analysed(folder: &Path, name: &str) -> Said {
+    written(folder, &["analyze", name], "a")
+}
+
+/// Analyses a recording into `a` and tests it into `r`, as [`analysed`] does.
 pub fn both(folder: &Path, name: &str) -> (Said, Said) {
-    let analysed = sagnac(folder, &["analyze", name, "--out", "a"]);
     let short = short_procedure(folder);
-    let run = sagnac(folder, &["run", &short, name, "--serial", "SN-1", "--out", "r"]);
-    for out in ["a", "r"] {
-        if folder.join(out).is_dir() {
-            assert_no_nan(&folder.join(out));
-        }
+    (analysed(folder, name), written(folder, &["run", &short, name, "--serial", "SN-1"], "r"))
+}
+
+fn written(folder: &Path, args: &[&str], out: &str) -> Said {
+    let said = sagnac(folder, &[args, &["--out", out]].concat());
+    if folder.join(out).is_dir() {
+        assert_no_nan(&folder.join(out));
     }
-    (analysed, run)
+    said
 }
 
 /// The limits of the samples.

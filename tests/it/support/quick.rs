@@ -1,13 +1,18 @@
-//! A test of sensitivity to the supply, done in a fraction of a second: for what is asked of the program rather than of a
-//! result.
+//! A short test of one coefficient with one figure: for what is asked of the program rather than of a result.
 
 use super::shared::shared_input;
-use super::{Said, sagnac, shipped};
+use super::synthetic::white;
+use super::{Said, sagnac};
 use std::path::Path;
 
-/// Limits on what the test measures.
+const PROCEDURE: &str = "format = \"procedure/1\"\n[procedure]\nid = \"quick\"\ntitle = \"Quick\"\nrevision = \"A\"\n\
+    [unit_under_test]\nserial_required = true\n\
+    [[channel]]\nid = \"time\"\ncolumn = \"time_s\"\nrole = \"time\"\nunit = \"s\"\n\
+    [[channel]]\nid = \"rate\"\ncolumn = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/h\"\n\
+    [[measurand]]\nid = \"angle_random_walk\"\n[report]\nfigures = [\"rate\"]\n";
+
 const LIMITS: &str = "format = \"limits/1\"\n[limits]\nid = \"quick\"\ntitle = \"Quick\"\nrevision = \"A\"\n\
-    [[limit]]\nmeasurand = \"supply_sensitivity\"\nmax_abs = \"0.2 deg/h/V\"\n";
+    [[limit]]\nmeasurand = \"angle_random_walk\"\nmax = \"0.0025 deg/sqrt(h)\"\n";
 
 /// The files of the test, by their paths.
 pub struct Quick {
@@ -19,10 +24,14 @@ pub struct Quick {
 impl Quick {
     /// The unit that passes or the one that fails, as `pass` or `fail`; their recordings state no serial number.
     pub fn new(end: &str) -> Quick {
+        // White noise of 0.1 deg/h at 1 Hz is an angle random walk of 0.1/60 deg/√h.
+        let sigma_deg_h = if end == "pass" { 0.1 } else { 0.2 };
+        let row = |i: u64| format!("{i},{:.5}\n", 12.5 + sigma_deg_h * white(1, i));
+        let recording = || format!("time_s,rate_deg_h\n{}", (0..3000).map(row).collect::<String>());
         Quick {
-            procedure: shipped("procedures/supply-sensitivity.toml"),
-            recording: shared_input(&format!("supply-{end}.csv"), || recording(end)),
-            limits: shared_input("supply-limits.toml", || LIMITS.to_owned()),
+            procedure: shared_input("quick.toml", || PROCEDURE.to_owned()),
+            recording: shared_input(&format!("quick-{end}.csv"), recording),
+            limits: shared_input("quick-limits.toml", || LIMITS.to_owned()),
         }
     }
 
@@ -35,13 +44,4 @@ impl Quick {
     pub fn run(&self, folder: &Path, more: &[&str]) -> Said {
         sagnac(folder, &[&self.args()[..], more].concat())
     }
-}
-
-/// The text of a sample without its line that states the serial number.
-pub fn recording(end: &str) -> String {
-    let path = shipped(&format!("samples/supply-sensitivity-{end}.csv"));
-    let text = std::fs::read_to_string(path).unwrap();
-    let (stated, rest) = text.split_once('\n').unwrap();
-    assert!(stated.starts_with("# serial: "), "{stated}");
-    rest.to_owned()
 }

@@ -1,5 +1,6 @@
 //! Units without Shupe effect, lag or hysteresis: what lag and rate of temperature leave open.
 
+use sagnac_studies::bench::chamber::programme;
 use sagnac_studies::thermal::ambiguity::{plain, tally};
 
 #[test]

@@ -163,7 +163,7 @@ mod tests {
         let spectral = spectral(n);
         let (mut small, mut least) = ([0; 2], [1.0f64; 2]);
         for seed in 0..20 {
-            for (i, d) in all(&spectral, &dct2(&white(seed, n))).enumerate() {
+            for (i, d) in all(&spectral, &dct2(&white(seed, n))).into_iter().enumerate() {
                 small[i] += i32::from(d.p_value() < 0.05);
                 least[i] = least[i].min(d.p_value());
             }
