@@ -11,7 +11,7 @@ fn allan_variance(x: &[f64], m: usize) -> f64 {
 #[test]
 fn each_noise_has_the_allan_variance_of_its_closed_form() {
     let mut source = NoiseSource::new(1);
-    let len = 1 << 20;
+    let len = 1 << 18;
     let tau_h = 256.0 / 3600.0;
     for (x, expected) in [
         (source.white(0.01, 1.0, len), 0.01f64.powi(2) / tau_h),

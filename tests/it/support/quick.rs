@@ -9,7 +9,7 @@ const PROCEDURE: &str = "format = \"procedure/1\"\n[procedure]\nid = \"quick\"\n
     [unit_under_test]\nserial_required = true\n\
     [[channel]]\nid = \"time\"\ncolumn = \"time_s\"\nrole = \"time\"\nunit = \"s\"\n\
     [[channel]]\nid = \"rate\"\ncolumn = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/h\"\n\
-    [[measurand]]\nid = \"angle_random_walk\"\n[report]\nfigures = [\"rate\"]\n";
+    [conditions]\nminimum_duration = \"10 min\"\n[[measurand]]\nid = \"angle_random_walk\"\n[report]\nfigures = [\"rate\"]\n";
 
 const LIMITS: &str = "format = \"limits/1\"\n[limits]\nid = \"quick\"\ntitle = \"Quick\"\nrevision = \"A\"\n\
     [[limit]]\nmeasurand = \"angle_random_walk\"\nmax = \"0.0025 deg/sqrt(h)\"\n";
