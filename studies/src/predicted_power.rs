@@ -75,7 +75,8 @@ impl Limited {
 fn identified(model: &NoiseModel, seed: u64) -> Identification {
     let setup = Setup::for_record(seed, INTERVAL_S, SAMPLES as u64);
     let mean = Simulator::new(model, &setup).take(SAMPLES);
-    let blocks = BlockSeries { block_len: 1, first_index: 0, count: vec![1; SAMPLES], mean, rounding: vec![] };
+    let blocks =
+        BlockSeries { block_len: 1, first_index: 0, count: vec![1; SAMPLES], mean, rounding: vec![] };
     identify("rate", &Evidence::new(&blocks, None, INTERVAL_S, &[]), &Options::standard_terms())
 }
 
@@ -109,7 +110,13 @@ fn cases() -> Vec<Case> {
     let limit = Case::new("expected upper limit on B", |records, seed| {
         let Some((expected, median)) = upper_limits(records, 1_000_000 * seed) else { return vec![] };
         let asked = Asked::Between(0.95, 1.05);
-        vec![Row::number("bias_instability", "median upper limit over the expected", asked, median / expected, records)]
+        vec![Row::number(
+            "bias_instability",
+            "median upper limit over the expected",
+            asked,
+            median / expected,
+            records,
+        )]
     });
     of_limits.into_iter().chain([limit]).collect()
 }

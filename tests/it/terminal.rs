@@ -149,15 +149,13 @@ fn home(evil: &str) -> (TempDir, String) {
     (dir, name)
 }
 
-#[test]
-fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
-    let evil = forged();
-    let (dir, name) = home(&evil);
-    let t = in_toml(&evil);
-    let at = |n: &str| dir.path().join(n);
+/// Files of every other kind that hold the text, sound and broken ones.
+fn hostile_files(folder: &Path, name: &str, evil: &str) {
+    let t = in_toml(evil);
+    let at = |n: &str| folder.join(n);
     std::fs::write(
         at("m.toml"),
-        format!("format = \"manifest/1\"\nserial = \"{t}\"\n[[file]]\npath = \"{}\"\n", in_toml(&name)),
+        format!("format = \"manifest/1\"\nserial = \"{t}\"\n[[file]]\npath = \"{}\"\n", in_toml(name)),
     )
     .unwrap();
     std::fs::write(at("bad-m.toml"), format!("format = \"manifest/1\"\nserial = \"{t}\"\n\"{t}\" = 1\n[[file]]\npath = \"{t}\"\nsha256 = \"{t}\"\n")).unwrap();
@@ -180,6 +178,13 @@ fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
     )
     .unwrap();
     std::fs::write(at("bad.csv"), format!("time_s,{EVIL}\n0,{EVIL}\n1,{EVIL}\n{EVIL}\n")).unwrap();
+}
+
+#[test]
+fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
+    let evil = forged();
+    let (dir, name) = home(&evil);
+    hostile_files(dir.path(), &name, &evil);
     let missing = format!("none{evil}");
     let (p, serial, rate) = ("p.toml", "S", "2");
     for verb in [
@@ -237,7 +242,7 @@ fn nothing_from_a_file_steers_the_terminal_in_any_verb() {
     let rendered = ["report", "r", "--lang", "ru", "--out", "ru"];
     clean(&sagnac(dir.path(), &rendered), &rendered);
     for folder in ["r", "r2", "a", "c", "lot", "ru"] {
-        pages_or_less(&at(folder));
+        pages_or_less(&dir.path().join(folder));
     }
 }
 
