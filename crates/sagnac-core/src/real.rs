@@ -28,7 +28,8 @@ impl From<f64> for Real {
             f64::INFINITY => Real::Infinite(Infinite::Positive),
             f64::NEG_INFINITY => Real::Infinite(Infinite::Negative),
             v if v.is_nan() => Real::Nan(()),
-            v => Real::Finite(v),
+            // The sum has no negative zero, whose sign says nothing and depends on the optimisation of a maximum.
+            v => Real::Finite(v + 0.0),
         }
     }
 }

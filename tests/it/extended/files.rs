@@ -12,7 +12,7 @@ const OVERFLOWN: f64 = 1e300;
 fn assert_sound(folder: &std::path::Path, name: &str) {
     for (path, bytes) in files(folder) {
         let text = String::from_utf8(bytes).unwrap();
-        for word in text.split([' ', ',', '\n', '>', '<', '"', ':']) {
+        for word in text.split([' ', ',', '\n', '>', '<', '"', ':', '[', ']', '{', '}']) {
             // A word is judged as a number, since a hash may contain `e308`.
             let number =
                 word.ends_with(|c: char| c.is_ascii_digit()).then(|| word.parse::<f64>().ok()).flatten();

@@ -42,8 +42,8 @@ fn both_sources_of_records_have_the_spectrum_of_the_mix() {
     let samples = 12_000;
     for mix in mixes() {
         let generator = Generator::new(&mix, samples, TAU0_S);
-        let own = departures(&mix, samples, 8, &|seed| simulated(&mix, samples, 4_000 + seed));
-        let other = departures(&mix, samples, 8, &|seed| generator.record(4_000 + seed, 0.37));
+        let own = departures(&mix, samples, 24, &|seed| simulated(&mix, samples, 4_000 + seed));
+        let other = departures(&mix, samples, 24, &|seed| generator.record(4_000 + seed, 0.37));
         for (source, scores) in [("simulator", own), ("generator", other)] {
             let worst = scores.iter().copied().max_by(|a, b| a.1.abs().total_cmp(&b.1.abs())).expect("bands");
             assert!(

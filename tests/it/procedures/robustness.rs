@@ -44,7 +44,8 @@ fn hostile_files_end_in_bounded_time() {
         assert!(parse_procedure("h", text.as_bytes()).is_err());
         assert!(parse_limits("h", text.as_bytes()).is_err());
     }
-    assert!(started.elapsed().as_secs() < 20, "{:?}", started.elapsed());
+    // Seconds where optimised; time that grows with the square of the length would be hours.
+    assert!(started.elapsed().as_secs() < 120, "{:?}", started.elapsed());
 }
 
 /// Values that no key expects, the empty text and what steers a terminal among them.

@@ -184,7 +184,7 @@ fn used() -> (BTreeSet<String>, BTreeSet<String>) {
         sources(&root.join(folder), &mut code);
     }
     let mut fixtures = vec![];
-    sources(&root.join("tests/report/fixture"), &mut fixtures);
+    sources(&root.join("tests/it/report/fixture"), &mut fixtures);
     let mut keys = BTreeSet::new();
     for text in &code {
         keys.extend(quoted(text, '"').filter(|k| is_key(k, &tables)).map(str::to_owned));

@@ -50,7 +50,7 @@ fn without_a_store_nothing_changes() {
     assert!(!plain.out.contains("Kept"), "{}", plain.out);
     let record = result(&dir.path().join("a"));
     assert_eq!(record.get("attempt"), None);
-    assert_eq!(record["unit_under_test"].as_object().unwrap().len(), 6, "{}", record["unit_under_test"]);
+    assert_eq!(record["unit_under_test"].as_object().unwrap().len(), 5, "{}", record["unit_under_test"]);
     assert!(kept(&dir.path().join("store")).is_empty());
 }
 
