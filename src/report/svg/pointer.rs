@@ -144,9 +144,9 @@ fn values<'a>(layer: &'a Layer, plot: &Plot<'_>) -> Option<(&'a str, Style, Kind
     })
 }
 
-/// Six significant digits: more than is shown, and less than half of the bytes.
+/// Six significant digits: more than is shown, and less than half of the bytes. A zero is positive.
 fn rounded(value: f64) -> f64 {
-    format!("{value:.5e}").parse().unwrap_or(value)
+    format!("{value:.5e}").parse().unwrap_or(value) + 0.0
 }
 
 #[cfg(test)]
