@@ -124,10 +124,13 @@ fn sources(root: &Path) -> io::Result<Vec<Source>> {
 
 /// Lines that are neither blank nor a comment.
 fn code_lines(text: &str, path: &str) -> usize {
-    let comment = if path.ends_with(".rs") { "//" } else { "#" };
-    let marks = path.ends_with(".rs") || path.ends_with(".py") || path.ends_with(".toml");
-    let code = |line: &str| !line.is_empty() && !(marks && line.starts_with(comment));
-    text.lines().filter(|l| code(l.trim())).count()
+    let comment = match path.rsplit('.').next() {
+        Some("rs") => Some("//"),
+        Some("py") => Some("#"),
+        _ => None,
+    };
+    let is_comment = |line: &str| comment.is_some_and(|mark| line.starts_with(mark));
+    text.lines().map(str::trim).filter(|line| !line.is_empty() && !is_comment(line)).count()
 }
 
 /// Named structs of a text with the names of their fields.
