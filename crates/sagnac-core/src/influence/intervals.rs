@@ -2,6 +2,7 @@
 
 use super::cut::{FileSpan, find_stated, settled};
 use super::setup::{ComparisonTest, Stated};
+use crate::numeric::order::SortNumbers;
 use crate::rate_table::blocks::Blocks;
 
 /// Share of the range of a level within which it counts as the same.
@@ -123,7 +124,7 @@ fn tolerance(values: &[f64]) -> f64 {
     let range = finite.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v))
         - finite.iter().fold(f64::INFINITY, |m, v| m.min(*v));
     let mut changes: Vec<f64> = finite.windows(2).map(|w| (w[1] - w[0]).abs()).collect();
-    changes.sort_by(f64::total_cmp);
+    changes.sort_ascending();
     let median = changes.get(changes.len() / 2).copied().unwrap_or(0.0);
     // Median of |difference| of white noise is 0.6745·√2 σ.
     (6.0 * median / 0.954).max(SAME * range)

@@ -8,6 +8,7 @@
 //! only, so the largest bound of all pairs holds. Draws are fixed, so that a result repeats to the bit.
 
 use crate::estimate::{Spread, normal_probability};
+use crate::numeric::order::{SortByNumber, SortNumbers};
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
@@ -59,7 +60,7 @@ pub fn range(list: &[PossibleMeans]) -> Option<Range> {
     let plain = width(mean.iter().copied());
     let shape = widest(&mean, &noise, plain);
     let mut sizes: Vec<f64> = errors.iter().map(|e| size_of(&shape, e, plain)).collect();
-    sizes.sort_by(f64::total_cmp);
+    sizes.sort_ascending();
     let pairs = pairs(&mean, &noise, &errors);
     let value = quantile(&sizes, 0.5);
     let points = SCORES
@@ -158,12 +159,12 @@ fn pairs(mean: &DVector<f64>, noise: &DMatrix<f64>, errors: &[DVector<f64>]) -> 
         .map(|(i, k)| if mean[i] >= mean[k] { (i, k) } else { (k, i) })
         .map(|(i, k)| (mean[i] - mean[k] + 2.5 * deviation(noise, i, k), i, k))
         .collect();
-    all.sort_by(|a, b| b.0.total_cmp(&a.0));
+    all.sort_descending_by(|a| a.0);
     all.truncate(PAIRS);
     all.into_iter()
         .map(|(_, i, k)| {
             let mut drawn: Vec<f64> = errors.iter().map(|e| mean[i] - mean[k] + e[i] - e[k]).collect();
-            drawn.sort_by(f64::total_cmp);
+            drawn.sort_ascending();
             drawn
         })
         .collect()

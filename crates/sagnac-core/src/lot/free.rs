@@ -108,6 +108,7 @@ fn best_rank(n: usize, promise: Promise) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::numeric::order::SortNumbers;
 
     const fn promise(proportion: f64, confidence: f64) -> Promise {
         Promise { proportion, confidence }
@@ -137,7 +138,7 @@ mod tests {
     #[test]
     fn hanson_koopmans_gives_the_bounds_of_the_published_example() {
         let mut values: Vec<f64> = STAT_17.iter().map(|v| -v.ln()).collect();
-        values.sort_by(f64::total_cmp);
+        values.sort_ascending();
         let (largest, n) = (values[17], values.len());
         // STAT-17 takes the ninth value for 90/95 and the last for 99/95.
         for (proportion, rank, bound) in [(0.90, 9, 124.156), (0.99, 18, 99.651)] {

@@ -1,6 +1,7 @@
 //! Whether values scatter normally, by the test of Anderson and Darling with estimated mean and deviation.
 
 use crate::estimate::normal_probability;
+use crate::numeric::order::SortNumbers;
 
 /// Values from which the test is made.
 pub const LEAST: usize = 8;
@@ -15,7 +16,7 @@ pub fn normality(values: &[f64]) -> Option<f64> {
         return None;
     }
     let mut z: Vec<f64> = values.iter().map(|v| (v - mean) / deviation).collect();
-    z.sort_by(f64::total_cmp);
+    z.sort_ascending();
     let tail = |z: f64| normal_probability(z).max(f64::MIN_POSITIVE).ln();
     let sum: f64 = z
         .iter()

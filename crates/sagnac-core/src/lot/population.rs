@@ -12,6 +12,7 @@ use super::sampler::{Bounded, Draw, draws};
 use super::tolerance::{Promise, normal_factor};
 use crate::estimate::{normal_probability, normal_quantile, student_quantile};
 use crate::numeric::optimize::bisect;
+use crate::numeric::order::SortNumbers;
 use crate::numeric::order::upper_median;
 
 /// Values (not bounds) below which nothing is promised.
@@ -122,7 +123,7 @@ impl Population {
         let values: Vec<f64> = units.iter().filter_map(|u| u.value()).collect();
         let mut errors: Vec<f64> = units.iter().filter(|u| u.value().is_some()).map(Unit::standard).collect();
         let measurement = (errors.iter().map(|u| u * u).sum::<f64>() / errors.len() as f64).sqrt();
-        errors.sort_by(f64::total_cmp);
+        errors.sort_ascending();
         let variance = variance(&values);
         if values.len() < LEAST_VALUES || !(variance > 0.0 && variance.is_finite()) {
             return None;
@@ -195,7 +196,7 @@ impl Population {
         }
         let sign = if side == Side::Upper { 1.0 } else { -1.0 };
         let mut ascending: Vec<f64> = self.values.iter().map(|v| sign * v).collect();
-        ascending.sort_by(f64::total_cmp);
+        ascending.sort_ascending();
         let free = match bounding_rank(ascending.len(), promise) {
             Some(rank) => {
                 let at = ascending.len().checked_sub(rank).and_then(|i| ascending.get(i).copied());

@@ -6,6 +6,7 @@
 //! of it, and so its law for siblings and unit of one normal population depends on their numbers alone. It is drawn, by the
 //! sequential rule of J. Besag and P. Clifford (Biometrika 78, 1991).
 
+use crate::numeric::order::SortByNumber;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng as _;
 use rand_distr::{Distribution as _, StandardNormal};
@@ -78,7 +79,7 @@ impl Core {
         for _ in 0..STEPS {
             let distances2 = Core::over(siblings, &chosen)?.distances2(siblings.clone())?;
             let mut order: Vec<usize> = (0..count).collect();
-            order.sort_by(|a, b| distances2[*a].total_cmp(&distances2[*b]));
+            order.sort_ascending_by(|a| distances2[*a]);
             order.truncate(kept);
             order.sort_unstable();
             if order == chosen {

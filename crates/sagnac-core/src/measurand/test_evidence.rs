@@ -7,6 +7,7 @@ use crate::noise::data::{DeviationPoint, NoiseType};
 use crate::noise::digest::{DigestPlan, RateAccumulator};
 use crate::noise::intervals::BoundedPoint;
 use crate::noise::windows::WindowStatistics;
+use crate::numeric::order::SortNumbers;
 use crate::numeric::reml::{self, Combination, Fit};
 use crate::rate_table::design::Extra;
 use crate::rate_table::scale_factor::{self, ScaleFactor};
@@ -76,7 +77,7 @@ pub fn part(at: usize, rate: f64, output: f64) -> Part {
 /// Steps of rates, deg/h, with the output of each, in cycles of so many. Every step has two parts that scatter about it.
 pub fn steps(rates: &[f64], outputs: &[f64], cycle: usize) -> Steps {
     let mut levels = rates.to_vec();
-    levels.sort_by(f64::total_cmp);
+    levels.sort_ascending();
     levels.dedup();
     let step = |(i, (rate, output)): (usize, (&f64, &f64))| Step {
         from_s: 20.0 * i as f64,

@@ -28,6 +28,7 @@ use crate::claim::{Claim, Stated};
 use crate::effect::{
     Detection, Domain, Effect, Family, Model, Place, SpectralContext, UNKNOWN, find, stateable,
 };
+use crate::numeric::order::SortByNumber;
 use crate::series::ReadFrom;
 use std::collections::BTreeMap;
 
@@ -76,7 +77,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     // Of equal ones, what single samples show stands before what was tried in modes.
     let mut ranked: Vec<Candidate> =
         found.named.iter().map(of_samples).chain(selection.first.iter().map(candidate)).collect();
-    ranked.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    ranked.sort_descending_by(|a| a.delta_bic);
     let halves = Halves::new(problem);
     let nothing = selection.chosen.is_empty() && found.named.is_empty();
     let held_best = if nothing { held_base } else { halves.judge(best) };
@@ -85,7 +86,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
         found.named.push(Named { improvement: Some(gained), ..named(chosen, best, problem, options) });
     }
     single_cause::returned(&mut found.named, problem, options);
-    found.named.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    found.named.sort_descending_by(|a| a.delta_bic);
     let something = !found.named.is_empty();
     let principal = principal_places(&found.named, after);
     let gained = best.fit.log_likelihood - base.fit.log_likelihood + local_gain;
@@ -201,7 +202,7 @@ fn causes(
             out.retain(|f| find(&f.kind).and_then(|e| e.family()) != Some(Family::Line));
         }
         out.push(unknown);
-        out.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+        out.sort_descending_by(|a| a.delta_bic);
     }
     out.extend(missing(problem, options));
     (out, rest)

@@ -6,8 +6,9 @@ mod spectrum;
 use super::options::Options;
 use super::tried::{Candidate, SpectralDataSet, Tried};
 use crate::effect::{EFFECTS, Effect, Model};
+use crate::numeric::order::SortByNumber;
+use crate::numeric::parallel;
 use course::{Grounds, try_course};
-use rayon::prelude::*;
 use spectrum::try_spectrum;
 
 /// The hypothesis with its noise as the claim states it, where the fit moved it far from there: it may stand for a course.
@@ -54,9 +55,10 @@ pub fn among(
         grounds.iter().flatten().any(|g| g.is_long(resolution))
     };
     let (alone, together): (Vec<_>, Vec<_>) = EFFECTS.iter().filter(|e| wanted(**e)).partition(|e| long(e));
-    let mut found: Vec<Candidate> = together.into_par_iter().filter_map(tried).collect();
+    let mut found: Vec<Candidate> =
+        parallel::map_items(&together, |e| tried(*e)).into_iter().flatten().collect();
     found.extend(alone.into_iter().filter_map(tried));
     // Kinds with the same course are ordered by what else speaks for them.
-    found.sort_by(|a, b| a.tried.rank(spectra.rows).total_cmp(&b.tried.rank(spectra.rows)));
+    found.sort_ascending_by(|a| a.tried.rank(spectra.rows));
     found
 }

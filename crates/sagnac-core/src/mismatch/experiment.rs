@@ -10,14 +10,14 @@ use super::terms::CourseIn;
 use super::tried::{Candidate, SpectralDataSet, Tried};
 use crate::effect::{MeanModel, ModeBin, Model};
 use crate::numeric::least_squares::{Normal, subtract};
+use crate::numeric::parallel;
 use rand::SeedableRng as _;
 use rand_distr::{ChiSquared, Distribution as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
-use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// Records simulated for each length.
-const DRAWS: u64 = 60;
+const DRAWS: usize = 60;
 /// Of those, how many must tell the two apart.
 const DECIDED: usize = 57;
 /// Longest record that is thought of, in lengths of this one.
@@ -59,8 +59,8 @@ fn processes(best: &Tried, rival: &Tried, spectra: &SpectralDataSet) -> Option<f
 /// the rival more.
 fn records_decided(own: &Noise, rival: &Noise, spectral: &SpectralData, price: f64) -> usize {
     let densities = own.densities(spectral);
-    let decides = |draw: &u64| {
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED + draw);
+    let decides = |draw: usize| {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED + draw as u64);
         let power = |(bin, s): (&ModeBin, &f64)| {
             let dof = bin.modes as f64;
             ChiSquared::new(dof).map_or(*s, |law| s * law.sample(&mut rng) / dof)
@@ -69,7 +69,7 @@ fn records_decided(own: &Noise, rival: &Noise, spectral: &SpectralData, price: f
         let fitted = |noise: &Noise| noise_fit::fit(&mut noise.clone(), spectral, &drawn).log_likelihood;
         2.0 * (fitted(own) - fitted(rival)) + price >= ENOUGH
     };
-    (0..DRAWS).into_par_iter().filter(decides).count()
+    parallel::map(DRAWS, decides).into_iter().filter(|d| *d).count()
 }
 
 /// The share of records, 0 to 1, that tell a noise from a rival: the ΔBIC between them is [`ENOUGH`] in favour of the one

@@ -5,6 +5,7 @@ use super::problem::Problem;
 use super::tried::Tried;
 use crate::effect::FlatResidual;
 use crate::numeric::cosine::{dct2, inverse_dct2};
+use crate::numeric::order::SortNumbers;
 use crate::numeric::order::{NORMAL_MEDIAN, upper_median};
 
 /// Samples on either side of a running median: courses slower than this are none of a burst.
@@ -78,7 +79,7 @@ fn smooth(powers: &[f64], half: usize) -> Vec<f64> {
 fn running_median(values: &[f64], half: usize) -> Vec<f64> {
     let n = values.len();
     let mut window: Vec<f64> = values.iter().take(half).copied().collect();
-    window.sort_by(f64::total_cmp);
+    window.sort_ascending();
     let mut out = Vec::with_capacity(n);
     for i in 0..n {
         if i + half < n {
@@ -127,7 +128,7 @@ mod tests {
         let got = running_median(&values, 5);
         for (i, g) in got.iter().enumerate() {
             let mut window = values[i.saturating_sub(5)..(i + 6).min(50)].to_vec();
-            window.sort_by(f64::total_cmp);
+            window.sort_ascending();
             let m = window.len();
             let expected = if m % 2 == 1 { window[m / 2] } else { 0.5 * (window[m / 2 - 1] + window[m / 2]) };
             assert_eq!(*g, expected, "{i}");

@@ -6,8 +6,8 @@ use super::spectral_data::{NuisanceColumn, SpectralData};
 use super::terms::CourseIn;
 use crate::effect::{MeanModel, Regressors, Resolution, averages};
 use crate::numeric::least_squares::{Normal, subtract};
+use crate::numeric::parallel;
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 use std::borrow::Cow;
 
 /// The claim plus effects.
@@ -50,11 +50,11 @@ impl PartModes {
 
     /// Transforms the parts, those of a kind side by side.
     fn of(parts: Regressors, spectral: &SpectralData) -> PartModes {
-        let modes = |column: Vec<f64>| spectral.transform(&column);
+        let modes = |column: &Vec<f64>| spectral.transform(column);
         PartModes {
-            offset: parts.offset.map(modes),
-            columns: parts.columns.into_par_iter().map(modes).collect(),
-            nuisance: parts.nuisance.into_par_iter().map(modes).collect(),
+            offset: parts.offset.as_ref().map(modes),
+            columns: parallel::map_items(&parts.columns, modes),
+            nuisance: parallel::map_items(&parts.nuisance, modes),
         }
     }
 }

@@ -1,6 +1,7 @@
 //! How probable each name of a finding is, given that one of the catalogue's effects is there.
 
 use super::tried::Candidate;
+use crate::numeric::order::SortByNumber;
 
 /// A name with its probability.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +39,7 @@ pub fn probabilities(names: impl IntoIterator<Item = (&'static str, f64)>) -> Ve
         .map(|(kind, worth)| Probable { kind, probability: ((worth - most) / scale).exp() / sum })
         .filter(|p| p.probability >= LISTED)
         .collect();
-    out.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    out.sort_descending_by(|a| a.probability);
     out
 }
 

@@ -7,6 +7,7 @@
 use super::heldout::Halves;
 use super::tried::Candidate;
 use crate::effect::{Domain, Effect, Model};
+use crate::numeric::order::SortByNumber;
 
 /// Part of the gain of the process from which a course is compared with it.
 const COMPARED: f64 = 0.4;
@@ -50,5 +51,5 @@ pub(super) fn weigh(
             *odds += more;
         }
     }
-    found.sort_by(|a, b| a.tried.rank(rows).total_cmp(&b.tried.rank(rows)));
+    found.sort_ascending_by(|a| a.tried.rank(rows));
 }

@@ -2,6 +2,7 @@
 
 use super::regular::Regular;
 use crate::numeric::decimal::multiples;
+use crate::numeric::order::SortNumbers;
 use std::collections::BTreeMap;
 
 /// Values looked at.
@@ -50,7 +51,7 @@ pub fn of(regular: &Regular) -> Option<QuantizationGrid> {
     if steps.len() < 32 {
         return None;
     }
-    steps.sort_by(f64::total_cmp);
+    steps.sort_ascending();
     let largest = values.iter().fold(0.0, |a: f64, v| a.max(v.abs())).max(1e-30);
     // The smallest difference that is more than the rounding of the digits written.
     let rounding = largest * 1e-9;

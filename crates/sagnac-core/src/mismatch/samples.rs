@@ -15,6 +15,7 @@ use crate::effect::{
     Reported, RowsFound, Value,
 };
 use crate::estimate::chi_square_tail;
+use crate::numeric::order::SortByNumber;
 
 /// Laws that compete: forms over time, over columns, over the rate.
 pub const LAWS: f64 = 16.0;
@@ -108,7 +109,7 @@ pub fn levels(problem: &Problem, tried: &Tried) -> Vec<Level> {
     }
     let rows = (samples.len() as f64).ln();
     let score = |l: &Level| 2.0 * l.gain - l.parameters as f64 * rows;
-    out.sort_by(|a, b| score(b).total_cmp(&score(a)));
+    out.sort_descending_by(|a| score(a));
     out
 }
 

@@ -14,6 +14,7 @@ use super::terms::CourseIn;
 use super::terms::SpectrumIn;
 use super::tried::{Candidate, SpectralDataSet, Tried};
 use crate::effect::{Effect, Model, SpectrumAct};
+use crate::numeric::order::SortByNumber;
 
 /// ΔBIC that an effect must bring, and within which two are equivalent.
 pub const ENOUGH: f64 = 6.0;
@@ -201,7 +202,7 @@ pub fn select(base: &Tried, problem: &Problem, options: &Options) -> Selection {
                 }
             }
         }
-        next.sort_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)));
+        next.sort_ascending_by(|a| a.rank(rows));
         let only_jump = |t: &&Tried| matches!(slots(&t.hypothesis)[..], [(_, e)] if is_jump(e));
         let jump = next.iter().skip(WIDTH).find(only_jump).cloned();
         next.truncate(WIDTH);
@@ -293,7 +294,7 @@ fn laws<'a>(effect: &dyn Effect, rivals: &'a [Candidate]) -> Vec<&'a Candidate> 
     let worth = |c: &&Candidate| worth_of_law(c);
     let kinds = effect.named_by_law();
     let mut laws: Vec<&Candidate> = rivals.iter().filter(|c| kinds.contains(&c.effect.kind())).collect();
-    laws.sort_by(|a, b| worth(b).total_cmp(&worth(a)));
+    laws.sort_descending_by(|a| worth(a));
     let best = laws.first().map_or(0.0, worth);
     laws.retain(|c| worth(c) >= NEAR * best);
     laws
@@ -378,6 +379,6 @@ fn chosen(best: &Tried, base: &Tried, first: &[Candidate], search: &Search<'_>) 
             }
         })
         .collect();
-    out.sort_by(|a, b| b.delta_bic.total_cmp(&a.delta_bic));
+    out.sort_descending_by(|a| a.delta_bic);
     out
 }

@@ -10,6 +10,7 @@ use super::named::Named;
 use super::options::Options;
 use super::problem::Problem;
 use crate::effect::{Domain, Family, Knot, Place};
+use crate::numeric::order::SortByNumber;
 use std::collections::BTreeMap;
 
 /// Ratio of frequencies below which two lines are neighbours.
@@ -59,7 +60,7 @@ fn frequency(named: &Named) -> Option<f64> {
 fn neighbours(named: &[Named], lines: &[usize]) -> Vec<Vec<usize>> {
     let mut order: Vec<(f64, usize)> =
         lines.iter().filter_map(|i| Some((frequency(&named[*i])?, *i))).collect();
-    order.sort_by(|a, b| a.0.total_cmp(&b.0));
+    order.sort_ascending_by(|a| a.0);
     let mut out: Vec<Vec<usize>> = vec![];
     let mut last = f64::NAN;
     for (f, i) in order {

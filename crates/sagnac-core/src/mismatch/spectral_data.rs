@@ -10,6 +10,7 @@ use crate::effect::{Drivers, ModeBin, Model, Nuisance};
 use crate::noise::data::NoiseType;
 use crate::noise::model::{Bin, Spectral, bin_ratio, claimed_unit_density};
 use crate::numeric::cosine::dct2;
+use crate::numeric::order::SortNumbers;
 use std::sync::Arc;
 
 /// Modes that have a bin each.
@@ -291,7 +292,7 @@ pub fn smoothed(values: &[f64]) -> Vec<f64> {
     let rest: Vec<f64> = values.iter().enumerate().map(|(i, v)| v - line(i)).collect();
     let mut modes = dct2(&rest);
     let mut high: Vec<f64> = modes[n / 2..].iter().map(|x| x * x).collect();
-    high.sort_by(f64::total_cmp);
+    high.sort_ascending();
     // The median of χ²₁ is 0.455.
     let floor = high[high.len() / 2] / 0.455;
     let mut from = 1;

@@ -5,6 +5,7 @@ use super::finding::{Finding, PlaceRecord, ShapeRecord};
 use super::options::Options;
 use super::problem::Problem;
 use crate::effect::{Domain, EFFECTS, Model, UNKNOWN, find};
+use crate::numeric::order::SortByNumber;
 use std::collections::BTreeMap;
 
 /// A residual test counts as departed below this, its own scan and the number of tests counted.
@@ -35,7 +36,7 @@ pub(super) fn cause(
     let alpha = options.alpha;
     let bound = if nothing_found { (0.3 * alpha).min(1e-3) } else { DEPARTED };
     let mut departed: Vec<&Departure> = after.iter().filter(|d| d.below(bound, after.len())).collect();
-    departed.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    departed.sort_ascending_by(|a| a.ln_p);
     departed.sort_by_key(|d| d.narrows());
     let worst = departed.first()?;
     let mut places: Vec<PlaceRecord> = vec![];

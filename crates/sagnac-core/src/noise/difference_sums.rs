@@ -1,7 +1,7 @@
 //! Sums of squared second and third differences of phase: the inner loops of the Allan family.
 
 use super::phase::Compensated;
-use rayon::prelude::*;
+use crate::numeric::parallel;
 
 const LANES: usize = 8;
 /// Starting points taken through every averaging factor before the next are fetched from memory.
@@ -68,49 +68,37 @@ pub(crate) fn ending_from(x: &[f64], lag: usize, order: usize, from_end: usize) 
 /// the point 2m of one factor is the point m of the next.
 pub(crate) fn all_overlapping(x: &[f64], factors: &[u64], order: usize) -> Vec<f64> {
     let tasks: Vec<usize> = (0..x.len()).step_by(TASK).collect();
-    let partial: Vec<Vec<f64>> = tasks
-        .par_iter()
-        .map(|&task| {
-            let mut sums = vec![0.0; factors.len()];
-            for from in (task..(task + TASK).min(x.len())).step_by(CHUNK) {
-                for (sum, &m) in sums.iter_mut().zip(factors) {
-                    let lag = m as usize;
-                    let Some(end) = x.len().checked_sub(order * lag) else { break };
-                    let to = (from + CHUNK).min(end);
-                    if to <= from {
-                        break;
-                    }
-                    let at = |k: usize| &x[from + k * lag..to + k * lag];
-                    *sum += if order == 2 {
-                        second(at(0), at(1), at(2))
-                    } else {
-                        third(at(0), at(1), at(2), at(3))
-                    };
+    let partial: Vec<Vec<f64>> = parallel::map_items(&tasks, |&task| {
+        let mut sums = vec![0.0; factors.len()];
+        for from in (task..(task + TASK).min(x.len())).step_by(CHUNK) {
+            for (sum, &m) in sums.iter_mut().zip(factors) {
+                let lag = m as usize;
+                let Some(end) = x.len().checked_sub(order * lag) else { break };
+                let to = (from + CHUNK).min(end);
+                if to <= from {
+                    break;
                 }
+                let at = |k: usize| &x[from + k * lag..to + k * lag];
+                *sum +=
+                    if order == 2 { second(at(0), at(1), at(2)) } else { third(at(0), at(1), at(2), at(3)) };
             }
-            sums
-        })
-        .collect();
+        }
+        sums
+    });
     (0..factors.len()).map(|k| total(partial.iter().map(|p| p[k]))).collect()
 }
 
 /// Sums of squared window sums of second differences in one stretch of phase: the modified Allan variance, one for
 /// each factor. A running window: what enters and leaves it are the same numbers, so that it does not drift.
 pub(crate) fn all_modified(x: &[f64], factors: &[u64]) -> Vec<f64> {
-    factors
-        .par_iter()
-        .map(|&m| {
-            let m = m as usize;
-            let Some(windows) = (x.len() + 1).checked_sub(3 * m) else { return 0.0 };
-            let task = TASK.max(4 * m);
-            let sums: Vec<f64> = (0..windows)
-                .into_par_iter()
-                .step_by(task)
-                .map(|from| sliding(x, m, from, (from + task).min(windows)))
-                .collect();
-            total(sums.into_iter())
-        })
-        .collect()
+    parallel::map_items(factors, |&m| {
+        let m = m as usize;
+        let Some(windows) = (x.len() + 1).checked_sub(3 * m) else { return 0.0 };
+        let task = TASK.max(4 * m);
+        let sums: Vec<f64> =
+            parallel::map(windows.div_ceil(task), |k| sliding(x, m, k * task, ((k + 1) * task).min(windows)));
+        total(sums.into_iter())
+    })
 }
 
 fn sliding(x: &[f64], m: usize, from: usize, to: usize) -> f64 {

@@ -6,6 +6,7 @@
 //! less. It is simulated there: N cancels, so that record length, window and averaging times are all it depends on.
 
 use super::difference_sums::ending_from;
+use crate::numeric::order::SortNumbers;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -53,7 +54,7 @@ pub fn null_ratio(length_s: f64, window_s: f64, taus_s: &[f64]) -> Option<[f64; 
             (window_variance(&sums) / least).sqrt()
         })
         .collect();
-    ratios.sort_by(f64::total_cmp);
+    ratios.sort_ascending();
     let at = |p: f64| ratios.get((p * RECORDS as f64) as usize).copied();
     Some([at(0.05)?, at(0.5)?, at(0.95)?])
 }

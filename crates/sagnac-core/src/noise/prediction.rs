@@ -10,6 +10,7 @@ use super::composite::{Composite, Described, Line, Part, Propagated};
 use super::data::NoiseType;
 use super::windows::edf_of_window_std;
 use crate::estimate::{Interval, chi_square_quantile};
+use crate::numeric::order::SortByNumber;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -131,7 +132,7 @@ impl WindowPrediction {
             Some(Share { part: p, share })
         };
         let mut shares = described.model.parts().into_iter().map(part).collect::<Option<Vec<Share>>>()?;
-        shares.sort_by(|a, b| b.share.total_cmp(&a.share));
+        shares.sort_descending_by(|a| a.share);
         let noise = Described { model: scattering(&described.model), ..described.clone() };
         let Propagated { value: noise_total, standard_uncertainty: u_noise } = noise.propagate(expected);
         let edf = edf_of_window_std(windows, window_s, |t| noise.model.mean_variance(t, tau0_s))

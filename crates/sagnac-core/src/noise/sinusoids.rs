@@ -7,6 +7,7 @@
 use super::data::BlockSeries;
 use super::lines::{Sinusoid, SpectralLine};
 use crate::numeric::optimize::golden_section_maximum;
+use crate::numeric::order::SortByNumber;
 use sagnac_fft::{RealToComplex, real_forward};
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -208,7 +209,7 @@ pub fn fit(blocks: &BlockSeries, tau0_s: f64, lines: &mut [SpectralLine]) {
     if means.count() < MIN_BLOCKS {
         return;
     }
-    order.sort_by(|a, b| lines[*b].amplitude_deg_h.total_cmp(&lines[*a].amplitude_deg_h));
+    order.sort_descending_by(|a| lines[*a].amplitude_deg_h);
     lines.iter().filter_map(|l| l.sinusoid.as_ref()).for_each(|s| means.subtract(s));
     for i in order.into_iter().take(MAX_SINUSOIDS) {
         let line = &mut lines[i];

@@ -15,6 +15,7 @@ use super::identification::{
 };
 use super::lines::{SpectralLine, find_lines, retain};
 use super::sinusoids;
+use crate::numeric::order::SortByNumber;
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
@@ -144,7 +145,7 @@ impl SpectralRecord<'_> {
                 break;
             }
             lines = retain(&[lines, left, steady].concat(), |_| true);
-            lines.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+            lines.sort_ascending_by(|a| a.frequency_hz);
             lines = retain(&lines, |_| true);
             sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
             ranged = describe_in_range(channel, &evidence(&lines), nyquist_hz, &options);

@@ -1,7 +1,7 @@
 //! Weighted linear least squares of columns with Gaussian priors, by the normal equations.
 
+use crate::numeric::parallel;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 /// Normal equations of columns z with prior deviations σ against data x of variances p:
 /// (Σ z z'/p + diag σ⁻²) c = Σ z x/p.
@@ -82,13 +82,10 @@ impl Normal {
             right[i] = other.as_ref().map_or(self.right[i], |other| other[i]);
         }
         let known = |j: usize| if j < p { old[j].0 } else { new[j - p] };
-        let rows: Vec<Vec<f64>> = (0..q)
-            .into_par_iter()
-            .map(|i| {
-                let against = (0..=p + i).map(known);
-                products(new[i], powers, against.chain([data]))
-            })
-            .collect();
+        let rows: Vec<Vec<f64>> = parallel::map(q, |i| {
+            let against = (0..=p + i).map(known);
+            products(new[i], powers, against.chain([data]))
+        });
         for (i, row) in rows.into_iter().enumerate() {
             for (j, value) in row[..=p + i].iter().enumerate() {
                 matrix[(p + i, j)] = *value;

@@ -5,7 +5,8 @@
 //! | [`cosine`] | discrete cosine transforms, and the modes of a sinusoid |
 //! | [`optimize`] | bisection, golden sections, step rules of Newton ascents, bounded quadratics |
 //! | [`least_squares`] | weighted least squares with priors |
-//! | [`order`] | medians |
+//! | [`order`] | sorting by numbers, medians, quantiles |
+//! | `parallel` | work side by side on all cores |
 //! | [`reml`] | linear models with variance components, by restricted maximum likelihood |
 //! | [`special`] | special functions |
 //! | [`sums`] | compensated and running sums |
@@ -17,6 +18,7 @@ pub mod decimal;
 pub mod least_squares;
 pub mod optimize;
 pub mod order;
+pub(crate) mod parallel;
 pub mod range;
 pub mod reml;
 pub mod special;

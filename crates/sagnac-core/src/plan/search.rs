@@ -4,8 +4,9 @@ use super::library::Pattern;
 use super::separation::{Decision, Shown, found, told_apart};
 use super::trial::Trial;
 use crate::claim::{Claim, Stated};
+use crate::numeric::order::SortByNumber;
+use crate::numeric::parallel;
 use crate::schedule::{Schedule, Start};
-use rayon::prelude::*;
 
 /// Probability of deciding that is asked for.
 pub const ASKED: f64 = 0.95;
@@ -155,15 +156,18 @@ impl Search<'_> {
     pub fn best(&self, patterns: &[Pattern], progress: &mut dyn FnMut(u64, u64)) -> Found {
         let total = 3;
         progress(0, total);
-        let once: Vec<(Pattern, Evaluated)> = patterns
-            .par_iter()
-            .filter_map(|p| Some((p.clone(), self.evaluate(self.repeated(p, 1))?)))
-            .collect();
+        let once: Vec<(Pattern, Evaluated)> =
+            parallel::map_items(patterns, |p| Some((p.clone(), self.evaluate(self.repeated(p, 1))?)))
+                .into_iter()
+                .flatten()
+                .collect();
         progress(1, total);
         let mut promising = self.promising(&once);
         promising.extend(self.combined(&once));
-        let mut ranked: Vec<Evaluated> =
-            promising.par_iter().filter_map(|p| self.enough(p, self.budget_s)).collect();
+        let mut ranked: Vec<Evaluated> = parallel::map_items(&promising, |p| self.enough(p, self.budget_s))
+            .into_iter()
+            .flatten()
+            .collect();
         progress(2, total);
         rank(&mut ranked);
         let needed_s = match ranked.first() {
@@ -181,7 +185,7 @@ impl Search<'_> {
     /// The patterns that are expected to decide in the fewest hours.
     fn promising(&self, once: &[(Pattern, Evaluated)]) -> Vec<Pattern> {
         let mut order: Vec<&(Pattern, Evaluated)> = once.iter().collect();
-        order.sort_by(|a, b| a.1.expected_hours().total_cmp(&b.1.expected_hours()));
+        order.sort_ascending_by(|a| a.1.expected_hours());
         order.into_iter().take(PROMISING).map(|(p, _)| p.clone()).collect()
     }
 

@@ -2,6 +2,7 @@
 
 use super::record::Contrast;
 use crate::effect::Column;
+use crate::numeric::order::SortNumbers;
 use crate::schedule::Leg;
 use std::collections::BTreeSet;
 
@@ -56,7 +57,7 @@ fn rates(legs: &[Leg]) -> Option<Contrast> {
 
 fn headings(legs: &[Leg]) -> Option<Contrast> {
     let mut angles: Vec<f64> = legs.iter().filter_map(|l| l.table_angle_deg).collect();
-    angles.sort_by(f64::total_cmp);
+    angles.sort_ascending();
     angles.dedup();
     (angles.len() > 1).then_some(Contrast::Headings { count: angles.len() })
 }

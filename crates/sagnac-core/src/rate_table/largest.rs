@@ -10,6 +10,7 @@
 //! so that a result repeats to the bit.
 
 use crate::estimate::{Spread, normal_probability};
+use crate::numeric::order::SortNumbers;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_distr::{ChiSquared, Distribution, StandardNormal};
@@ -53,7 +54,7 @@ pub fn largest(values: &[f64], covariance: &DMatrix<f64>, dof: &dyn Fn(usize) ->
         .collect();
     // The size at which a draw leaves just what was observed: the largest of |s·v + e| grows with s where s is large.
     let mut sizes: Vec<f64> = draws.iter().map(|e| size_of(values, e, observed)).collect();
-    sizes.sort_by(f64::total_cmp);
+    sizes.sort_ascending();
     let chance = draws.iter().filter(|e| e.iter().fold(0.0, |m: f64, v| m.max(v.abs())) >= observed).count()
         as f64
         / DRAWS as f64;

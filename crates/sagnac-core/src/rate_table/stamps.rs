@@ -2,6 +2,7 @@
 
 use super::blocks::TURN_ARCSEC;
 use super::steps::TableRun;
+use crate::numeric::order::SortNumbers;
 
 /// Rates, as shares of the largest, that tell.
 const TELLS: f64 = 0.05;
@@ -39,7 +40,7 @@ pub fn time_factor(run: &TableRun) -> Option<f64> {
     if factors.is_empty() {
         return None;
     }
-    factors.sort_by(f64::total_cmp);
+    factors.sort_ascending();
     let middle = factors[factors.len() / 2];
     let alike = factors.iter().filter(|f| (*f / middle - 1.0).abs() < WITHIN).count();
     (alike as f64 >= AGREE * factors.len() as f64).then_some(middle)

@@ -3,6 +3,7 @@
 use super::blocks::{Block, Blocks, TURN_ARCSEC};
 use super::settling::{self, Unsettled};
 use super::setup::Setup;
+use crate::numeric::order::SortByNumber;
 
 /// Parts of all steps together: correlated noise is handled as a matrix over them.
 const PARTS: usize = 260;
@@ -320,7 +321,7 @@ fn part(list: &[Block], first: usize, end: usize, dt: f64, nominal: f64) -> Part
 /// Gives steps of one rate one level.
 fn number_levels(steps: &mut Steps, largest: f64) {
     let mut order: Vec<usize> = (0..steps.list.len()).collect();
-    order.sort_by(|a, b| steps.list[*a].nominal.total_cmp(&steps.list[*b].nominal));
+    order.sort_ascending_by(|a| steps.list[*a].nominal);
     let mut levels: Vec<(f64, f64)> = Vec::new();
     for i in order {
         let rate = steps.list[i].nominal;

@@ -1,6 +1,7 @@
 //! The evaluated part of a recording: warm-up and declared spans left out, gaps noted.
 
 use super::{SampleBlock, Sink};
+use crate::numeric::order::SortByNumber;
 use serde::{Deserialize, Serialize};
 
 /// Gaps listed at most.
@@ -88,7 +89,7 @@ impl<S: Sink> Windowed<S> {
         if let Some(to) = spec.to_s {
             spans.push(TimeSpan { from_s: to, to_s: f64::INFINITY });
         }
-        spans.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+        spans.sort_ascending_by(|a| a.from_s);
         let mut left_out: Vec<TimeSpan> = Vec::new();
         for span in spans {
             match left_out.last_mut() {
@@ -129,7 +130,7 @@ impl<S: Sink> Windowed<S> {
         excluded
             .extend(self.spec.to_s.filter(|to| *to < self.end_s).map(|to| span(to, self.end_s, "declared")));
         excluded.extend(self.gaps);
-        excluded.sort_by(|a, b| a.from_s.total_cmp(&b.from_s));
+        excluded.sort_ascending_by(|a| a.from_s);
         let window = Window {
             from_s: self.first_s.unwrap_or(0.0),
             to_s: self.last_s,

@@ -3,6 +3,7 @@
 use super::sampler::{Draw, normal};
 use crate::estimate::{Spread, normal_probability};
 use crate::numeric::optimize::bisect;
+use crate::numeric::order::SortNumbers;
 use nalgebra::{DMatrix, DVector};
 use rand::SeedableRng;
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -130,7 +131,7 @@ pub fn by_chance(draws: &[Draw], of: impl Fn(&DVector<f64>) -> f64) -> f64 {
 /// A reading from draws.
 pub fn from_values(mut values: Vec<f64>) -> Reading {
     values.retain(|v| v.is_finite());
-    values.sort_by(f64::total_cmp);
+    values.sort_ascending();
     if values.is_empty() {
         return Reading { value: f64::NAN, spread: Spread::Unknown };
     }

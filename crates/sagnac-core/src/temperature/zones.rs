@@ -8,6 +8,7 @@ use super::sampler::Draw;
 use super::test::TemperatureTest;
 use super::track::Means;
 use crate::estimate::{chi_square_tail, normal_quantile};
+use crate::numeric::order::SortByNumber;
 
 /// Second differences that a zone needs.
 const MIN_DIFFERENCES: usize = 30;
@@ -92,7 +93,7 @@ fn states_of(draws: &[Draw], log_deviation: f64, average_h: f64) -> Vec<[f64; 2]
     let shape = covariances()[0];
     let added = |s: &[f64; 2]| s[0] * s[0] * shape[1] + s[1] * s[1] * average_h * shape[2];
     let mut all: Vec<[f64; 2]> = draws.iter().map(|d| [d.noise[1], d.noise[2]]).collect();
-    all.sort_by(|a, b| added(a).total_cmp(&added(b)));
+    all.sort_ascending_by(|a| added(a));
     if all.is_empty() {
         return vec![[0.0; 2]];
     }

@@ -1,5 +1,6 @@
 //! A periodic disturbance with harmonics, of one cause; or one that repeats with the phase of a recorded ramp.
 
+use crate::numeric::order::SortByNumber;
 use crate::effect::shared::periodogram::LineGains;
 use crate::effect::shared::phase::Phase;
 use crate::effect::shared::polynomial::{Scale, sum};
@@ -179,7 +180,7 @@ impl MeanModel for Comb {
         let ramps = (0..drivers.others.len()).filter(|i| varies(Some(&drivers.others[*i].values)));
         let mut found: Vec<Found> = ramps.filter_map(|i| over_ramp(i, drivers, context)).collect();
         found.extend(in_time(drivers, context, self.bounds(drivers)[0]));
-        found.sort_by(|a, b| b.worth.total_cmp(&a.worth));
+        found.sort_descending_by(|a| a.worth);
         let within = |f: &Found| f.point.iter().zip(self.bounds(drivers)).all(|(x, b)| b.contains(*x));
         let points = found.into_iter().filter(within).take(2).map(|f| f.point).collect();
         Starts { points, trials: (n * HIGHEST) as f64 }

@@ -1,5 +1,6 @@
 //! No or reduced response around zero input rate.
 
+use crate::numeric::order::SortByNumber;
 use crate::effect::shared::search::{best_of, fast_level, log_grid, peaks};
 
 use crate::effect::sizing::numbers;
@@ -45,7 +46,7 @@ fn by_size(drivers: &Drivers) -> Vec<(f64, usize)> {
     let rates = drivers.table_rate.iter().flatten().enumerate();
     let mut sizes: Vec<(f64, usize)> =
         rates.map(|(i, r)| ((3600.0 * r).abs(), i)).filter(|(s, _)| s.is_finite() && *s > 0.0).collect();
-    sizes.sort_by(|a, b| a.0.total_cmp(&b.0));
+    sizes.sort_ascending_by(|a| a.0);
     sizes
 }
 

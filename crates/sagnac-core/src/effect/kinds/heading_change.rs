@@ -1,5 +1,6 @@
 //! The gyro moved: another projection of the Earth rate from some time on.
 
+use crate::numeric::order::{SortByNumber, SortNumbers};
 use super::earth_rate_projection::EarthRateProjection;
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::step::{instants, sizing, step};
@@ -72,7 +73,7 @@ fn turned(at_s: f64, drivers: &Drivers) -> Option<(f64, f64)> {
     let apart = |a: f64, b: f64| ((b - a + 180.0).rem_euclid(360.0) - 180.0).abs();
     let mut usual: Vec<f64> =
         angle.windows(2 * wide + 1).step_by(wide).map(|w| apart(w[0], w[2 * wide])).collect();
-    usual.sort_by(f64::total_cmp);
+    usual.sort_ascending();
     Some((apart(*a, *b), usual.get(usual.len() / 2).copied().unwrap_or(0.0)))
 }
 
@@ -90,7 +91,7 @@ fn turned_instants(drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
             (gain_of(HeadingChange.regressors(&nonlinear_parameters, drivers), context), nonlinear_parameters)
         })
         .collect();
-    rated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    rated.sort_descending_by(|a| a.0);
     Starts { points: rated.into_iter().take(3).map(|r| r.1).collect(), trials: (n as f64).powf(0.75) }
 }
 

@@ -1,5 +1,6 @@
 //! A narrow-band disturbance of finite coherence.
 
+use crate::numeric::order::SortByNumber;
 use super::unobserved_driver::UnobservedDriver;
 use crate::effect::shared::search::{log_grid, peaks};
 use crate::effect::{
@@ -138,7 +139,7 @@ impl Spectrum for QuasiPeriodic {
                 found.push((sure[i], vec![center, power.max(1e-18).sqrt(), time]));
             }
         }
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.sort_descending_by(|a| a.0);
         found.into_iter().take(4).map(|(_, start)| start).collect()
     }
 

@@ -1,5 +1,6 @@
 //! Samples that repeat the one before them. They have no kind of their own in the format of explanations.
 
+use crate::numeric::order::SortNumbers;
 use crate::effect::{
     Detection, Detector, Domain, Drivers, Param, Place, Reported, RowDetector, Rows, RowsFound, Samples,
     Value, Values, list, number,
@@ -157,7 +158,7 @@ fn repeats(recorded: &Rows<'_>) -> Option<Repeats> {
 /// The smallest distance between two values that are not one: their step, or more.
 fn spacing(rate: &[f64], present: &[bool], rounding: f64) -> Option<f64> {
     let mut values: Vec<f64> = rate.iter().zip(present).filter(|(_, p)| **p).map(|(v, _)| *v).collect();
-    values.sort_unstable_by(f64::total_cmp);
+    values.sort_ascending();
     values.windows(2).map(|w| w[1] - w[0]).filter(|d| *d > rounding).reduce(f64::min)
 }
 

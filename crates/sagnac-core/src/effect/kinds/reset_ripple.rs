@@ -1,5 +1,6 @@
 //! A contribution that is periodic in the sensed angle.
 
+use crate::numeric::order::SortByNumber;
 use crate::effect::shared::search::{best_of, fast_level, peaks};
 use crate::effect::shared::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
@@ -225,7 +226,7 @@ impl MeanModel for ResetRipple {
             found.extend(seen.into_iter().flatten());
             period *= 2.0;
         }
-        found.sort_by(|a, b| b.0.total_cmp(&a.0));
+        found.sort_descending_by(|a| a.0);
         let points = found.into_iter().take(6).map(|(_, s)| s);
         Starts { points: best_of(self, points, 3, drivers, context), trials }
     }

@@ -4,7 +4,7 @@ use super::pursuit::dot;
 use super::response::{ResponseFound, regressors, search};
 use crate::effect::{Drivers, SearchContext};
 use crate::numeric::cosine::dct2;
-use rayon::prelude::*;
+use crate::numeric::parallel;
 
 /// Shifts of the column.
 const SLIDES: usize = 8;
@@ -51,7 +51,7 @@ pub(in crate::effect) fn is_chance(
     nothing: f64,
     of_slide: impl Fn(usize) -> f64 + Sync + Send,
 ) -> bool {
-    let by_chance = (1..=SLIDES).into_par_iter().map(of_slide).reduce(|| 0.0, f64::max);
+    let by_chance = parallel::map(SLIDES, |i| of_slide(i + 1)).into_iter().fold(0.0, f64::max);
     by_chance > nothing && gain < OVER_CHANCE * by_chance
 }
 

@@ -12,7 +12,7 @@ use super::response::rate_per_hour;
 use super::thermal::{self, delayed};
 use crate::effect::{Column, Drivers, SearchContext};
 use crate::numeric::cosine::dct2;
-use rayon::prelude::*;
+use crate::numeric::parallel;
 
 /// Time constants of the delays, s.
 const DELAYS_S: [f64; 3] = [150.0, 940.0, 5900.0];
@@ -286,7 +286,7 @@ fn whitened_terms(columns: &Columns<'_>, terms: &[Term], drivers: &Drivers, root
         }
         modes
     };
-    terms.par_iter().map(one).collect()
+    parallel::map_items(terms, one)
 }
 
 fn whitened(modes: &[f64], roots: &[f64]) -> Vec<f64> {

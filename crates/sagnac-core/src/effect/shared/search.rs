@@ -2,6 +2,7 @@
 
 use crate::effect::{Drivers, MeanModel, Regressors, SearchContext};
 use crate::numeric::cosine::dct2;
+use crate::numeric::order::SortByNumber;
 use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
@@ -73,7 +74,7 @@ pub(in crate::effect) fn best_of(
         .map(|s| (gain_of(course.regressors(&s, drivers), context), s))
         .filter(|(g, _)| *g > 0.0)
         .collect();
-    rated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    rated.sort_descending_by(|a| a.0);
     rated.into_iter().take(keep).map(|(_, s)| s).collect()
 }
 
@@ -120,7 +121,7 @@ pub(in crate::effect) fn shortlist(
         }
     };
     let mut rated: Vec<(f64, Vec<f64>)> = points.into_iter().map(|s| (gain(&s), s)).collect();
-    rated.sort_by(|a, b| b.0.total_cmp(&a.0));
+    rated.sort_descending_by(|a| a.0);
     rated.into_iter().take(keep).map(|(_, s)| s).collect()
 }
 

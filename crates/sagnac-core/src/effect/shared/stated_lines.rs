@@ -5,6 +5,7 @@ use super::search::peaks;
 use super::sinusoid::{columns, polar, wave};
 use crate::effect::{Domain, Drivers, Place, SearchContext, StatedLine};
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::order::SortByNumber;
 
 /// Lines that are followed at most, the largest first.
 const MOST: usize = 2;
@@ -24,7 +25,7 @@ pub(in crate::effect) fn seen_hz(frequency_hz: f64, drift_ppm: f64) -> f64 {
 fn shown(drivers: &Drivers) -> Vec<StatedLine> {
     let mut lines: Vec<StatedLine> =
         drivers.lines.iter().filter(|l| l.frequency_hz < 0.5 / drivers.dt_s).copied().collect();
-    lines.sort_by(|a, b| b.amplitude_deg_h.total_cmp(&a.amplitude_deg_h));
+    lines.sort_descending_by(|a| a.amplitude_deg_h);
     lines.truncate(MOST);
     lines
 }

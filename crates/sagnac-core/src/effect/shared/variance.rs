@@ -1,6 +1,7 @@
 //! Levels of noise by regression: mean squares of groups follow scaled χ² laws whose logarithm is linear in columns.
 
 use crate::effect::Knot;
+use crate::numeric::order::SortByNumber;
 use crate::numeric::range::{Bounds, ends};
 use nalgebra::{DMatrix, DVector};
 
@@ -107,7 +108,7 @@ pub(in crate::effect) fn by_value(
     samples: &[usize],
 ) -> (Vec<Group>, Vec<f64>) {
     let mut order = samples.to_vec();
-    order.sort_by(|a, b| values(*a).total_cmp(&values(*b)));
+    order.sort_ascending_by(|a| values(*a));
     let size = order.len().div_ceil(GROUPS).max(FEWEST);
     order
         .chunks(size)

@@ -11,6 +11,7 @@ use crate::mismatch::tried::{
 };
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::least_squares::{Normal, subtract};
+use crate::numeric::order::SortByNumber;
 use std::borrow::Cow;
 
 /// Samples above which a course at the sample rate is tried by itself.
@@ -151,7 +152,7 @@ fn refined(start: &[f64], local: &LocalSearch, search: &ShapeSearch<'_>) -> (Vec
 /// The best of the shapes that a course begins from, the noise held, each improved by a local search, with its gain.
 fn best_shape(starts: &[Vec<f64>], local: &LocalSearch, search: &ShapeSearch<'_>) -> Option<(Vec<f64>, f64)> {
     let mut rough: Vec<(Vec<f64>, f64)> = starts.iter().map(|s| (s.clone(), search.gain(s))).collect();
-    rough.sort_by(|a, b| b.1.total_cmp(&a.1));
+    rough.sort_descending_by(|a| a.1);
     let leader = rough.first()?.1;
     let promising = rough.into_iter().filter(|(_, g)| *g > 0.7 * leader).take(2);
     promising

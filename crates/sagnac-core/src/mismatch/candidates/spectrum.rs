@@ -6,6 +6,7 @@ use crate::mismatch::noise_fit::{self, Noise, base_index};
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::SpectrumIn;
 use crate::mismatch::tried::{Candidate, Looked, SpectralDataSet, Tried, overcharged, own_odds, rated};
+use crate::numeric::order::SortByNumber;
 
 /// The best addition of a process, a filter or a coefficient set free.
 pub(super) fn try_spectrum(
@@ -61,7 +62,7 @@ fn best_of(begun: Vec<Noise>, spectral: &SpectralData, observed: &[f64]) -> Opti
             (noise, value)
         })
         .collect();
-    fits.sort_by(|a, b| b.1.total_cmp(&a.1));
+    fits.sort_descending_by(|a| a.1);
     fits.truncate(2);
     for (noise, value) in &mut fits {
         *value = noise_fit::fit(noise, spectral, observed).log_likelihood;

@@ -6,6 +6,7 @@ use crate::effect::{Column, Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_normal_two_sided};
 use crate::mismatch::spectral_data::{SpectralData, smoothed};
 use crate::numeric::cosine::dct2;
+use crate::numeric::order::SortByNumber;
 use crate::numeric::range::{Bounds, ends};
 use crate::numeric::special::{f_normal, legendre};
 use nalgebra::{DMatrix, DVector};
@@ -173,7 +174,7 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
     }
     let by = |i: usize| if domain == Domain::InputRate { values[i].abs() } else { values[i] };
     let mut order: Vec<usize> = (0..n).collect();
-    order.sort_by(|a, b| by(*a).total_cmp(&by(*b)));
+    order.sort_ascending_by(|a| by(*a));
     let whole: f64 = white.series.iter().map(|e| e * e).sum();
     let mut best = (0.0, 0.0, 0.0);
     let mut trials = 0.0f64;

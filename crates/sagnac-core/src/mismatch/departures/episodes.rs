@@ -10,9 +10,9 @@ use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_tail, normal_two_sided};
 use crate::mismatch::spectral_data::SpectralData;
 use crate::numeric::cosine::{fast_length, inverse_dct2};
+use crate::numeric::parallel;
 use crate::numeric::special::chi_square_normal;
 use crate::numeric::sums::cumulated;
-use rayon::prelude::*;
 
 /// Widths of the bands, octaves.
 const WIDTHS: [f64; 5] = [2.0, 1.0, 0.5, 0.25, 0.125];
@@ -151,8 +151,9 @@ pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
         let trials = a.trials + b.trials;
         Best { trials, ..if b.ln_p < a.ln_p { b } else { a } }
     };
-    let best =
-        bands(white.modes.len()).par_iter().map(|b| in_band(&white.modes, *b)).reduce(|| NOTHING, better);
+    let best = parallel::map_items(&bands(white.modes.len()), |b| in_band(&white.modes, *b))
+        .into_iter()
+        .fold(NOTHING, better);
     if best.trials == 0.0 {
         return None;
     }

@@ -9,9 +9,9 @@ use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_two_sided, ln_normal_two_sided};
 use crate::mismatch::spectral_data::SpectralData;
 use crate::numeric::cosine::inverse_dct2;
+use crate::numeric::parallel;
 use crate::numeric::special::{chi_square_normal, f_normal};
 use crate::numeric::sums::cumulated;
-use rayon::prelude::*;
 
 /// Fewest modes of a band.
 const FEWEST: usize = 32;
@@ -100,10 +100,9 @@ fn in_band(modes: &[f64], (first, m): (usize, usize)) -> Largest {
 /// Power of windows of time in bands of frequency: against what the hypothesis expects, and against the same band at
 /// other times.
 pub fn all(spectral: &SpectralData, modes: &[f64]) -> Vec<Departure> {
-    let found = bands(modes.len())
-        .par_iter()
-        .map(|band| in_band(modes, *band))
-        .reduce(|| Largest::NONE, Largest::with);
+    let found = parallel::map_items(&bands(modes.len()), |band| in_band(modes, *band))
+        .into_iter()
+        .fold(Largest::NONE, Largest::with);
     if found.trials == 0.0 {
         return vec![];
     }

@@ -8,7 +8,7 @@ use super::departure::{Departure, White};
 use crate::effect::{Domain, Place};
 use crate::estimate::ln_chi_square_tail;
 use crate::mismatch::spectral_data::SpectralData;
-use rayon::prelude::*;
+use crate::numeric::parallel;
 use sagnac_fft::real_forward;
 use std::ops::Range;
 
@@ -73,12 +73,12 @@ fn over(series: &[f64], segments: usize) -> Option<(Best, usize, f64)> {
     lengths.dedup();
     let place = |part: &Range<usize>| lengths.binary_search(&part.len()).unwrap_or(0);
     let placed: Vec<(Range<usize>, usize)> = parts.iter().map(|p| (p.clone(), place(p))).collect();
-    let slopes = -(reach as isize)..=reach as isize;
-    let best = slopes.into_par_iter().map(|change| of_slope(change, &powers, segments, bins, &placed));
+    let slope = |i: usize| i as isize - reach as isize;
+    let best = parallel::map(2 * reach + 1, |i| of_slope(slope(i), &powers, segments, bins, &placed));
     let larger = |a: Vec<Best>, b: Vec<Best>| {
         a.into_iter().zip(b).map(|(a, b)| if b.power > a.power { b } else { a }).collect::<Vec<Best>>()
     };
-    let best = best.reduce(|| vec![NONE; lengths.len()], larger);
+    let best = best.into_iter().fold(vec![NONE; lengths.len()], larger);
     let trials = ((bins * (2 * reach).min(bins) * parts.len()) as f64).ln();
     let rated = lengths.iter().zip(best).map(|(n, best)| {
         (best, length, (ln_chi_square_tail(2.0 * best.power, 2.0 * *n as f64) + trials).min(0.0))

@@ -8,6 +8,7 @@ use crate::mismatch::hypothesis::PartModes;
 use crate::mismatch::terms::CourseIn;
 use crate::mismatch::tried::{SpectralDataSet, Tried};
 use crate::numeric::cosine::{dct2, inverse_dct2};
+use crate::numeric::order::SortByNumber;
 
 /// Probability that an interval holds.
 const HELD: f64 = 0.95;
@@ -54,7 +55,7 @@ pub fn interval(inside: &CourseIn, tried: &Tried, spectra: &SpectralDataSet) -> 
     let largest = gains.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let mut likely: Vec<(f64, usize)> =
         gains.iter().enumerate().map(|(j, g)| ((g - largest).exp(), j)).filter(|(p, _)| *p > 1e-9).collect();
-    likely.sort_by(|a, b| b.0.total_cmp(&a.0));
+    likely.sort_descending_by(|a| a.0);
     let whole: f64 = likely.iter().map(|l| l.0).sum();
     let (mut held, mut first, mut last) = (0.0, n, 0);
     for (p, j) in likely {

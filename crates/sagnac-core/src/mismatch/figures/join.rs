@@ -1,5 +1,7 @@
 //! Means of neighbours, so that a long series fits on paper.
 
+use crate::numeric::order::SortByNumber;
+
 /// Most points of a curve over time.
 pub const POINTS: usize = 900;
 
@@ -31,7 +33,7 @@ pub fn over_time(x: &[f64], y: &[f64]) -> (Vec<(f64, f64)>, usize) {
 pub fn by_abscissa(x: &[f64], y: &[f64], groups: usize) -> Vec<Mean> {
     let mut pairs: Vec<(f64, f64)> =
         x.iter().zip(y).map(|(a, b)| (*a, *b)).filter(|(a, b)| a.is_finite() && b.is_finite()).collect();
-    pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
+    pairs.sort_ascending_by(|a| a.0);
     let size = pairs.len().div_ceil(groups.max(1)).max(1);
     pairs.chunks(size).map(mean).collect()
 }

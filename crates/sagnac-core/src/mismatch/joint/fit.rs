@@ -4,9 +4,9 @@ use super::ground::{Ground, Share};
 use super::law::{Coefficients, Law};
 use crate::estimate::chi_square_tail;
 use crate::numeric::optimize::pattern_search;
+use crate::numeric::parallel;
 use crate::numeric::range::Bounds;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 
 /// Evaluations of a search for the numbers of a law, and the loss of log-likelihood below which it stops.
 const SEARCH: (usize, f64) = (120, 1e-4);
@@ -27,7 +27,7 @@ pub(super) struct Fitted {
 
 /// Fits a law; `None` where fewer than two recordings tell of it.
 pub(super) fn fit(law: &Law, grounds: &[Ground<'_>]) -> Option<Fitted> {
-    let shares: Vec<Option<Share>> = grounds.par_iter().map(|g| g.share(law)).collect();
+    let shares: Vec<Option<Share>> = parallel::map_items(grounds, |g| g.share(law));
     if shares.iter().flatten().count() < 2 {
         return None;
     }

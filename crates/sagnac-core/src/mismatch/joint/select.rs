@@ -6,6 +6,7 @@ use super::law::{Law, of_catalogue};
 use crate::effect::EFFECTS;
 use crate::mismatch::options::Options;
 use crate::mismatch::select::ENOUGH;
+use crate::numeric::order::SortByNumber;
 use std::collections::BTreeSet;
 
 /// Below this probability of what the recordings say of the coefficients, one law does not hold for all.
@@ -46,11 +47,11 @@ pub(super) fn look(
     let family = laws.iter().map(Law::cause).collect::<BTreeSet<_>>().len().max(1) as f64;
     let mut fitted: Vec<Fitted> = laws.iter().filter_map(|l| fit(l, grounds)).collect();
     let rank = |f: &Fitted| f.delta_bic(rows);
-    fitted.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+    fitted.sort_descending_by(|a| rank(a));
     let mut causes = BTreeSet::new();
     fitted.retain(|f| causes.insert(f.law.cause()));
     let mut refined: Vec<Fitted> = fitted.into_iter().take(REFINED).map(|f| refined(f, grounds)).collect();
-    refined.sort_by(|a, b| rank(b).total_cmp(&rank(a)));
+    refined.sort_descending_by(|a| rank(a));
     let passes = |f: &Fitted| rank(f) >= ENOUGH && f.p_value(family) < options.alpha;
     let mut out = Look { best: None, unlike: vec![], family };
     for law in refined.into_iter().filter(passes) {

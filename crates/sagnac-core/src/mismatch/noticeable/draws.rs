@@ -1,6 +1,7 @@
 //! Spectra drawn from an expected one: how far the gain of an effect falls below its mean where few modes tell of it.
 
 use crate::mismatch::spectral_data::SpectralData;
+use crate::numeric::order::SortNumbers;
 use rand::SeedableRng as _;
 use rand_distr::{ChiSquared, Distribution as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -76,7 +77,7 @@ impl Draws {
             }
             gains.extend(best);
         }
-        gains.sort_by(f64::total_cmp);
+        gains.sort_ascending();
         gains.get(DRAWS / 20).copied().unwrap_or(f64::NAN)
     }
 

@@ -28,9 +28,9 @@ use super::options::Options;
 use super::problem::Problem;
 use super::select::{Selection, family};
 use crate::effect::{Detector, Domain, EFFECTS, Effect, Model, Resolution};
+use crate::numeric::parallel;
 use gate::Gate;
 use ground::Ground;
-use rayon::prelude::*;
 use spectrum::Expected;
 use std::collections::BTreeMap;
 
@@ -75,7 +75,7 @@ pub(super) fn sizes(
         e.in_format() && options.allows(e.kind()) && !found.contains(&e.kind()) && shown(**e, problem)
     };
     let effects: Vec<&&'static dyn Effect> = EFFECTS.iter().filter(asked).collect();
-    let told: Vec<_> = effects.into_par_iter().map(|e| (*e, of(*e, &grounds))).collect();
+    let told: Vec<_> = parallel::map_items(&effects, |e| (**e, of(**e, &grounds)));
     let mut out = Noticeable::default();
     let mut ranked = vec![];
     for (effect, sizes) in told {

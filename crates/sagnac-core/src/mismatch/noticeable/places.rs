@@ -1,6 +1,7 @@
 //! The typical and the worst of the places at which an effect could have been.
 
 use crate::mismatch::noticeable_record::WorstPlace;
+use crate::numeric::order::SortByNumber;
 use std::collections::BTreeMap;
 
 /// Parameters of a place, by name.
@@ -24,7 +25,7 @@ pub(super) struct Summary {
 
 /// The typical and the worst place; `None` of no place.
 pub(super) fn summary(mut placed: Vec<Placed>, falls: bool) -> Option<Summary> {
-    placed.sort_by(|a, b| a.size.total_cmp(&b.size));
+    placed.sort_ascending_by(|a| a.size);
     if falls {
         placed.reverse();
     }

@@ -1,6 +1,7 @@
 //! Bands of the modes and bins of transforms: mean powers, and where narrow structure must be resolved.
 
 use crate::noise::model::{Bin, Spectral};
+use crate::numeric::order::SortByNumber;
 
 /// Relative width of a band.
 const RELATIVE_WIDTH: f64 = 0.04;
@@ -183,7 +184,7 @@ pub(super) fn bands_of(fine: &[FineBin], zones: &[Zone]) -> Vec<Band> {
             cells: vec![Cell { piece, from: k, to: k, dof: bin.dof }],
         });
     }
-    bands.sort_by(|a, b| a.low_hz.total_cmp(&b.low_hz));
+    bands.sort_ascending_by(|a| a.low_hz);
     if bands.len() > MAX_BANDS + 64 * zones.len() {
         bands = merge(bands);
     }

@@ -5,6 +5,7 @@
 
 use super::linear_fit::{Likelihood, Point, RAMP, SPECTRAL, Structure};
 use crate::estimate::{Spread, normal_probability};
+use crate::numeric::order::SortByNumber;
 
 /// Outermost normal score of a curve.
 const MAX_SCORE: f64 = 4.0;
@@ -55,7 +56,7 @@ pub(super) fn trace_curve<S: Clone>(
             step *= (trace.spacing / gained.max(1e-3)).clamp(0.4, 2.5);
         }
     }
-    points.sort_by(|a, b| a.1.total_cmp(&b.1));
+    points.sort_ascending_by(|a| a.1);
     let mut highest = f64::NEG_INFINITY;
     for p in &mut points {
         highest = highest.max(p.0);

@@ -4,6 +4,7 @@
 use super::super::composite::{Composite, Described};
 use super::spectrum::{ModelSpectrum, log_gradients};
 use crate::noise::model::{Bin, Spectral};
+use crate::numeric::order::SortNumbers;
 use nalgebra::DMatrix;
 use std::f64::consts::PI;
 
@@ -46,7 +47,7 @@ impl Grid {
         }
         edges.retain(|e| *e >= 0.5 * step && *e < nyquist);
         edges.push(nyquist);
-        edges.sort_by(f64::total_cmp);
+        edges.sort_ascending();
         edges.dedup_by(|a, b| *a - *b < 0.2 * step);
         let blocks = (length_s / tau0_s).round().max(1.0) as usize;
         let density = |model: &Composite| -> Vec<f64> {

@@ -26,6 +26,7 @@ pub use whiten::{Whitened, whitened};
 use super::composite::{Described, Line};
 use super::data::DeviationPoint;
 use super::spectral_record::SpectralRecord;
+use crate::numeric::order::SortByNumber;
 
 /// Probability, for all views together, below which a departure is called one.
 pub const LEVEL: f64 = 0.01;
@@ -95,7 +96,7 @@ impl GoodnessOfFit {
     /// The views in which the model fails: Holm's procedure over all views at [`LEVEL`].
     pub fn failures(&self) -> Vec<&Judged> {
         let mut sorted: Vec<&Judged> = self.views.iter().collect();
-        sorted.sort_by(|a, b| a.p_value.total_cmp(&b.p_value));
+        sorted.sort_ascending_by(|a| a.p_value);
         let count = sorted.len();
         let passed = (0..count).find(|i| sorted[*i].p_value * (count - i) as f64 > LEVEL).unwrap_or(count);
         sorted.truncate(passed);

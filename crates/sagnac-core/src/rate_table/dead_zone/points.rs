@@ -2,6 +2,7 @@
 
 use super::place::Place;
 use super::shape::{Kind, Shape};
+use crate::numeric::order::{SortByNumber, SortNumbers};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::cell::OnceCell;
 
@@ -152,7 +153,7 @@ impl Points {
         }
         let best = least(&tried);
         let place = self.place();
-        tried.sort_by(|a, b| a.1.total_cmp(&b.1));
+        tried.sort_ascending_by(|a| a.1);
         let weight = |v: &(f64, f64, f64, f64)| (-0.5 * (v.0 - best.0)).exp() * place.density(v.1);
         let mean: f64 =
             tried.windows(2).map(|p| 0.5 * (weight(&p[0]) + weight(&p[1])) * (p[1].1 - p[0].1)).sum();
@@ -168,7 +169,7 @@ impl Points {
         let (low, high) = (middle - 0.5 * largest, middle + 0.5 * largest);
         let sides = self.x.iter().flat_map(|x| [x - half_width, x + half_width]);
         let mut ends: Vec<f64> = sides.filter(|c| (low..high).contains(c)).chain([low, high]).collect();
-        ends.sort_by(f64::total_cmp);
+        ends.sort_ascending();
         let shape = found.shape;
         let at = |centre: f64| {
             let (cost, slope, offset) = self.cost(|x| shape.of(x - centre));

@@ -7,6 +7,7 @@
 use super::points::{Left, Points};
 use super::shape::{Kind, Shape};
 use crate::estimate::normal_quantile;
+use crate::numeric::order::{SortByNumber, SortNumbers};
 
 /// Noise over half width, largest; its inverse is the least.
 const MOST_NOISE: f64 = 8.0;
@@ -124,14 +125,14 @@ fn coarse_step(coarse: &[Left], from: f64) -> f64 {
 /// Step of an even grid.
 fn step_of(cells: &[Left], of: impl Fn(&Shape) -> f64) -> f64 {
     let mut values: Vec<f64> = cells.iter().map(|c| of(&c.shape)).collect();
-    values.sort_by(f64::total_cmp);
+    values.sort_ascending();
     let steps = values.windows(2).map(|p| p[1] - p[0]);
     steps.fold(0.0, f64::max)
 }
 
 /// (normal score, value) of values with their weights.
 fn curve(mut values: Vec<(f64, f64)>) -> Vec<(f64, f64)> {
-    values.sort_by(|a, b| a.0.total_cmp(&b.0));
+    values.sort_ascending_by(|a| a.0);
     let total: f64 = values.iter().map(|v| v.1).sum();
     let mut below = 0.0;
     let mut found: Vec<(f64, f64)> = vec![];

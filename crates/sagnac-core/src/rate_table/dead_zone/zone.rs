@@ -9,6 +9,7 @@ use super::rounded::{self, Rounded, SHOWN_FROM};
 use super::shape::{Kind, Shape};
 use super::widths::{FORMS, WITH_NOISE, Widths};
 use crate::estimate::Spread;
+use crate::numeric::order::SortByNumber;
 use crate::rate_table::design::Design;
 use crate::rate_table::model::Response;
 use crate::rate_table::setup::Setup;
@@ -197,7 +198,7 @@ fn forms(widths: &Widths, closer: Option<&Rounded>, fits: &Fits) -> Vec<Form> {
     };
     let left = |form: usize| if form == WITH_NOISE { of_noise() } else { widths.best(form).copied() };
     let mut all: Vec<(usize, Left)> = (0..FORMS).filter_map(|form| Some((form, left(form)?))).collect();
-    all.sort_by(|a, b| a.1.least.total_cmp(&b.1.least));
+    all.sort_ascending_by(|a| a.1.least);
     let least = all.first().map_or(f64::INFINITY, |f| f.1.least);
     all.retain(|f| f.1.least <= least + SHOWN_FROM);
     all.into_iter()

@@ -3,6 +3,7 @@
 //! Windows of 1 to 512 samples are compared with the level of the noise on both sides of them; a level that changes, a
 //! wrong level of the claim and steps of the output make no burst.
 
+use crate::numeric::order::SortByNumber;
 use crate::effect::{Drivers, FlatResidual, Outliers};
 use crate::numeric::optimize::bisect;
 use crate::numeric::order::{NORMAL_MEDIAN, upper_median};
@@ -83,7 +84,7 @@ pub(super) fn bursts(flat: &FlatResidual<'_>) -> Option<Outliers> {
             first += (m / 4).max(1);
         }
     }
-    windows.sort_by(|a, b| b.0.total_cmp(&a.0));
+    windows.sort_descending_by(|a| a.0);
     let mut taken = vec![false; n];
     let mut groups: Vec<(usize, usize)> = vec![];
     for (_, first, m) in windows {
@@ -140,7 +141,7 @@ fn squares(flat: &FlatResidual<'_>) -> (Vec<f64>, f64) {
     if let Some(rate) = flat.drivers.table_rate.as_deref().filter(|r| ends(r).is_wide()) {
         // Noise that grows with the rate of the table is no burst each time it turns.
         let mut order: Vec<usize> = (0..n).collect();
-        order.sort_by(|a, b| rate[*a].abs().total_cmp(&rate[*b].abs()));
+        order.sort_ascending_by(|a| rate[*a].abs());
         for group in order.chunks(n.div_ceil(RATES)) {
             let level =
                 upper_median(&mut group.iter().map(|i| sizes[*i]).collect::<Vec<f64>>()) / NORMAL_MEDIAN;
@@ -316,7 +317,7 @@ fn unmoved(drivers: &Drivers, mut groups: Vec<(usize, usize)>) -> Vec<(usize, us
 fn admitted(scan: &Scan, groups: Vec<(usize, usize)>) -> (Vec<(usize, usize)>, f64) {
     let p_of = |g: &(usize, usize)| (scan.p_value(g.1, scan.ratio(g.0, g.1)) * scan.trials, *g);
     let mut rated: Vec<(f64, (usize, usize))> = groups.iter().map(p_of).collect();
-    rated.sort_by(|a, b| a.0.total_cmp(&b.0));
+    rated.sort_ascending_by(|a| a.0);
     let count = (1..=rated.len()).rev().find(|j| rated[j - 1].0 <= FALSE_SHARE * *j as f64).unwrap_or(0);
     let mut p_value: f64 = 1.0;
     for (j, (expected, _)) in rated.iter().take(count).enumerate() {

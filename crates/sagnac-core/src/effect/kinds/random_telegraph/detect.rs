@@ -4,6 +4,7 @@
 //! its paths, beside the slow noise of the hypothesis. A process with the same spectrum gains by its spectrum alone; only
 //! what the chain gains beyond that tells two levels from it.
 
+use crate::numeric::order::SortNumbers;
 use super::chain::{Chain, Deviations};
 use super::dwell::{Visits, slope, spread, visits};
 use super::path::Paths;
@@ -381,7 +382,7 @@ fn starts(values: &[f64], white: f64) -> Vec<Chain> {
         return vec![];
     }
     let mut sorted = values.to_vec();
-    sorted.sort_by(f64::total_cmp);
+    sorted.sort_ascending();
     let at = |share: f64| sorted[((sorted.len() - 1) as f64 * share) as usize];
     let mut out = vec![];
     for (low, high) in [(0.25, 0.75), (0.05, 0.6), (0.4, 0.95)] {

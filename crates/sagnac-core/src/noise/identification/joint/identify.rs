@@ -25,6 +25,7 @@ use crate::noise::composite::{Bandwidth, Described, Sampling};
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
 use crate::noise::model::TERMS;
+use crate::numeric::order::SortByNumber;
 use std::f64::consts::PI;
 
 /// Times that the parts of a model are looked over at most.
@@ -326,8 +327,7 @@ impl ShapeFits {
                 }),
             }
         }
-        out.quasi_periodic
-            .sort_by(|a, b| b.amplitude.value.unwrap_or(0.0).total_cmp(&a.amplitude.value.unwrap_or(0.0)));
+        out.quasi_periodic.sort_descending_by(|a| a.amplitude.value.unwrap_or(0.0));
         let id = "measurement_bandwidth";
         out.cutoff = match self.supported.shape.filter {
             None => None,

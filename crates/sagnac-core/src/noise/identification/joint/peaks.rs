@@ -1,6 +1,7 @@
 //! Where a narrow resonance may be: the whitened bins looked through at every width.
 
 use crate::noise::evidence::{Evidence, Zone};
+use crate::numeric::order::SortByNumber;
 
 /// A place that stands out.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -26,7 +27,7 @@ pub(super) fn strongest(evidence: &Evidence, density: &[f64], count: usize) -> V
     for run in runs(evidence) {
         scan(evidence, &run, density, &mut found);
     }
-    found.sort_by(|a, b| b.gain.total_cmp(&a.gain));
+    found.sort_descending_by(|a| a.gain);
     let mut kept: Vec<Peak> = vec![];
     for peak in found {
         let apart = |other: &Peak| {
