@@ -8,7 +8,7 @@
 
 use super::claims::{LIMIT_COVERAGE, METHOD};
 use super::entrance::{complete, describe};
-use super::joint::expected_power;
+use super::joint::{Plateau, expected_power};
 use super::misfit::{Misfit, WhitenedBand};
 use super::options::Options;
 use super::result::Identification;
@@ -60,6 +60,7 @@ pub fn describe_in_range(
     options: &Options,
 ) -> RangedIdentification {
     let mut best: Option<RangedIdentification> = None;
+    let mut hidden: Option<RangedIdentification> = None;
     let mut whole: Option<Identification> = None;
     for octave in 0..=MAX_OCTAVES {
         let highest_hz = nyquist_hz / f64::from(1u32 << octave);
@@ -68,7 +69,8 @@ pub fn describe_in_range(
         if octave > 0 && used.dof() < MIN_DOF {
             break;
         }
-        let justified = whole.as_ref().is_none_or(|whole| fails_above(evidence, whole, highest_hz));
+        let justified =
+            hidden.is_some() || whole.as_ref().is_none_or(|whole| fails_above(evidence, whole, highest_hz));
         if !justified {
             continue;
         }
@@ -80,12 +82,19 @@ pub fn describe_in_range(
         let candidate =
             RangedIdentification { identification, highest_hz, rounded_above_hz: None, widened: 1.0 };
         if fits {
-            return candidate;
+            if !is_white_hidden(&candidate.identification, evidence) {
+                return candidate;
+            }
+            hidden.get_or_insert(candidate);
+            continue;
         }
         let misfit = |r: &RangedIdentification| r.identification.misfit.per_dof;
-        if best.as_ref().is_none_or(|b| misfit(&candidate) < misfit(b)) {
+        if hidden.is_none() && best.as_ref().is_none_or(|b| misfit(&candidate) < misfit(b)) {
             best = Some(candidate);
         }
+    }
+    if let Some(hidden) = hidden {
+        return hidden;
     }
     let mut best = best.unwrap_or_else(|| RangedIdentification {
         identification: describe(channel, evidence, options),
@@ -95,6 +104,15 @@ pub fn describe_in_range(
     });
     best.widened = best.identification.misfit.per_dof.sqrt().max(1.0);
     best
+}
+
+/// True where a model has its white noise beneath processes or a filter that stand for it, and no level that is read.
+/// The white level of lower frequencies is then that of a narrower range.
+fn is_white_hidden(found: &Identification, evidence: &Evidence) -> bool {
+    let model = &found.described.model;
+    let shaped = model.bandwidth.is_some() || !model.markov.is_empty() || !model.quasi_periodic.is_empty();
+    let read = Plateau::of(model, evidence.tau0_s, evidence.span_s).is_some();
+    shaped && !read && !found.claims(NoiseType::AngleRandomWalk)
 }
 
 /// Identifies over a range that was found, with intervals.

@@ -8,7 +8,7 @@ use super::model::{
     Shape,
 };
 use super::peaks::strongest;
-use crate::noise::composite::{Bandwidth, Part, Sampling};
+use crate::noise::composite::{Bandwidth, Damped, Part, Sampling};
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::{Evidence, Zone};
 use std::f64::consts::PI;
@@ -134,6 +134,7 @@ fn filters(
         .filter_map(best_where)
         .map(|p| refined(joint, p, ramp))
         .filter(|p| shows_filter(p, joint))
+        .filter(|p| p.shape.filter.is_some_and(|f| !bends_at_the_edge(evidence, f.cutoff_hz(tau0_s))))
         .map(|point| {
             let price = thresholds.quantization_beside_filter;
             let reached = with_priced_quantization(joint, &point, ramp, price);
@@ -180,8 +181,9 @@ fn markovs(
     }
     let point = refined(joint, &best, ramp);
     let time_s = point.shape.damped.last()?.1.decay_time_s;
-    if time_s < shortest_s || time_s > MAX_TIME_SHARE * evidence.span_s || bends_at_the_edge(evidence, time_s)
-    {
+    let corner_hz = 1.0 / (2.0 * PI * time_s);
+    let resolved = time_s >= shortest_s && time_s <= MAX_TIME_SHARE * evidence.span_s;
+    if !resolved || bends_at_the_edge(evidence, corner_hz) {
         return None;
     }
     let reached = with_priced_quantization(joint, &point, ramp, thresholds.quantization);
@@ -189,11 +191,16 @@ fn markovs(
     Some(Candidate { point, zones: found.zones.clone(), excess })
 }
 
-/// What bends the spectrum at the upper edge of a range that was cut is the beginning of what was cut off, and no process.
-fn bends_at_the_edge(evidence: &Evidence, time_s: f64) -> bool {
+/// What bends the spectrum at the upper edge of a range that was cut is the beginning of what was cut off: no process, filter or
+/// resonance with its corner there.
+fn bends_at_the_edge(evidence: &Evidence, corner_hz: f64) -> bool {
+    edge_hz(evidence).is_some_and(|edge_hz| MIN_EDGE_DISTANCE * corner_hz > edge_hz)
+}
+
+/// Upper edge of a range that was cut, Hz; `None` where it reaches up to the Nyquist frequency.
+fn edge_hz(evidence: &Evidence) -> Option<f64> {
     let highest_hz = evidence.bands.iter().map(|b| b.high_hz).fold(0.0, f64::max);
-    let cut = highest_hz * evidence.tau0_s < UNCUT_RANGE;
-    cut && MIN_EDGE_DISTANCE / (2.0 * PI * time_s) > highest_hz
+    (highest_hz * evidence.tau0_s < UNCUT_RANGE).then_some(highest_hz)
 }
 
 fn periodics(
@@ -221,6 +228,14 @@ fn periodics(
         let shape = found.shape.with(ProcessKind::QuasiPeriodic, peak.zone.centre_hz, time_s);
         let point = refined(&fine, &at_shape(&fine, &shape, &before, ramp, FIT_STEPS), ramp);
         let excess = before.deviance - point.deviance - need;
+        // A resonance that the edge cuts off may be anything that rises there.
+        let reach_hz = |d: &Damped| d.frequency_hz + MIN_EDGE_DISTANCE / (2.0 * PI * d.decay_time_s);
+        let is_cut_off = edge_hz(evidence)
+            .zip(point.shape.damped.last())
+            .is_some_and(|(edge_hz, (_, d))| reach_hz(d) > edge_hz);
+        if is_cut_off {
+            continue;
+        }
         if best.as_ref().is_none_or(|b| excess > b.excess) {
             best = Some(Candidate { point, zones, excess });
         }
