@@ -18,6 +18,9 @@ use crate::message::Note;
 
 /// Share by which an amplitude may exceed half the range, for its own error.
 const ROUNDED: f64 = 1.02;
+/// Factor by which a part may exceed what the record allows it, in deviation, before that contradicts it: no model of a real
+/// output is better.
+const HARMLESS: f64 = 1.02;
 /// Probability with which chance makes a record show less of a part than this.
 const CHANCE: f64 = 1e-3;
 /// Least degrees of freedom of what a part is set against.
@@ -60,7 +63,8 @@ impl Whole {
     /// What a part has at its least against what the record has at most; `None` where it fits.
     fn excess(&self, part: &Composite, size: f64, least: f64) -> Option<(f64, f64)> {
         let share = if size > 0.0 { (least / size).powi(2) } else { 0.0 };
-        let beyond = |(has, most): (f64, f64)| (has > most).then(|| (has.sqrt(), most.sqrt()));
+        let beyond =
+            |(has, most): (f64, f64)| (has > HARMLESS.powi(2) * most).then(|| (has.sqrt(), most.sqrt()));
         let octaves = self.variances.iter();
         let at = octaves.map(|(tau_s, most)| (share * part.allan_variance(*tau_s, self.tau0_s), *most));
         let means = self.windows.iter().filter_map(|(window_s, n, variance)| {
@@ -259,5 +263,18 @@ mod tests {
             assert_eq!(found.markov[0].sigma.value.is_some(), fits);
             assert_eq!(found.described.model.markov[0].rms_deg_h > 0.0, fits);
         }
+    }
+    #[test]
+    fn a_difference_that_does_no_harm_withholds_nothing() {
+        let whole = whole();
+        let excess = |rms_deg_h: f64| {
+            let process = Damped { rms_deg_h, frequency_hz: 0.0, decay_time_s: 60.0 };
+            whole.excess(&Composite { markov: vec![process], ..Default::default() }, rms_deg_h, rms_deg_h)
+        };
+        // The record as a whole allows a process of this size.
+        let (has, most) = excess(10.0).unwrap();
+        let allowed = 10.0 * most / has;
+        assert_eq!(excess(1.002 * allowed), None);
+        assert!(excess(1.1 * allowed).is_some());
     }
 }
