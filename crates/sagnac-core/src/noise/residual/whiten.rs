@@ -25,7 +25,7 @@ pub struct Whitened {
     pub share: f64,
     /// The block means of the same stretch less their mean, deg/h.
     pub means: Vec<f64>,
-    /// Begin of the stretch since the first block, s.
+    /// Begin of the stretch since the recording began, s.
     pub from_s: f64,
     /// Its largest jump beside the noise of the model.
     pub jump: Option<Jump>,
@@ -82,7 +82,7 @@ pub fn whitened(record: &SpectralRecord<'_>, model: &Composite) -> Option<Whiten
         modes: used,
         share: count as f64 / total.max(1) as f64,
         means: series,
-        from_s: from as f64 * step_s,
+        from_s: blocks.first_index as f64 * record.tau0_s + from as f64 * step_s,
         jump: jump::largest(&plain, &powers),
     })
 }
