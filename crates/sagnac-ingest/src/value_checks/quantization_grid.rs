@@ -1,7 +1,9 @@
 //! The quantization grid that values lie on: value = k·step + offset with whole k, within the error of a double.
 //!
 //! The step is the common divisor of the differences of the first values, found by Euclid's algorithm with a tolerance;
-//! every later value is checked against it and makes it smaller where needed.
+//! every later value is checked against it and makes it smaller where needed. A step that is no short decimal, such as 30/256,
+//! leaves values that were rounded once more, to the decimals of the file: they lie on the grid of the decimals and, within one of
+//! these, on that of the step.
 
 /// Values from which the step is first found.
 const FIRST_SAMPLES: usize = 4096;
@@ -9,6 +11,57 @@ const FIRST_SAMPLES: usize = 4096;
 const MIN_STEP_ERRORS: f64 = 1e4;
 /// Largest deviation from the quantization grid, steps.
 const OFF: f64 = 0.02;
+
+/// Decimals that a step holds at least for its grid to be told from theirs.
+const MIN_DECIMALS: f64 = 8.0;
+/// Distance from the grid that values rounded to decimals have, decimals: half of one for each of two values, and a margin.
+const ROUNDED_OFF: f64 = 1.5;
+/// Probability that values without such a step lie on its grid.
+const CHANCE: f64 = 1e-6;
+/// Samples for each different value from which few values are a grid by themselves.
+const MANY_PER_LEVEL: usize = 50;
+
+/// A grid whose values were rounded to a finer one.
+#[derive(Debug, Clone, Copy)]
+struct RoundedGrid {
+    origin: f64,
+    step: f64,
+    /// Largest distance from the grid.
+    slack: f64,
+    /// Error of the step.
+    error: f64,
+}
+
+impl RoundedGrid {
+    /// The grid of different values, ascending, of so many samples on a grid of decimals.
+    fn of(levels: &[f64], decimal: f64, samples: usize) -> Option<RoundedGrid> {
+        let (origin, last) = (*levels.first()?, *levels.last()?);
+        let gaps = levels.iter().zip(levels.get(1..)?).map(|(a, b)| b - a);
+        let smallest = gaps.fold(f64::INFINITY, f64::min);
+        if smallest < MIN_DECIMALS * decimal {
+            return None;
+        }
+        let slack = ROUNDED_OFF * decimal;
+        let mut grid = RoundedGrid { origin, step: smallest, slack, error: decimal };
+        for value in levels.get(1..)? {
+            let steps = ((value - origin) / grid.step).round();
+            if !grid.holds(*value) {
+                return None;
+            }
+            if decimal / steps < grid.error {
+                (grid.step, grid.error) = ((value - origin) / steps, decimal / steps);
+            }
+        }
+        let by_chance = (2.0 * slack / grid.step).powi(levels.len() as i32 - 2);
+        let told = by_chance < CHANCE || levels.len() * MANY_PER_LEVEL <= samples;
+        (told && last > origin && levels.iter().all(|v| grid.holds(*v))).then_some(grid)
+    }
+
+    fn holds(&self, value: f64) -> bool {
+        let steps = ((value - self.origin) / self.step).round();
+        (value - self.origin - steps * self.step).abs() <= self.slack + steps.abs() * self.error
+    }
+}
 
 #[derive(Debug, Clone, Default)]
 pub(super) struct QuantizationGrid {
@@ -21,6 +74,7 @@ pub(super) struct QuantizationGrid {
     reach: f64,
     largest: f64,
     state: State,
+    rounded: Option<RoundedGrid>,
 }
 
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -44,6 +98,7 @@ impl QuantizationGrid {
         }
         if self.state == State::Checking && !values.is_empty() {
             self.check(values);
+            self.rounded = self.rounded.filter(|grid| values.iter().all(|v| grid.holds(*v)));
         }
     }
 
@@ -53,11 +108,13 @@ impl QuantizationGrid {
         if done.state == State::Gathering {
             done.find();
         }
-        (done.state == State::Checking && done.step > 0.0).then_some(done.step)
+        let step = done.rounded.map_or(done.step, |grid| grid.step);
+        (done.state == State::Checking && step > 0.0).then_some(step)
     }
 
     fn find(&mut self) {
         let mut sorted = std::mem::take(&mut self.first);
+        let samples = sorted.len();
         sorted.sort_unstable_by(f64::total_cmp);
         sorted.dedup();
         self.state = State::None;
@@ -81,6 +138,7 @@ impl QuantizationGrid {
         self.fit(high - low);
         self.reach = high - low;
         self.check(&sorted);
+        self.rounded = RoundedGrid::of(&sorted, self.step, samples);
     }
 
     /// Error of a difference of two values.

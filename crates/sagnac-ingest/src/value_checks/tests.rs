@@ -195,6 +195,15 @@ fn a_quantization_grid_is_found_where_there_is_one_and_only_there() {
         gauss(50_000, 8.0, &mut rng).iter().map(|v| v.round() * 0.05 * 3600.0 + 11.3).collect();
     let step = check(&real, Role::Rate).0.quantization_step.unwrap();
     assert!((step / 180.0 - 1.0).abs() < 1e-9, "{step}");
+    // 30/256, written with four decimals.
+    for deviation in [0.02, 0.1, 3.0] {
+        let written: Vec<f64> = gauss(20_000, deviation, &mut rng)
+            .iter()
+            .map(|v| ((v * 256.0 / 30.0).round() * 30.0 / 256.0 * 1e4).round() / 1e4)
+            .collect();
+        let step = check(&written, Role::Rate).0.quantization_step.unwrap();
+        assert!((step / (30.0 / 256.0) - 1.0).abs() < 1e-3, "{deviation}: {step}");
+    }
     let smooth = gauss(50_000, 1.0, &mut rng);
     assert_eq!(check(&smooth, Role::Rate).0.quantization_step, None);
     let mut broken = real;
