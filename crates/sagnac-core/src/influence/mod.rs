@@ -6,6 +6,7 @@
 
 pub mod comparison;
 pub mod contrasts;
+pub mod copied;
 pub mod cut;
 mod flicker_marginal;
 mod gls;

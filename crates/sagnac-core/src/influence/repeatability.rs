@@ -1,6 +1,7 @@
 //! Repeatability of the bias from switching on to switching on.
 
 use super::contrasts::{Contrasts, Means, coefficient};
+use super::copied::{self, Copied};
 use super::cut::{cut, span_s};
 use super::flicker_marginal;
 use super::gls;
@@ -47,6 +48,8 @@ pub struct Repeatability {
     pub in_step: Option<f64>,
     /// Change with the temperature of the runs, what goes with their order left out.
     pub temperature: Option<OverTemperature>,
+    /// Two runs that are one.
+    pub copied: Option<Copied>,
 }
 
 /// What goes with the temperature of the runs.
@@ -140,6 +143,7 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
             share: if whole > 0.0 { (1.0 - left / whole).clamp(0.0, 1.0) } else { 0.0 },
             range: span,
         }),
+        copied: copied::find(blocks, &spans, gyro),
         runs: list,
     })
 }

@@ -150,6 +150,7 @@ mod tests {
             range: Range { value: 1.5, plain: 1.7, spread },
             trend: None,
             in_step: None,
+            copied: None,
             temperature: None,
         }
     }

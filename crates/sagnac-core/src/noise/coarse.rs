@@ -29,6 +29,20 @@ pub fn highest_hz(step_deg_h: f64, tau0_s: f64, points: &[(u64, f64)]) -> Option
     Some(0.5 / (*m as f64 * tau0_s))
 }
 
+/// Allan deviation of single samples, in steps, below which noise does not carry a rounded rate from step to step: half a step of noise
+/// beside that of rounding. Above it the mean is off by less than 0.3 % of a step (Widrow and Kollár).
+const UNCARRIED: f64 = 0.577;
+/// Growth of the squared deviation times τ² from one sample to four from which a remainder is not carried on. It grows
+/// fourfold where samples are independent, and less than 2.5 times where the angle was rounded.
+const FORGOTTEN_GROWTH: f64 = 3.0;
+
+/// True where a rate was rounded, sample by sample, and noise does not carry it from step to step. `points` as in [`highest_hz`].
+pub fn is_forgotten(step_deg_h: f64, points: &[(u64, f64)]) -> bool {
+    let at = |m: u64| points.iter().find(|p| p.0 == m).map(|p| p.1 * m as f64 / step_deg_h);
+    let (Some(one), Some(four)) = (at(1), at(4)) else { return false };
+    one < UNCARRIED && four * four > FORGOTTEN_GROWTH * one * one
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -52,5 +66,41 @@ mod tests {
         assert!((0.5 / 820.0..0.5 / 400.0).contains(&highest), "{highest}");
         assert_eq!(highest_hz(f64::NAN, tau0_s, &points(0.0008, q)), None);
         assert_eq!(highest_hz(step, tau0_s, &[]), None);
+    }
+    #[test]
+    fn a_rounded_rate_forgets_its_remainder_and_a_rounded_angle_carries_it_on() {
+        use rand::SeedableRng;
+        use rand_distr::{Distribution, StandardNormal};
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(5);
+        for (noise, bias) in [(0.1, 11.75), (0.3, 3.2), (0.05, 7.52), (0.45, 0.1)] {
+            let rates: Vec<f64> = (0..20_000)
+                .map(|_| {
+                    bias + noise * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng)
+                })
+                .collect();
+            let mut angle = 0.0f64;
+            let increments: Vec<f64> = rates
+                .iter()
+                .map(|rate| {
+                    let before = angle.round();
+                    angle += rate;
+                    angle.round() - before
+                })
+                .collect();
+            let points = |values: &[f64]| -> Vec<(u64, f64)> {
+                let deviation = |m: usize| {
+                    let sum = |at: usize| values[at..at + m].iter().sum::<f64>();
+                    let squares = (0..values.len() - 2 * m).map(|i| (sum(i + m) - sum(i)).powi(2));
+                    let count = values.len() - 2 * m;
+                    (0.5 * squares.sum::<f64>() / count as f64).sqrt() / m as f64
+                };
+                vec![(1, deviation(1)), (2, deviation(2)), (4, deviation(4))]
+            };
+            let rounded: Vec<f64> = rates.iter().map(|r| r.round()).collect();
+            assert!(is_forgotten(1.0, &points(&rounded)), "{noise} {bias}");
+            assert!(!is_forgotten(1.0, &points(&increments)), "{noise} {bias}");
+        }
+        // Noise of a step carries a rounded rate on.
+        assert!(!is_forgotten(1.0, &[(1, 1.04), (2, 0.73), (4, 0.52)]));
     }
 }

@@ -4,7 +4,7 @@ use super::claims::METHOD;
 use super::joint::{Extras, Plateau};
 use super::misfit::Misfit;
 use crate::estimate::Estimate;
-use crate::noise::composite::{Composite, Described};
+use crate::noise::composite::{Composite, Damped, Described};
 use crate::noise::data::NoiseType;
 use crate::noise::model::NoiseModel;
 
@@ -60,6 +60,8 @@ pub struct Identification {
     pub quasi_periodic: Vec<QuasiPeriodicFound>,
     /// −3 dB cut-off of the measurement, Hz, where the record shows a filter.
     pub cutoff: Option<Estimate>,
+    /// A long Markov process that is not told from the flicker or random walk that was claimed.
+    pub long_process: Option<Damped>,
     /// Highest frequency that the model rests on, Hz; `None`: all.
     pub highest_hz: Option<f64>,
     /// Where the search for further parts ended; `None` where a second search might end elsewhere.
@@ -161,7 +163,7 @@ impl Identification {
         self.claimed.contains(&term)
     }
 
-    pub(in crate::noise) fn empty(channel: &str) -> Identification {
+    pub(crate) fn empty(channel: &str) -> Identification {
         let none = |i: usize| Estimate::not_identifiable(IDS[i].0, channel, None, IDS[i].1, METHOD);
         Identification {
             channel: channel.to_owned(),
@@ -186,6 +188,7 @@ impl Identification {
             markov: vec![],
             quasi_periodic: vec![],
             cutoff: None,
+            long_process: None,
             highest_hz: None,
             searched: None,
         }
