@@ -30,7 +30,7 @@ fn gyro(g: &GyroEvidence, reading: &Reading<'_>, rests: bool) -> GyroFact {
     let change = change_detection::noise_change(g.blocks(), g.tau0_s).filter(|_| rests);
     let step_deg_h = facts.and_then(|f| f.values.quantization_step);
     GyroFact {
-        tails: tails(g, step_deg_h).filter(|_| rests),
+        tails: tails(g, step_deg_h),
         channel: g.channel.clone(),
         mean_deg_h: g.digest.mean,
         mean_uncertainty_deg_h: static_bias::uncertainty(g, false).standard(),
