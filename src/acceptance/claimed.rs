@@ -1,5 +1,6 @@
 //! What a result shows of a unit, as a claim that later recordings are held against.
 
+use super::verdict::contradicted;
 use crate::claim::{Claim, Coefficient, Stated, Uncertainty};
 use crate::effect::{ClaimedMean, Model, SpectrumAct};
 use crate::estimate::normal_quantile;
@@ -37,7 +38,7 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
     let earth = row(measurand::EARTH_RATE_COMPONENT.id).and_then(|m| m.value).unwrap_or(0.0);
     let bias = row(measurand::STATIC_BIAS.id);
     let deviation = bias.and_then(standard_uncertainty).unwrap_or(0.0);
-    let mut notes = vec![];
+    let mut notes = contradicted(record.measurands.iter().filter(|m| m.channel == channel));
     let model = record.noise_models.iter().find(|m| m.channel == channel);
     let processes = model.map_or(0, |m| m.markov.len() + m.quasi_periodic.len());
     if processes > 0 {

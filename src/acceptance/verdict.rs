@@ -1,9 +1,11 @@
 //! Rows with their limits, and the verdict of the whole.
 
 use crate::config::procedure::{EffectiveLimits, Procedure};
-use crate::estimate::{Estimate, Verdict, judge};
+use crate::estimate::{Estimate, Holds, Verdict, judge};
 use crate::i18n::{Arg, Note};
-use crate::record::{ConditionRecord, ConditionStatus, Evidence, LimitRecord, MeasurandRecord};
+use crate::record::{
+    ConditionRecord, ConditionStatus, Evidence, LimitRecord, MeasurandRecord, ObjectionRecord,
+};
 
 /// Judges one estimate.
 pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure) -> MeasurandRecord {
@@ -15,9 +17,11 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
     // Of what can be negative and is not shown, no lower limit is known to be met.
     let signed = crate::measurand::find(estimate.id).is_some_and(|m| m.signed);
     let judgement = limit.map(|l| {
-        let undecided = other.is_some() || estimate.disputed;
+        let contradicted = estimate.contradicted();
+        let undecided = other.is_some() || contradicted == Some(Holds::Nothing);
         let mut judged = judge(if undecided { &nothing } else { estimate }, l);
-        if undecided || estimate.value.is_none() && signed && l.min.is_some() {
+        let only_bounded = contradicted.is_some() && (judged.verdict == Verdict::Fail || l.min.is_some());
+        if undecided || only_bounded || estimate.value.is_none() && signed && l.min.is_some() {
             judged.verdict = Verdict::Indeterminate;
         }
         judged
@@ -50,6 +54,7 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
         margin: judgement.as_ref().and_then(|j| j.margin),
         specific_risk: judgement.as_ref().and_then(|j| j.specific_risk),
         notes: notes.into_iter().map(Into::into).collect(),
+        objections: estimate.objections.iter().map(Into::into).collect(),
     }
 }
 
@@ -69,7 +74,7 @@ pub fn whole(
         conditions.iter().filter(|c| c.status == ConditionStatus::Invalid).collect();
     let judged = rows.iter().filter(|r| r.verdict != Verdict::None).count();
     let of = |v: Verdict| rows.iter().filter(move |r| r.verdict == v);
-    let mut reasons: Vec<Note> = Vec::new();
+    let mut reasons = contradicted(rows);
     if !invalid.is_empty() {
         reasons.push(match invalid.len() {
             1 => Note::new("summary.one_condition_invalid").with("n", 1_usize),
@@ -84,7 +89,7 @@ pub fn whole(
     }));
     let several = rows.iter().any(|r| Some(&r.channel) != rows.first().map(|f| &f.channel));
     for verdict in [Verdict::Fail, Verdict::Indeterminate] {
-        for r in of(verdict) {
+        for r in of(verdict).filter(|r| r.objections.is_empty()) {
             let key = match (verdict, r.value.is_none(), several) {
                 (Verdict::Fail, _, false) => "summary.row_failed",
                 (Verdict::Fail, _, true) => "summary.row_failed_of",
@@ -113,6 +118,32 @@ pub fn whole(
         reasons.push(Note::new("summary.influence_declared"));
     }
     (verdict, reasons)
+}
+
+/// What checks contradict, first of all reasons: each with the rows that it leaves open.
+pub fn contradicted<'a>(rows: impl IntoIterator<Item = &'a MeasurandRecord>) -> Vec<Note> {
+    let open: Vec<&MeasurandRecord> = rows.into_iter().filter(|r| r.verdict != Verdict::Pass).collect();
+    let mut told: Vec<&ObjectionRecord> = vec![];
+    for objection in open.iter().flat_map(|r| &r.objections) {
+        if !told.contains(&objection) {
+            told.push(objection);
+        }
+    }
+    let note = |objection: &ObjectionRecord| {
+        let mut names: Vec<Arg> = vec![];
+        for row in open.iter().filter(|r| r.objections.contains(objection)) {
+            let name = Arg::key("measurand", &row.id);
+            if !names.contains(&name) {
+                names.push(name);
+            }
+        }
+        Note::new("summary.contradicted")
+            .with("check", Arg::key("criticism", &objection.check))
+            .with("found", objection.found.clone())
+            .with("advice", objection.advice.clone())
+            .with("measurands", Arg::Several(names, "; ".into()))
+    };
+    told.into_iter().map(note).collect()
 }
 
 /// The verdict where a limits file was given: one that decides nothing leaves open what was to be judged by it.
@@ -152,6 +183,7 @@ mod tests {
             margin: None,
             specific_risk: None,
             notes: vec![],
+            objections: vec![],
         }
     }
 

@@ -62,7 +62,7 @@ pub use proof::{
 pub use siblings::{SiblingQuantity, SiblingsRecord};
 pub use table_step::TableStepRecord;
 
-use crate::estimate::{Interval, Judgement, LowerLimit, Rule, UpperLimit, Verdict};
+use crate::estimate::{Finding, Interval, Judgement, LowerLimit, Objection, Rule, UpperLimit, Verdict};
 use crate::i18n::LocalText;
 use crate::noise::data::NoiseType;
 pub use sagnac_core::mismatch::finding as explanation;
@@ -240,6 +240,27 @@ pub struct MeasurandRecord {
     pub specific_risk: Option<f64>,
     /// What must be known with the value.
     pub notes: Vec<Message>,
+    /// Checks that contradict the fit that it rests on: with one of them it decides nothing.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub objections: Vec<ObjectionRecord>,
+}
+
+/// A check that contradicts what was fitted.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+pub struct ObjectionRecord {
+    /// Id of the check, for example `allan_curve`.
+    pub check: String,
+    /// What was found, with its numbers.
+    pub found: Message,
+    /// What to do.
+    pub advice: Message,
+}
+
+impl From<&Objection> for ObjectionRecord {
+    fn from(objection: &Objection) -> ObjectionRecord {
+        let Finding { found, advice, .. } = objection.finding.clone();
+        ObjectionRecord { check: objection.check.to_owned(), found: found.into(), advice: advice.into() }
+    }
 }
 
 /// A limit as applied.

@@ -15,7 +15,8 @@ pub fn verdict(record: &RunRecord) -> Vec<Finding> {
     let judged: Vec<(&MeasurandRecord, &LimitRecord)> =
         record.measurands.iter().filter_map(|row| Some((row, row.limit.as_ref()?))).collect();
     for (row, limit) in &judged {
-        if !allowed(row, limit).contains(&row.verdict) {
+        let contradicted = !row.objections.is_empty() && row.verdict == Verdict::Indeterminate;
+        if !contradicted && !allowed(row, limit).contains(&row.verdict) {
             findings.push(Finding::Differs(
                 Note::new("verify.row_verdict")
                     .with("measurand", row.id.as_str())
@@ -77,7 +78,7 @@ fn allowed(row: &MeasurandRecord, limit: &LimitRecord) -> Vec<Verdict> {
     };
     let accepted = limit.acceptance_min.is_some() || limit.acceptance_max.is_some();
     match limit.rule {
-        // A value that is disputed has no region of acceptance and decides nothing.
+        // A value that is contradicted has no region of acceptance and decides nothing.
         _ if !accepted => vec![Verdict::Indeterminate],
         Rule::Simple if inside(value, limit.min, limit.max) => vec![Verdict::Pass],
         Rule::Simple => vec![Verdict::Fail],
@@ -122,6 +123,7 @@ mod tests {
                 margin: None,
                 specific_risk: None,
                 notes: vec![],
+                objections: vec![],
             };
             allowed(&row, &limit(rule))
         };

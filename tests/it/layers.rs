@@ -24,6 +24,8 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
             &["claim", "series"],
             &["schedule"],
             &["influence", "mismatch", "simulate"],
+            &["evidence"],
+            &["criticism"],
             &["measurand", "plan"],
         ],
     ),
@@ -48,8 +50,10 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
 /// Re-exports of the lower packages.
 const FACADE: &[&str] = &[
     "claim",
+    "criticism",
     "effect",
     "estimate",
+    "evidence",
     "figure",
     "influence",
     "lot",

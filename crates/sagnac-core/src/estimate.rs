@@ -12,11 +12,13 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 mod decision;
 mod distribution;
+mod objection;
 mod tail;
 
 pub use decision::{Judgement, Limit, Rule, Verdict, judge};
 pub(crate) use distribution::student_quantile;
 pub use distribution::{chi_square_quantile, normal_probability, normal_quantile};
+pub use objection::{Finding, Holds, Objection};
 pub use tail::{
     chi_square_tail, chi_square_two_sided, ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided,
     normal_two_sided,
@@ -168,8 +170,8 @@ pub struct Estimate {
     pub most_likely: Option<f64>,
     /// Bound from below, where the value is `None`.
     pub lower_limit: Option<LowerLimit>,
-    /// True where another reading of the same record contradicts it: it then decides nothing.
-    pub disputed: bool,
+    /// What contradicts it: it then decides no more than what still holds.
+    pub objections: Vec<Objection>,
     /// How it was obtained, short and stable: `whittle`, `overlapping_allan`, ...
     pub method: &'static str,
     /// What a reader must know with it: conventions, averaging times, numbers of clusters.
@@ -196,7 +198,7 @@ impl Estimate {
             upper_limit: None,
             most_likely: None,
             lower_limit: None,
-            disputed: false,
+            objections: vec![],
             method,
             notes: vec![],
         }
@@ -219,7 +221,7 @@ impl Estimate {
             upper_limit,
             most_likely: None,
             lower_limit: None,
-            disputed: false,
+            objections: vec![],
             method,
             notes: vec![],
         }
@@ -244,6 +246,11 @@ impl Estimate {
     pub fn at_least(mut self, limit: Option<LowerLimit>) -> Self {
         self.lower_limit = limit;
         self
+    }
+
+    /// The least that still holds of it where it is contradicted; `None` where it is not.
+    pub fn contradicted(&self) -> Option<Holds> {
+        self.objections.iter().map(|o| o.finding.holds).min()
     }
 
     /// The two-sided 95 % interval.

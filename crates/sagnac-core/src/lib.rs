@@ -31,13 +31,17 @@
 //! | [`schedule`] | what chamber and table do in a test |
 //! | [`mismatch`], [`simulate`] | why a recording departs from a claim; recordings made from a claim |
 //! | [`plan`] | the next test: which schedule tells the explanations that are left apart |
+//! | [`evidence`] | what each kind of test leaves behind |
+//! | [`criticism`] | checks of what was fitted against its record |
 //! | [`measurand`] | measured quantities of every kind of test: one registry, one file each |
 //!
 //! Nothing here panics on any input: what cannot be computed is `None`, an error, or an estimate without a value.
 
 pub mod claim;
+pub mod criticism;
 pub mod effect;
 pub mod estimate;
+pub mod evidence;
 pub mod figure;
 pub mod influence;
 pub mod local_text;

@@ -3,6 +3,7 @@
 use super::rules::rules;
 use super::unit::{Origin, Quantity, Unit};
 use super::{faults, summary};
+use crate::acceptance::verdict::contradicted;
 use crate::i18n::{Arg, Note};
 use crate::measurand;
 use crate::record::RunRecord;
@@ -59,9 +60,10 @@ pub fn units_of(result: &RunRecord, path: &str, stem: &str, origin: Origin) -> R
                 .collect(),
             detail: result.comparison.iter().find(|d| d.channel == *channel).cloned(),
             indicative: false,
-            summary: faults::of_recording(result),
+            summary: contradictions(result, channel),
             missing: vec![],
         };
+        unit.summary.extend(faults::of_recording(result));
         unit.rules = rules(&unit);
         let departs = faults::of_model(result, channel);
         let misfit = unit.detail.as_ref().and_then(summary::misfit);
@@ -79,6 +81,13 @@ pub fn units_of(result: &RunRecord, path: &str, stem: &str, origin: Origin) -> R
         unit
     };
     Ok(channels.iter().map(unit).collect())
+}
+
+/// What checks contradict of the compared quantities of a channel.
+fn contradictions(result: &RunRecord, channel: &str) -> Vec<Note> {
+    contradicted(
+        result.measurands.iter().filter(|r| r.channel == channel && COMPARED.contains(&r.id.as_str())),
+    )
 }
 
 /// A note on limits for quantities that no comparison holds.

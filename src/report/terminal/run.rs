@@ -12,10 +12,11 @@ pub fn run(view: &View, lang: Lang, terminal: Terminal) -> String {
     let words = Translator { lang };
     let mut out = head(view, words, terminal);
     if view.phases.is_empty() {
+        out += &terminal.indented(&view.contradicted);
         // A pass needs no reasons; what fails is read in the table first.
         let settled = matches!(view.verdict, "pass" | "none");
         if settled {
-            out += &terminal.indented(&view.summary);
+            out += &terminal.indented(reasons(view));
         }
         out += &quantities(view, words, terminal);
         if !settled {
@@ -51,11 +52,11 @@ fn head(view: &View, words: Translator, terminal: Terminal) -> String {
     terminal.headed(&verdict, &view.verdict_word, &parts.join(" · "))
 }
 
-/// Errors and reasons, each once.
+/// Errors and reasons, each once; what is contradicted is told before.
 fn reasons(view: &View) -> Vec<&String> {
     let mut out: Vec<&String> = vec![];
     for sentence in view.errors.iter().chain(&view.summary) {
-        if !out.contains(&sentence) {
+        if !out.contains(&sentence) && !view.contradicted.contains(sentence) {
             out.push(sentence);
         }
     }

@@ -9,9 +9,10 @@ use super::faults::{self, Faults};
 use super::goodness::{self, Goodness};
 use crate::i18n::Arg;
 use crate::measurand;
+use crate::noise::residual::View;
 use crate::record::{
-    ClauseRecord, ConditionStatus, ExcludedSpan, ExclusionRecord, InstrumentRecord, LineRecord,
-    MeasurandRecord, Message, NoiseModelRecord, PowerRecord, RunRecord, WaiverRecord,
+    ClauseRecord, ConditionStatus, ExcludedSpan, ExclusionRecord, GoodnessOfFitRecord, InstrumentRecord,
+    LineRecord, MeasurandRecord, Message, NoiseModelRecord, PowerRecord, RunRecord, WaiverRecord,
 };
 use crate::report::number::{NOTHING, Rounding, count, digits, duration, limit, limit_digits, percent};
 use crate::report::translator::{Field, Translator};
@@ -216,7 +217,11 @@ impl Evidence {
             excluded: record.window.excluded.iter().map(|e| excluded(e, &record.exclusions, words)).collect(),
             lines: lines.into_iter().map(|l| line(l, words)).collect(),
             lines_shown,
-            models: record.noise_models.iter().map(|m| model(m, &record.measurands, words)).collect(),
+            models: record
+                .noise_models
+                .iter()
+                .map(|m| model(m, &record.measurands, by_frequency(record, m), words))
+                .collect(),
             goodness: goodness::goodness(record, words),
             deviations: deviations::deviations(record, words),
             table_steps: super::table_steps::table_steps(record, words),
@@ -401,7 +406,18 @@ fn line(l: &LineRecord, words: Translator) -> Line {
 /// Relative difference below which a row and the model speak of the same value.
 const SAME: f64 = 5e-3;
 
-fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Translator) -> Model {
+/// The view by frequency of the channel of a model.
+fn by_frequency<'a>(record: &'a RunRecord, m: &NoiseModelRecord) -> Option<&'a GoodnessOfFitRecord> {
+    record.goodness_of_fit.iter().find(|g| g.channel == m.channel && g.view == View::Frequency)
+}
+
+/// `fit`: the view by frequency of the channel, where the record is long enough for one.
+fn model(
+    m: &NoiseModelRecord,
+    rows: &[MeasurandRecord],
+    fit: Option<&GoodnessOfFitRecord>,
+    words: Translator,
+) -> Model {
     let lang = words.lang;
     let coefficients = [
         ("N", &measurand::ANGLE_RANDOM_WALK, m.angle_random_walk),
@@ -439,10 +455,11 @@ fn model(m: &NoiseModelRecord, rows: &[MeasurandRecord], words: Translator) -> M
         }
     }
     remarks.extend(m.remarks.iter().map(|note| ModelRemark { text: words.say(note), misfit: false }));
-    let p = probability(m.misfit_probability, words);
+    // One question, one probability: that of the view by frequency, which stands beside the others of the goodness of fit.
+    let p = probability(fit.map_or(m.misfit_probability, |f| f.p_value), words);
     // The remark on the misfit names the band.
     let misfit_said = remarks.iter().any(|r| r.misfit);
-    let departs = misfit_said || m.misfit_band_hz.is_some();
+    let departs = misfit_said || fit.map_or(m.misfit_band_hz.is_some(), |f| f.departs);
     Model {
         channel: m.channel.clone(),
         method: words.name("how", &m.method),

@@ -27,6 +27,8 @@ pub struct View {
     pub verdict_word: String,
     /// Why the verdict is what it is.
     pub summary: Vec<String>,
+    /// What checks contradict: the first of these reasons.
+    pub contradicted: Vec<String>,
     /// Errors, first of all when there are any.
     pub errors: Vec<String>,
     /// Which attempt at the test this is and what came of those before, and that the unit is unlike the others of its lot; empty
@@ -124,6 +126,12 @@ impl View {
             verdict: record.verdict.id(),
             verdict_word: words.verdict(record.verdict),
             summary: summary(&record.summary, &record.measurands, channels.len() > 1, words),
+            contradicted: record
+                .summary
+                .iter()
+                .filter(|n| n.id == CONTRADICTED)
+                .map(|n| words.say(n))
+                .collect(),
             errors: record.errors.iter().map(|n| words.say(n)).collect(),
             attempt: attempt(record, words),
             identity: identity(record, words),
@@ -217,6 +225,9 @@ fn declared(record: &RunRecord, words: Translator) -> Vec<String> {
     names.collect::<BTreeSet<String>>().into_iter().collect()
 }
 
+/// The reason that a check contradicts what a row rests on.
+const CONTRADICTED: &str = "summary.contradicted";
+
 /// Reasons that a record gives for a row; a report states them with their numbers.
 const ROW_REASONS: [&str; 6] = [
     "summary.row_failed",
@@ -238,7 +249,7 @@ pub fn summary(
     let first_row = reasons.iter().position(|n| is_row(&n.id)).unwrap_or(reasons.len());
     let (before, after) = reasons.split_at(first_row);
     let of = |verdict: Verdict| rows.iter().filter(move |m| m.verdict == verdict);
-    let rows = of(Verdict::Fail).chain(of(Verdict::Indeterminate));
+    let rows = of(Verdict::Fail).chain(of(Verdict::Indeterminate)).filter(|m| m.objections.is_empty());
     let mut out: Vec<String> = before.iter().map(|n| words.say(n)).collect();
     if !after.is_empty() {
         out.extend(rows.filter_map(|m| rows::reason(m, several_channels, words)));

@@ -361,6 +361,7 @@ mod tests {
             margin: None,
             specific_risk: None,
             notes: vec![],
+            objections: vec![],
         }
     }
 

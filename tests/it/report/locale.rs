@@ -116,6 +116,7 @@ const OPEN: &[&str] = &[
     "stated",
     "goodness.view",
     "compare.column",
+    "criticism",
     "datasheet.column",
     "datasheet.condition",
     "datasheet.method",

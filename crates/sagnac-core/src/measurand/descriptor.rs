@@ -1,6 +1,7 @@
 //! What a measured quantity is: its id and unit, the test that gives it, what it needs, and how it is evaluated.
 
 use super::evidence::{ComparisonEvidence, GyroEvidence, KnownInputEvidence, TableEvidence};
+use crate::criticism;
 use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::influence::Influence;
 use crate::influence::repeatability::Repeatability;
@@ -378,7 +379,7 @@ impl Measurand {
 
     /// Its rows on a gyro channel at rest, over temperature or from switching on; none for a measurand of other tests.
     pub fn evaluate_gyro(&self, gyro: &GyroEvidence, options: &Options) -> Vec<Estimate> {
-        match self.evaluation {
+        let estimates = match self.evaluation {
             Evaluation::Static(evaluate) => evaluate(self, gyro, options),
             Evaluation::Temperature(_) => {
                 let found = gyro.over_temperature.as_ref();
@@ -389,7 +390,8 @@ impl Measurand {
                 found.map_or_else(Vec::new, |found| self.evaluate_warm_up(&gyro.channel, found))
             }
             _ => vec![],
-        }
+        };
+        criticism::raise(criticism::of_gyro(gyro), estimates)
     }
 
     /// Its rows on a gyro channel over temperature; none for a measurand of other tests.
@@ -421,7 +423,10 @@ impl Measurand {
     /// Its rows on a gyro channel from a series of switchings-on; none for a measurand of other tests.
     pub fn evaluate_runs(&self, runs: &Repeatability) -> Vec<Estimate> {
         match self.evaluation {
-            Evaluation::Repeatability(evaluate) => evaluate(self, runs),
+            Evaluation::Repeatability(evaluate) => {
+                let objections = criticism::objections(criticism::OF_RUNS, |examine| examine(runs));
+                criticism::raise(&objections, evaluate(self, runs))
+            }
             _ => vec![],
         }
     }
@@ -432,7 +437,8 @@ impl Measurand {
             Evaluation::Comparison { influence, evaluate }
                 if influence.is_none_or(|i| i == compared.bias.test.influence) =>
             {
-                evaluate(self, compared)
+                let objections = criticism::objections(criticism::OF_COMPARISON, |examine| examine(compared));
+                criticism::raise(&objections, evaluate(self, compared))
             }
             _ => vec![],
         }

@@ -1,7 +1,7 @@
 //! Measured quantities of every kind of test. Adding one is one file and one line in the registry below.
 //!
 //! A [`Measurand`] says what it is and has its evaluation: a pure function of what its kind of test leaves behind
-//! ([`evidence`]). Whoever singles one out names its constant.
+//! ([`crate::evidence`]). Whoever singles one out names its constant.
 
 pub mod allan_minimum;
 mod angle_random_walk_shift;
@@ -11,7 +11,6 @@ mod cross_axis;
 mod dead_zone;
 mod descriptor;
 mod earth_rate;
-pub mod evidence;
 mod influence;
 mod misalignment;
 mod noise_terms;
@@ -26,10 +25,11 @@ mod spectral_line;
 pub mod static_bias;
 mod table_harmonics;
 mod temperature;
-#[cfg(test)]
-mod test_evidence;
 mod warm_up;
 
+pub use crate::evidence;
+#[cfg(test)]
+use crate::evidence::test_evidence;
 use crate::rate_table::design::Extra;
 pub use descriptor::{
     EARTH_RATE_OPTION, Evaluation, Measurand, OfKnownInput, OfSteps, Options, PowerModel, Stimulus, Test,
@@ -148,6 +148,7 @@ pub fn table_extras(wanted: &dyn Fn(&Measurand) -> bool) -> Vec<Extra> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::criticism;
     use crate::units::Unit;
 
     #[test]
@@ -163,6 +164,12 @@ mod tests {
             let on_table = m.test() == Test::RateTable;
             assert_eq!(on_table, m.by_steps().is_some() || m.by_known_input().is_some(), "{}", m.id);
         }
+    }
+
+    #[test]
+    fn what_checks_contradict_are_measurands() {
+        let ids = criticism::NOISE.iter().chain(&criticism::SLOW_NOISE);
+        assert!(ids.clone().all(|id| find(id).is_some()), "{:?}", ids.collect::<Vec<_>>());
     }
 
     #[test]

@@ -5,7 +5,7 @@
 
 use super::descriptor::{EARTH_RATE_OPTION, Measurand, Options, PowerModel};
 use super::evidence::GyroEvidence;
-use crate::estimate::{Estimate, Spread};
+use crate::estimate::{Estimate, Spread, normal_probability};
 use crate::message::Note;
 use crate::noise::data::NoiseType;
 use crate::noise::model::TERMS;
@@ -65,6 +65,11 @@ fn evaluate(m: &Measurand, gyro: &GyroEvidence, options: &Options) -> Vec<Estima
     let u = uncertainty(gyro, removed.is_some());
     let standard_uncertainty = u.standard();
     let spread = Spread::StudentT { standard_uncertainty, dof: degrees_of_freedom(gyro, &u) };
+    let spread = match gyro.forgotten_step_deg_h {
+        Some(step) => beside_rounding(&spread, value, 0.5 * step),
+        None => spread,
+    };
+    let rounded = gyro.forgotten_step_deg_h.map(|step| Note::new("note.bias_rounded").with("step", step));
     let earth = match removed {
         Some(e) => Note::new("note.earth_rate_removed").with("rate", e.rate_deg_h),
         None => Note::new("note.earth_rate_kept"),
@@ -72,7 +77,18 @@ fn evaluate(m: &Measurand, gyro: &GyroEvidence, options: &Options) -> Vec<Estima
     let longest = Note::new("note.bias_uncertainty")
         .with("u", standard_uncertainty)
         .with("longest_h", 1.0 / (3600.0 * u.lowest_hz));
-    vec![m.measured(&gyro.channel, value, spread, "mean").note(earth).note(longest)]
+    let estimate = m.measured(&gyro.channel, value, spread, "mean").note(earth).note(longest);
+    vec![rounded.into_iter().fold(estimate, Estimate::note)]
+}
+
+/// A spread beside an error of rounding that lies anywhere within half a step.
+fn beside_rounding(spread: &Spread, value: f64, half_step: f64) -> Spread {
+    let scores = (-40..=40).map(|i| 0.1 * f64::from(i));
+    let bounds = scores.filter_map(|z| {
+        let confidence = normal_probability(z);
+        Some((z, spread.bound(value, confidence)? + half_step * (2.0 * confidence - 1.0)))
+    });
+    Spread::Curve(bounds.collect())
 }
 
 #[cfg(test)]

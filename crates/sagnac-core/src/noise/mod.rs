@@ -11,7 +11,7 @@
 //! | lines found and taken out | [`lines`], [`sinusoids`], [`coherence`] |
 //! | powers by frequency with what each term is expected to give | [`evidence`] |
 //! | terms with intervals or limits | [`identification`]; [`spectral_record`] does lines, evidence and terms together |
-//! | what the curve of the same record says | [`curve_check`], [`slope`], [`whole`] |
+//! | what the curve of the same record says | [`slope`], [`whole`] |
 //! | whether the model describes the record | [`residual`] |
 //!
 //! Models and their closed forms: [`model`] (N, B, K, R, Q), [`composite`] (every term), [`data`] (kinds of noise, points
@@ -25,7 +25,6 @@ pub mod block_series;
 pub mod coarse;
 pub mod coherence;
 pub mod composite;
-pub mod curve_check;
 pub mod data;
 mod difference_sums;
 pub mod digest;

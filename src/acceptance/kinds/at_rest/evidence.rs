@@ -3,6 +3,7 @@
 use crate::acceptance::request::{Request, RunError};
 use crate::acceptance::test_kind::{Reading, Run};
 use crate::i18n::Arg;
+use crate::measurand::evidence::Course;
 use crate::measurand::{Earth, GyroEvidence};
 use crate::noise::digest::{DigestPlan, RateAccumulator};
 use crate::noise::envelope::Envelope;
@@ -61,7 +62,7 @@ pub fn evidence(reading: &Reading<'_>, collected: RateDigests) -> Run<Vec<GyroEv
                 Earth { rate_deg_h: rate.value, uncertainty_deg_h: rate.uncertainty }
             });
             let gyro = GyroEvidence::identify(channel, digest.finish(), reading.tau0_s, alarm, step_deg_h);
-            Some(GyroEvidence { several, earth, ..gyro })
+            Some(GyroEvidence { several, earth, course: course(reading, slot), ..gyro })
         })
         .collect();
     let warming_deg_c = warming_deg_c(reading);
@@ -81,6 +82,14 @@ pub fn evidence(reading: &Reading<'_>, collected: RateDigests) -> Run<Vec<GyroEv
         }));
     }
     Ok(gyros)
+}
+
+/// A gyro channel beside the temperatures.
+fn course(reading: &Reading<'_>, slot: usize) -> Option<Course> {
+    let envelope = |slot: usize| reading.envelopes.get(&slot).cloned();
+    let thermometers = reading.channels.iter().enumerate().filter(|(_, c)| c.role == Role::Temperature);
+    let temperatures = thermometers.filter_map(|(slot, c)| Some((c.id.clone(), envelope(slot)?)));
+    Some(Course { rate: envelope(slot)?, temperatures: temperatures.collect() })
 }
 
 /// The largest range of a temperature channel, degC.

@@ -1,6 +1,6 @@
 //! Small evidence with known numbers, for the tests of the measurands beside it, and what reads rows back.
 
-use super::evidence::{GyroEvidence, TableEvidence};
+use super::{GyroEvidence, TableEvidence};
 use crate::estimate::{Estimate, Spread};
 use crate::message::Arg;
 use crate::noise::data::{DeviationPoint, NoiseType};

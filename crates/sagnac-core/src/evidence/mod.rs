@@ -1,10 +1,17 @@
-//! What each kind of test leaves behind for its measurands.
+//! What each kind of test leaves behind, for its measurands and for the checks of them.
 
+mod course;
+#[cfg(test)]
+pub(crate) mod test_evidence;
+
+pub use course::{Course, Pair};
+
+use crate::estimate::Objection;
 use crate::influence::comparison::{Comparison, NoiseChange};
 use crate::message::Note;
 use crate::noise::allan::{DeviationCurve, DeviationSet};
+use crate::noise::coarse;
 use crate::noise::composite::Composite;
-use crate::noise::curve_check;
 use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::digest::RateDigest;
 use crate::noise::family::Estimator;
@@ -13,7 +20,7 @@ use crate::noise::intervals::{BoundedPoint, bounded};
 use crate::noise::lines::SpectralLine;
 use crate::noise::motion::Motion;
 use crate::noise::residual::GoodnessOfFit;
-use crate::noise::spectral_record::{SpectralRecord, identify_digest};
+use crate::noise::spectral_record::{RecordNoise, SpectralRecord, identify_digest, identify_terms};
 use crate::noise::whole::Whole;
 use crate::noise::windows::WindowStatistics;
 use crate::rate_table::Setup;
@@ -26,6 +33,7 @@ use crate::rate_table::steps::Steps;
 use crate::rate_table::turns::Turns;
 use crate::temperature::findings::Findings;
 use crate::temperature::warm_up::WarmUpFindings;
+use std::sync::OnceLock;
 
 /// Earth rate along an input axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -69,6 +77,13 @@ pub struct GyroEvidence {
     pub over_temperature: Option<Findings>,
     /// What a test of the warm-up showed, where the procedure asks for one.
     pub warm_up: Option<WarmUpFindings>,
+    /// The rate and the temperatures over the whole recording, for the caller to add.
+    pub course: Option<Course>,
+    /// Step of a rate that was rounded without its remainder being carried on, deg/h, where noise does not carry it from step
+    /// to step.
+    pub forgotten_step_deg_h: Option<f64>,
+    /// What checks contradict, once it was asked for (`criticism::of_gyro`).
+    pub objections: OnceLock<Vec<Objection>>,
 }
 
 impl GyroEvidence {
@@ -84,11 +99,35 @@ impl GyroEvidence {
         step_deg_h: Option<f64>,
     ) -> GyroEvidence {
         let noise = identify_digest(&channel, &digest, tau0_s, line_false_alarm, step_deg_h);
+        GyroEvidence::of(channel, digest, tau0_s, noise, step_deg_h)
+    }
+
+    /// The same by N, B, K, Q and R alone, without a search for processes and filters, which takes most of the time.
+    pub fn first_look(
+        channel: String,
+        digest: RateDigest,
+        tau0_s: f64,
+        line_false_alarm: f64,
+        step_deg_h: Option<f64>,
+    ) -> GyroEvidence {
+        let noise = identify_terms(&channel, &digest, tau0_s, line_false_alarm);
+        GyroEvidence::of(channel, digest, tau0_s, noise, step_deg_h)
+    }
+
+    fn of(
+        channel: String,
+        digest: RateDigest,
+        tau0_s: f64,
+        noise: RecordNoise,
+        step_deg_h: Option<f64>,
+    ) -> GyroEvidence {
         let (mut lines, mut identification) = (noise.lines, noise.ranged.identification);
         let model = &identification.described.model;
         let sigma_tau = allan_points(&digest.deviations, model, tau0_s);
         let octaves =
             digest.octaves.as_ref().map_or_else(|| sigma_tau.clone(), |set| allan_points(set, model, tau0_s));
+        let first: Vec<(u64, f64)> = octaves.iter().map(|p| (p.point.m, p.point.deviation)).collect();
+        let forgotten_step_deg_h = step_deg_h.filter(|step| coarse::is_forgotten(*step, &first));
         let whole = Whole::of(&digest, &octaves, identification.highest_hz);
         let withheld_line = whole.lines(&mut lines);
         if withheld_line.is_some() {
@@ -96,7 +135,6 @@ impl GyroEvidence {
             identification.described.keep_lines(|line| kept.contains(&line.frequency_hz));
         }
         whole.parts(&mut identification);
-        curve_check::contest(&mut identification, &octaves, tau0_s, digest.samples);
         let points: Vec<_> = octaves.iter().map(|p| p.point).collect();
         let record = SpectralRecord::of_digest(&digest, &lines, tau0_s);
         let goodness = GoodnessOfFit::of(&record, &identification.described, &points);
@@ -116,6 +154,9 @@ impl GyroEvidence {
             earth: None,
             over_temperature: None,
             warm_up: None,
+            course: None,
+            forgotten_step_deg_h,
+            objections: OnceLock::new(),
         }
     }
 
@@ -240,7 +281,7 @@ pub struct ComparisonEvidence<'a> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_evidence::{gyro, near, steps, windows};
+    use super::test_evidence::{gyro, near, steps, windows};
     use super::*;
     use crate::noise::digest::{DigestPlan, RateAccumulator};
     use crate::noise::tau_grid::TauGrid;

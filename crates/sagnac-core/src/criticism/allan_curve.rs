@@ -4,14 +4,15 @@
 //! predicts for it, at the averaging times where the term rules; what is left over is counted to the term. Where the two
 //! differ by more than both intervals allow, neither decides.
 
-use super::composite::{Composite, Described};
-use super::data::NoiseType;
-use super::identification::Identification;
-use super::intervals::BoundedPoint;
-use super::model::unit_allan_variance;
-use super::slope::{LARGEST_SHARE, SlopePoint, read, reading_time_s, runs, through};
-use crate::estimate::{Estimate, Interval, Spread};
+use crate::estimate::{Estimate, Finding, Holds, Interval, Spread};
+use crate::evidence::GyroEvidence;
 use crate::message::Note;
+use crate::noise::composite::{Composite, Described};
+use crate::noise::data::NoiseType;
+use crate::noise::identification::Identification;
+use crate::noise::intervals::BoundedPoint;
+use crate::noise::model::unit_allan_variance;
+use crate::noise::slope::{LARGEST_SHARE, SlopePoint, read, reading_time_s, runs, through};
 
 /// Share of the variance that a term must have where it is read.
 const DOMINANT_SHARE: f64 = 0.5;
@@ -118,39 +119,43 @@ fn unclaimed(curve: &Curve, described: &Described, term: NoiseType, tau0_s: f64)
     })
 }
 
-/// Sets N, B and K against the Allan curve of the same record. Where the 95 % intervals of fit and curve exclude each other,
-/// the estimate is marked as disputed and gets a note with both values; its value stays.
-///
+/// N, B and K against the Allan curve of the same record: a finding for each of which the 95 % intervals of fit and curve
+/// exclude each other.
+pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
+    findings(&gyro.identification, &gyro.octaves, gyro.tau0_s, gyro.digest.samples)
+}
+
 /// `octaves` are the overlapping Allan deviations at octaves of `tau0_s`, of a record of `samples` samples.
-pub fn contest(found: &mut Identification, octaves: &[BoundedPoint], tau0_s: f64, samples: u64) {
+fn findings(found: &Identification, octaves: &[BoundedPoint], tau0_s: f64, samples: u64) -> Vec<Finding> {
     let curve = Curve::of(octaves, tau0_s, samples, found.highest_hz);
-    let described = found.described.clone();
-    let model = described.model.clone();
-    let plateau = found.plateau.clone();
-    for term in [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk] {
+    let described = &found.described;
+    let model = &described.model;
+    let of = |term: NoiseType| {
         let white = term == NoiseType::AngleRandomWalk;
-        let (parts, coefficient) = match plateau.as_ref().filter(|_| white) {
-            Some(plateau) => (plateau.parts(&model), plateau.level(&model)),
+        let (parts, coefficient) = match found.plateau.as_ref().filter(|_| white) {
+            Some(plateau) => (plateau.parts(model), plateau.level(model)),
             None => (model.alone(term), model.terms.coefficient(term)),
         };
         let estimate = match term {
-            NoiseType::AngleRandomWalk => found.read_angle_random_walk_mut(),
-            NoiseType::Flicker => &mut found.bias_instability,
-            _ => &mut found.rate_random_walk,
+            NoiseType::AngleRandomWalk => found.read_angle_random_walk(),
+            NoiseType::Flicker => &found.bias_instability,
+            _ => &found.rate_random_walk,
         };
         let read = match estimate.value {
-            Some(_) => reading(&curve, &described, term, &parts, coefficient, tau0_s),
+            Some(_) => reading(&curve, described, term, &parts, coefficient, tau0_s),
             // What is read of white noise beside a limit on it would have been claimed.
             None if white => None,
-            None => unclaimed(&curve, &described, term, tau0_s),
+            None => unclaimed(&curve, described, term, tau0_s),
         };
-        if let Some(read) = read {
-            disputed(estimate, &read);
-        }
-    }
+        contradiction(estimate, &read?)
+    };
+    [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk]
+        .into_iter()
+        .filter_map(of)
+        .collect()
 }
 
-fn disputed(estimate: &mut Estimate, read: &Reading) {
+fn contradiction(estimate: &Estimate, read: &Reading) -> Option<Finding> {
     let Interval { low, high, .. } = read.interval;
     let fitted = estimate.interval95();
     let differs = match (fitted, estimate.upper_limit) {
@@ -160,25 +165,26 @@ fn disputed(estimate: &mut Estimate, read: &Reading) {
         (None, Some(limit)) => low * (1.0 - HARMLESS_DIFFERENCE) > limit.value,
         (None, None) => false,
     };
-    if !differs {
-        return;
-    }
     let note = match (estimate.value, fitted, estimate.upper_limit) {
-        (Some(value), Some(i), _) => Note::new("note.curve_disagrees")
+        _ if !differs => return None,
+        (Some(value), Some(i), _) => Note::new("criticism_found.curve_disagrees")
             .with("fitted", value)
             .with("fitted_low", i.low)
             .with("fitted_high", i.high),
-        (_, _, Some(limit)) => Note::new("note.curve_exceeds").with("limit", limit.value),
-        _ => return,
+        (_, _, Some(limit)) => Note::new("criticism_found.curve_exceeds").with("limit", limit.value),
+        _ => return None,
     };
-    estimate.disputed = true;
-    estimate.notes.push(
-        note.with("read", read.value)
+    Some(Finding {
+        measurands: vec![estimate.id],
+        holds: Holds::Nothing,
+        found: note
+            .with("read", read.value)
             .with("low", low)
             .with("high", high)
             .with("from_s", read.from_s)
             .with("to_s", read.to_s),
-    );
+        advice: Note::new("criticism_advice.allan_curve"),
+    })
 }
 
 #[cfg(test)]
@@ -219,10 +225,9 @@ mod tests {
         let truth = NoiseModel { n: 0.0264, ..Default::default() };
         let curve = octaves(|tau_s| truth.allan_variance(tau_s).sqrt());
         for (n, contested) in [(0.0264, false), (0.0266, false), (0.0174, true)] {
-            let mut found = fitted(n, 0.005 * n);
-            contest(&mut found, &curve, 1.0, 100_000);
-            assert_eq!(found.angle_random_walk.disputed, contested, "{n}");
-            assert_eq!(found.angle_random_walk.notes.len(), usize::from(contested));
+            let findings = findings(&fitted(n, 0.005 * n), &curve, 1.0, 100_000);
+            assert_eq!(findings.len(), usize::from(contested), "{n}");
+            assert!(findings.iter().all(|f| f.measurands == ["angle_random_walk"]));
         }
     }
 
@@ -233,7 +238,6 @@ mod tests {
         let curve = octaves(|tau_s| truth.allan_variance(tau_s).sqrt());
         let mut found = fitted(0.02, 1e-4);
         found.described.model = truth.into();
-        contest(&mut found, &curve, 1.0, 100_000);
-        assert!(!found.angle_random_walk.disputed);
+        assert_eq!(findings(&found, &curve, 1.0, 100_000), []);
     }
 }

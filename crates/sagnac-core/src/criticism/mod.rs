@@ -1,0 +1,135 @@
+//! Criticism of a fit: checks of what was fitted to a record against that record, by means that share no assumption with the
+//! fit. What a check contradicts decides nothing.
+//!
+//! Every kind of test has one list of checks here. A [`Check`] looks at the evidence of one channel and gives a
+//! [`Finding`] for each contradiction: which measurands rest on what was contradicted, what was found with its numbers, and
+//! what to do. The evaluation of every measurand puts the findings on its estimates as objections, and an estimate with an
+//! objection neither passes nor fails; so no command states what another refuses. A new check is one file and one line.
+
+mod allan_curve;
+mod copied_run;
+mod long_process;
+mod rate_rounding;
+mod rejected_model;
+mod slow_part_removed;
+mod step;
+pub mod temperature;
+mod white_floor;
+
+use crate::estimate::{Estimate, Finding, Objection};
+use crate::evidence::{ComparisonEvidence, GyroEvidence};
+use crate::influence::repeatability::Repeatability;
+
+/// A check of the evidence of one channel; `F` takes the evidence and gives what it contradicts.
+#[derive(Debug, Clone, Copy)]
+pub struct Check<F> {
+    /// Id in results; `criticism.<id>` is its name in the locale tables.
+    pub id: &'static str,
+    /// The examination.
+    pub examine: F,
+}
+
+/// Measurands of slow noise at rest.
+pub(crate) const SLOW_NOISE: [&str; 4] =
+    ["bias_instability", "rate_random_walk", "rate_random_walk_readout", "rate_ramp"];
+
+/// Every measurand of a gyro at rest that follows from the noise of the record.
+pub(crate) const NOISE: [&str; 17] = [
+    "angle_random_walk",
+    "angle_random_walk_white",
+    "angle_random_walk_readout",
+    "bias_instability",
+    "bias_instability_minimum",
+    "bias_instability_minimum_scaled",
+    "rate_random_walk",
+    "rate_random_walk_readout",
+    "rate_ramp",
+    "rate_ramp_readout",
+    "quantization",
+    "quantization_readout",
+    "russian_drift_100s",
+    "russian_drift_100s_3sigma",
+    "russian_sigma_10s",
+    "russian_arw_10s",
+    "russian_drift_100s_predicted",
+];
+
+/// Examination of a gyro at rest, over temperature, or from switching on.
+pub type OfGyro = fn(&GyroEvidence) -> Vec<Finding>;
+
+/// Examination of a comparison without and with an influence.
+pub type OfComparison = for<'a> fn(&ComparisonEvidence<'a>) -> Vec<Finding>;
+
+/// Examination of a series of switchings-on.
+pub type OfRuns = fn(&Repeatability) -> Vec<Finding>;
+
+/// Checks of a gyro at rest, over temperature and from switching on, in the order in which they are told.
+pub static OF_GYRO: &[Check<OfGyro>] = &[
+    Check { id: temperature::CHECK, examine: temperature::examine },
+    Check { id: "rate_rounding", examine: rate_rounding::examine },
+    Check { id: "slow_part_removed", examine: slow_part_removed::examine },
+    Check { id: "rejected_model", examine: rejected_model::examine },
+    Check { id: "white_floor", examine: white_floor::examine },
+    Check { id: "allan_curve", examine: allan_curve::examine },
+    Check { id: "step", examine: step::examine },
+    Check { id: "long_process", examine: long_process::examine },
+];
+
+/// Checks of a comparison without and with an influence.
+pub static OF_COMPARISON: &[Check<OfComparison>] = &[];
+
+/// Checks of a series of switchings-on.
+pub static OF_RUNS: &[Check<OfRuns>] = &[Check { id: "copied_run", examine: copied_run::examine }];
+
+/// What checks contradict; `ask` hands the evidence to one of them.
+pub fn objections<F: Copy>(checks: &[Check<F>], ask: impl Fn(F) -> Vec<Finding>) -> Vec<Objection> {
+    let of = |check: &Check<F>| {
+        let id = check.id;
+        ask(check.examine).into_iter().map(move |finding| Objection { check: id, finding })
+    };
+    checks.iter().flat_map(of).collect()
+}
+
+/// What is contradicted of a gyro at rest, over temperature or from switching on. Examined once, when all evidence is there.
+pub fn of_gyro(gyro: &GyroEvidence) -> &[Objection] {
+    gyro.objections.get_or_init(|| objections(OF_GYRO, |examine| examine(gyro)))
+}
+
+/// The estimates, each with the objections to it.
+pub fn raise(objections: &[Objection], mut estimates: Vec<Estimate>) -> Vec<Estimate> {
+    for estimate in &mut estimates {
+        let to = objections.iter().filter(|o| o.finding.measurands.contains(&estimate.id));
+        estimate.objections.extend(to.cloned());
+    }
+    estimates
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::estimate::Holds;
+    use crate::evidence::test_evidence::gyro;
+    use crate::message::Note;
+
+    #[test]
+    fn an_objection_reaches_the_estimates_that_rest_on_it_alone() {
+        let finding = || Finding {
+            measurands: vec!["angle_random_walk"],
+            holds: Holds::Nothing,
+            found: Note::new("found"),
+            advice: Note::new("advice"),
+        };
+        let checks: &[Check<bool>] =
+            &[Check { id: "one", examine: true }, Check { id: "other", examine: false }];
+        let found = objections(checks, |holds| if holds { vec![finding()] } else { vec![] });
+        let none = |id| Estimate::not_identifiable(id, "rate", None, "", "");
+        let rows = raise(&found, vec![none("angle_random_walk"), none("rate_random_walk")]);
+        assert_eq!(rows[0].objections.iter().map(|o| o.check).collect::<Vec<_>>(), ["one"]);
+        assert!(rows[1].objections.is_empty());
+    }
+
+    #[test]
+    fn nothing_is_contradicted_where_nothing_was_recorded() {
+        assert_eq!(of_gyro(&gyro()), []);
+    }
+}
