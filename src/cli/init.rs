@@ -8,12 +8,16 @@ use super::read::ReadArgs;
 use super::{exit, place};
 use crate::acceptance::analysis::Prepared;
 use crate::acceptance::column_choice::channels;
+use crate::acceptance::verdict::contradicted;
 use crate::config::procedure::EffectiveLimits;
+use crate::criticism::temperature;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::lot::stated_serial;
 use crate::ingest::{Source, open_recording};
 use crate::measurand::{
-    ANGLE_RANDOM_WALK, BIAS_INSTABILITY, QUANTIZATION, RATE_RAMP, RATE_RANDOM_WALK, RUSSIAN_ARW_10S,
+    ANGLE_RANDOM_WALK, ANGLE_RANDOM_WALK_AT_TEMPERATURE, BIAS_INSTABILITY, BIAS_LOOP_WIDTH,
+    BIAS_OVER_TEMPERATURE_PEAK_TO_PEAK, BIAS_OVER_TEMPERATURE_RMS, BIAS_RESIDUAL_RMS,
+    BIAS_TEMPERATURE_SENSITIVITY, QUANTIZATION, RATE_RAMP, RATE_RANDOM_WALK, RUSSIAN_ARW_10S,
     RUSSIAN_DRIFT_100S,
 };
 use crate::record::RunRecord;
@@ -47,6 +51,16 @@ const PROPOSED: &[&str] = &[
     RUSSIAN_ARW_10S.id,
 ];
 
+/// What a test over temperature is drafted with.
+const OVER_TEMPERATURE: &[&str] = &[
+    BIAS_OVER_TEMPERATURE_PEAK_TO_PEAK.id,
+    BIAS_OVER_TEMPERATURE_RMS.id,
+    BIAS_TEMPERATURE_SENSITIVITY.id,
+    BIAS_LOOP_WIDTH.id,
+    BIAS_RESIDUAL_RMS.id,
+    ANGLE_RANDOM_WALK_AT_TEMPERATURE.id,
+];
+
 pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
     let names = ["procedure.toml", "limits.toml", "ci.yml"];
@@ -76,6 +90,9 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
         std::fs::copy(from, to).map_err(|e| failed(to, &e))?;
     }
     let shown = paths.each_ref().map(|p| place::shown(p));
+    for note in contradicted(&record.measurands) {
+        place::print(&format!("{}\n", note.say(lang)));
+    }
     let note = Note::new("init.written")
         .with("procedure", shown[0].as_str())
         .with("limits", shown[1].as_str())
@@ -136,7 +153,9 @@ fn written(
     let name = one_line(&args.recording.display().to_string());
     let stem = args.recording.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let usable_s = record.window.usable_s;
-    let ids: Vec<&str> = [QUANTIZATION.id].into_iter().chain(PROPOSED.iter().copied()).collect();
+    let sweep = swept(record);
+    let at_rest = || [QUANTIZATION.id].into_iter().chain(PROPOSED.iter().copied()).collect();
+    let ids: Vec<&str> = if sweep.is_some() { OVER_TEMPERATURE.to_vec() } else { at_rest() };
     let measurands: Vec<_> = ids.iter().map(|id| context! { id => *id, name => title(id) }).collect();
     let channel_ids = ids_of(channels);
     let is_temperature = |(c, _): &(&Channel, &String)| c.role == Role::Temperature;
@@ -167,6 +186,11 @@ fn written(
         minimum_duration => toml_text(&minimum_duration(usable_s)),
         warm_up => toml_text(&format!("{} s", args.columns.warm_up)),
         temperature => temperature.map(|id| toml_text(id)),
+        sweep => sweep.zip(temperature).map(|((low, high), channel)| context! {
+            channel => toml_text(channel),
+            low => toml_text(&format!("{} degC", low.ceil())),
+            high => toml_text(&format!("{} degC", high.floor())),
+        }),
         measurands => measurands,
         limits => limits(record),
     };
@@ -180,11 +204,22 @@ fn written(
     ])
 }
 
-/// A limit for each quantity that every channel bounds: by the largest of them.
+/// The range of temperature that the bias followed, degC, where it did.
+fn swept(record: &RunRecord) -> Option<(f64, f64)> {
+    let mut objections = record.measurands.iter().flat_map(|m| &m.objections);
+    let found = &objections.find(|o| o.check == temperature::CHECK)?.found;
+    let end = |name: &str| found.args.get(name)?.number();
+    Some((end("low")?, end("high")?))
+}
+
+/// A limit for each quantity that every channel bounds and no check contradicts: by the largest of them.
 fn limits(record: &RunRecord) -> Vec<minijinja::Value> {
     let rows = |id: &str| record.measurands.iter().filter(|m| m.id == id).collect::<Vec<_>>();
     let proposal = |id: &&str| {
         let rows = rows(id);
+        if rows.iter().any(|m| !m.objections.is_empty()) {
+            return None;
+        }
         let upper = |m: &&crate::record::MeasurandRecord| {
             m.interval
                 .map(|i| i.high)

@@ -4,14 +4,17 @@ use super::columns::{self, Content, Listed};
 use super::tracks::{Angle, HeldLevels, LevelFinder, LinearFit, runs};
 use crate::acceptance::condition::stability_track::{StabilityFacts, StabilityTrack};
 use crate::acceptance::reading::tidy;
+use crate::criticism;
+use crate::estimate::Objection;
 use crate::i18n::{Arg, Note};
 use crate::ingest::{IngestError, IngestErrorKind, Plan, Source, StreamReport, TimeBaseSpec, prepare};
+use crate::measurand::GyroEvidence;
+use crate::measurand::evidence::Course;
 use crate::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
-use crate::noise::envelope::EnvelopeAccumulator;
+use crate::noise::envelope::{Envelope, EnvelopeAccumulator};
 use crate::noise::identification::Identification;
 use crate::noise::lines::{FALSE_ALARM_RATE, SpectralLine};
 use crate::noise::motion::{Motion, motion, together};
-use crate::noise::spectral_record::identify_terms;
 use crate::recording::{Channel, Role, SampleBlock, Sink};
 use rayon::prelude::*;
 
@@ -42,6 +45,8 @@ pub(super) struct Gyro {
     pub digest: RateDigest,
     pub lines: Vec<SpectralLine>,
     pub identification: Identification,
+    /// What checks contradict.
+    pub objections: Vec<Objection>,
     pub quietest_deg_h: Option<f64>,
     pub angle: Angle,
     pub motion: Motion,
@@ -113,7 +118,7 @@ pub(super) fn collect(
     let warming = temperatures.iter().map(Temperature::range).fold(0.0, f64::max);
     let driven = pass.driven(&channels, !time.is_known());
     let correlated = pass.correlated(&channels);
-    let gyros = pass.gyros(&channels, tau0_s, warming);
+    let gyros = pass.gyros(&channels, &report, tau0_s, warming);
     Ok(Inspection {
         places,
         time,
@@ -177,6 +182,7 @@ fn spec(time: &TimeBase) -> TimeBaseSpec {
 struct GyroTrack {
     slot: usize,
     digest: RateAccumulator,
+    envelope: EnvelopeAccumulator,
     angle: Angle,
 }
 
@@ -199,6 +205,7 @@ impl Pass {
         let gyros = slots(Role::is_gyro).filter(|_| timed).map(|slot| GyroTrack {
             slot,
             digest: RateAccumulator::new(DigestPlan::new(tau0_s)),
+            envelope: EnvelopeAccumulator::new(),
             angle: Angle::default(),
         });
         let temperatures = slots(|r| r == Role::Temperature)
@@ -220,19 +227,34 @@ impl Pass {
         }
     }
 
-    fn gyros(self, channels: &[Channel], tau0_s: f64, warming_deg_c: f64) -> Vec<Gyro> {
+    fn gyros(
+        self,
+        channels: &[Channel],
+        report: &StreamReport,
+        tau0_s: f64,
+        warming_deg_c: f64,
+    ) -> Vec<Gyro> {
+        let course = |(slot, _, envelope): &(usize, StabilityTrack, EnvelopeAccumulator)| {
+            Some((channels.get(*slot)?.id.clone(), envelope.finish()))
+        };
+        let temperatures: Vec<(String, Envelope)> = self.temperatures.iter().filter_map(course).collect();
         let with = |track: GyroTrack| {
             let name = channels.get(track.slot)?.id.clone();
             let digest = track.digest.finish();
-            let noise = identify_terms(&name, &digest, tau0_s, FALSE_ALARM_RATE);
             let quietest_deg_h = digest.quietest_deg_h;
+            let step_deg_h = report.channels.get(track.slot).and_then(|c| c.values.quantization_step);
+            let motion = motion(&digest.blocks, tau0_s, quietest_deg_h, warming_deg_c);
+            let first = GyroEvidence::first_look(name, digest, tau0_s, FALSE_ALARM_RATE, step_deg_h);
+            let course = Course { rate: track.envelope.finish(), temperatures: temperatures.clone() };
+            let evidence = GyroEvidence { motion, course: Some(course), ..first };
             Some(Gyro {
                 slot: track.slot,
-                name,
-                motion: motion(&digest.blocks, tau0_s, quietest_deg_h, warming_deg_c),
-                digest,
-                lines: noise.lines,
-                identification: noise.ranged.identification,
+                objections: criticism::of_gyro(&evidence).to_vec(),
+                name: evidence.channel,
+                motion,
+                digest: evidence.digest,
+                lines: evidence.lines,
+                identification: evidence.identification,
                 quietest_deg_h,
                 angle: track.angle,
             })
@@ -288,6 +310,7 @@ impl Sink for Pass {
         for gyro in &mut self.gyros {
             let Some(values) = block.values.get(gyro.slot) else { continue };
             gyro.digest.push(values, block.first_index, block.continues);
+            gyro.envelope.push(values, block.first_index);
             gyro.angle.push(values, self.tau0_s);
         }
         for (slot, track, envelope) in &mut self.temperatures {

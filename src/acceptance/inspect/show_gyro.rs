@@ -4,6 +4,7 @@ use super::collect::{DrivenChannel, Gyro, Inspection};
 use super::layout::{CONTINUED, Page, word};
 use super::quantity::{plain, rate, rates, time};
 use crate::i18n::{Arg, Note};
+use crate::measurand::ANGLE_RANDOM_WALK;
 use crate::noise::family::Estimator;
 use crate::noise::lines::SpectralLine;
 use crate::noise::motion::Motion;
@@ -55,7 +56,11 @@ fn one(page: &mut Page, found: &Inspection, gyro: &Gyro) {
     }
     page.row(word("inspect.motion"), motion(gyro));
     if still {
-        let note = if described(gyro) { noise(found, gyro) } else { allan(found, gyro) };
+        let note = match contradicted(gyro, ANGLE_RANDOM_WALK.id) {
+            _ if !described(gyro) => allan(found, gyro),
+            Some(contradicted) => contradicted,
+            None => noise(found, gyro),
+        };
         page.row(word("inspect.noise"), note);
     } else if let Some(quiet) = gyro.quietest_deg_h {
         let note = Note::new("inspect.noise_quietest").with("sigma", rate(quiet));
@@ -119,6 +124,17 @@ const MAX_MISFIT: f64 = 3.0;
 /// True where the noise model describes the spectrum well enough for its terms to mean something.
 pub(super) fn described(gyro: &Gyro) -> bool {
     gyro.identification.misfit.per_dof < MAX_MISFIT
+}
+
+/// What a check contradicts of a quantity.
+pub(super) fn contradicted(gyro: &Gyro, measurand: &str) -> Option<Note> {
+    let objection = gyro.objections.iter().find(|o| o.finding.measurands.contains(&measurand))?;
+    Some(
+        Note::new("inspect.contradicted")
+            .with("check", Arg::key("criticism", objection.check))
+            .with("found", objection.finding.found.clone())
+            .with("advice", objection.finding.advice.clone()),
+    )
 }
 
 /// What the Allan deviation reads where no model holds: at one sample, 1, 10 and 100 s, as far as T/5.

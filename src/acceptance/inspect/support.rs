@@ -4,8 +4,10 @@ use super::clock_check::{ClockRemark, clock_remark, earth, is_mains};
 use super::collect::{DrivenChannel, Gyro, Inspection, Temperature};
 use super::layout::{CONTINUED, Page, word};
 use super::quantity::{count, names, plain, rates, time, time_both};
-use super::show_gyro::{described, strongest};
+use super::show_gyro::{contradicted, described, strongest};
+use crate::criticism::temperature::MIN_RANGE_DEG_C;
 use crate::i18n::Note;
+use crate::measurand::{BIAS_INSTABILITY, STATIC_BIAS};
 use crate::noise::data::NoiseType;
 use crate::noise::expected::expected_upper_limit;
 use crate::noise::motion::Motion;
@@ -13,8 +15,6 @@ use crate::recording::Role;
 
 /// Usable time that the programme for random drift asks for, s.
 const STATIC_TEST_S: f64 = 36_000.0;
-/// Range of temperature from which a bias can be fitted against it with profit, degC.
-const MIN_TEMPERATURE_RANGE_DEG_C: f64 = 10.0;
 /// Levels of a table rate that a straight line with a judgement of its linearity needs.
 const MIN_LEVELS: usize = 5;
 /// Lines of a channel that are held against the mains.
@@ -82,6 +82,9 @@ fn static_test(found: &Inspection) -> Note {
     if found.gyros.iter().any(|g| g.motion == Motion::Unknown) {
         return Note::new("inspect.static_too_few");
     }
+    if let Some(contradicted) = found.gyros.iter().find_map(|g| contradicted(g, STATIC_BIAS.id)) {
+        return Note::new("inspect.static_contradicted").with("why", contradicted);
+    }
     let length = found.gyros.iter().map(|g| usable_s(found, g)).fold(f64::INFINITY, f64::min);
     let key = if length >= STATIC_TEST_S { "inspect.static_yes" } else { "inspect.static_short" };
     Note::new(key).with("length", time(length))
@@ -125,6 +128,10 @@ fn flicker(page: &mut Page, found: &Inspection) {
             page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
             continue;
         }
+        if let Some(note) = contradicted(gyro, BIAS_INSTABILITY.id) {
+            page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
+            continue;
+        }
         let estimate = &gyro.identification.bias_instability;
         let background = gyro.identification.supported.with(NoiseType::Flicker, 0.0);
         let smallest =
@@ -155,7 +162,7 @@ fn temperature(found: &Inspection) -> Note {
     let Temperature { runs: (up, down), .. } = *widest;
     if widest.range() < 1.0 {
         about("inspect.temperature_constant")
-    } else if widest.range() < MIN_TEMPERATURE_RANGE_DEG_C {
+    } else if widest.range() < MIN_RANGE_DEG_C {
         about("inspect.temperature_narrow")
     } else if !found.time.is_known() {
         about("inspect.temperature_untimed")
