@@ -8,6 +8,7 @@ mod cli;
 mod compare;
 mod compare_study;
 mod contract;
+mod court;
 mod coverage;
 mod datasheet;
 mod documents;
