@@ -318,6 +318,9 @@ pub fn simulate(model: &Composite, hours: f64, tau0_s: f64, seed: u64) -> GyroEv
         earth: None,
         over_temperature: None,
         warm_up: None,
+        course: None,
+        forgotten_step_deg_h: None,
+        objections: Default::default(),
     }
 }
 

@@ -104,6 +104,9 @@ fn gyro() -> GyroEvidence {
         digest,
         over_temperature: None,
         warm_up: None,
+        course: None,
+        forgotten_step_deg_h: None,
+        objections: Default::default(),
     }
 }
 
