@@ -11,9 +11,11 @@ mod copied_run;
 mod long_process;
 mod rate_rounding;
 mod rejected_model;
+mod response;
 mod slow_part_removed;
 mod step;
 pub mod temperature;
+mod warm_up;
 mod white_floor;
 
 use crate::estimate::{Estimate, Finding, Objection};
@@ -73,10 +75,11 @@ pub static OF_GYRO: &[Check<OfGyro>] = &[
     Check { id: "allan_curve", examine: allan_curve::examine },
     Check { id: "step", examine: step::examine },
     Check { id: "long_process", examine: long_process::examine },
+    Check { id: "warm_up", examine: warm_up::examine },
 ];
 
 /// Checks of a comparison without and with an influence.
-pub static OF_COMPARISON: &[Check<OfComparison>] = &[];
+pub static OF_COMPARISON: &[Check<OfComparison>] = &[Check { id: "response", examine: response::examine }];
 
 /// Checks of a series of switchings-on.
 pub static OF_RUNS: &[Check<OfRuns>] = &[Check { id: "copied_run", examine: copied_run::examine }];

@@ -4,6 +4,7 @@ use super::cut::{Cut, cut, span_s};
 use super::gls;
 use super::intervals::Intervals;
 use super::nuisance::{Course, Following, Nuisance, following};
+use super::response::{ByMeans, Changes, Courses, Response, by_means};
 use super::setup::ComparisonTest;
 use crate::estimate::chi_square_tail;
 use crate::numeric::reml::{Combination, Fit};
@@ -67,6 +68,10 @@ pub struct Comparison {
     pub drift: bool,
     /// True when intervals of one level differ by more than their noise.
     pub scatter: bool,
+    /// The delay with which the bias follows the level; `None` where none is seen.
+    pub response: Option<Response>,
+    /// Per unit of the drive by the plain means of the intervals, one an axis; empty where too few are left over.
+    pub by_means: Vec<ByMeans>,
     /// How the temperature of the unit goes with the levels; `None` without one.
     pub temperature: Option<Following>,
     /// How further recorded quantities go with the levels.
@@ -128,17 +133,37 @@ pub fn evaluate(
     let scaled: Vec<DVector<f64>> = used.iter().zip(&sizes).map(|(a, s)| &by_axis[*a] / *s).collect();
     let (x, first) = base(&scaled);
     let (line, scatter) = solve(&cut, &states, &x)?;
-    let per_unit =
-        sizes.iter().enumerate().map(|(k, s)| scale(&line.coefficient(first + k), 1.0 / s)).collect();
+    let (known, components) = (known(&cut), noise(&cut, &states));
+    let of_intervals = |axis: &usize| -> Vec<f64> {
+        let at = |k: usize| if states.is_off(k) { 0.0 } else { drive(found.list[k].levels[*axis]) };
+        (0..found.list.len()).map(at).collect()
+    };
+    let changes = Changes::new(blocks, found, test.settling_s, used.iter().map(of_intervals).collect());
+    let own = levels(&states);
+    let courses = Courses { cut: &cut, changes: &changes, known: &known, components: &components, own };
+    let response = courses.find(&x);
+    let coefficients = |x: &DMatrix<f64>, plain: &Fit| -> Vec<Combination> {
+        let settled = response.as_ref().and_then(|r| courses.settled(x, r));
+        settled.unwrap_or_else(|| (0..x.ncols()).map(|k| plain.coefficient(k)).collect())
+    };
+    let of_line = coefficients(&x, &line);
+    let per = |all: &[Combination]| -> Vec<Combination> {
+        sizes.iter().enumerate().filter_map(|(k, s)| Some(scale(all.get(first + k)?, 1.0 / s))).collect()
+    };
+    let per_unit = per(&of_line);
+    let plain = by_means(&cut, &x, found.list.len()).map_or(vec![], |all| per(&all));
+    let by_means = plain.into_iter().zip(&per_unit).map(|(means, model)| ByMeans { means, model: *model });
+    let by_means = by_means.collect();
     let indicators: Vec<DVector<f64>> = (0..states.list.len())
         .map(|s| DVector::from_fn(n, |i, _| f64::from(states.of[cut.of[i]] == Some(s))))
         .collect();
     let (x, first) = base(&indicators);
     let (each, _) = solve(&cut, &states, &x)?;
+    let of_levels = coefficients(&x, &each);
     let shift = |(k, (a, level)): (usize, &(usize, f64))| Shift {
         axis: found.axes[*a].clone(),
         level: *level,
-        change: each.coefficient(first + k),
+        change: of_levels[first + k],
     };
     let shifts: Vec<Shift> = states.list.iter().enumerate().map(shift).collect();
     let drives: Vec<Vec<f64>> = used
@@ -161,6 +186,8 @@ pub fn evaluate(
         intervals: means(blocks, found, &states, &cut, drift.then_some(&time))?,
         drift,
         scatter,
+        response,
+        by_means,
         temperature: beside.temperature.as_ref().and_then(|what| course(&cut.temperature, what)),
         others,
         test: test.clone(),
@@ -345,6 +372,15 @@ impl Comparison {
     /// True where something that was recorded goes with the levels, so that its effect cannot be told from theirs.
     pub fn confounded(&self) -> bool {
         self.too_warm().is_some() || self.others.iter().any(|o| self.disturbs(o))
+    }
+
+    /// True where the change after settling is not shown: the bias still followed the level at the end of the intervals, or
+    /// the plain means of the intervals contradict the model.
+    pub fn unsettled(&self) -> bool {
+        match &self.response {
+            Some(response) => response.goes_on(),
+            None => self.by_means.iter().any(ByMeans::contradicts),
+        }
     }
 
     /// Difference of temperature between the levels where it is more than allowed, degC.

@@ -14,6 +14,7 @@ pub mod intervals;
 pub mod nuisance;
 pub mod range;
 pub mod repeatability;
+pub mod response;
 pub mod runs;
 pub mod setup;
 

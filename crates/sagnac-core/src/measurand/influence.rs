@@ -79,7 +79,7 @@ fn of_temperature(found: &Comparison, degrees: Option<&f64>) -> f64 {
 }
 
 fn row(m: &Measurand, found: &Comparison, place: &str, c: &Combination, others: &[f64]) -> Estimate {
-    let row = if found.confounded() {
+    let row = if found.confounded() || found.unsettled() {
         m.not_identifiable(place, None, METHOD)
     } else {
         m.measured(place, c.value, spread(c, 1.0, others), METHOD)
@@ -98,6 +98,7 @@ fn remarks(found: &Comparison) -> Vec<Note> {
     }
     if let Some(d) = found.too_warm() {
         notes.push(Note::new("compared.warmer").with("difference", Arg::figures(d.abs(), 2)));
+    notes.extend(late(found));
     } else if let Some(t) = found.temperature.as_ref().filter(|t| t.follows()) {
         let difference = Arg::figures(t.difference().abs(), 2);
         notes.push(match found.test.temperature_coefficient {
@@ -113,12 +114,19 @@ fn remarks(found: &Comparison) -> Vec<Note> {
 
 #[cfg(test)]
 mod tests {
+/// What the values are of, where the bias followed the level late and had settled.
+fn late(found: &Comparison) -> Option<Note> {
+    let response = found.response.as_ref().filter(|r| !r.goes_on())?;
+    Some(Note::new("compared.responded").with("time_constant", Arg::figures(response.time_constant_s, 2)))
+}
+
     use super::super::test_evidence::{combination, near, notes, number, shows, student, withholds};
     use super::*;
     use crate::influence::comparison::{IntervalMean, Shift};
     use crate::influence::nuisance::{Following, Nuisance};
     use crate::influence::setup::ComparisonTest;
 
+    use crate::influence::response::{ByMeans, Response};
     fn following(temperature: bool, shifts: [f64; 2], by_chance: f64) -> Following {
         let what = Nuisance { channel: "beside".into(), unit: "degC", temperature };
         Following { what, shifts: shifts.to_vec(), per_drive: vec![0.5, -2.0], by_chance }
@@ -165,6 +173,8 @@ mod tests {
             scatter: false,
             temperature: Some(following(true, [0.3, -0.6], 0.5)),
             others: vec![],
+            response: None,
+            by_means: vec![],
         }
     }
 
@@ -241,3 +251,29 @@ mod tests {
         assert_eq!(notes(row), ["compared.intervals", "compared.in_step"]);
     }
 }
+
+    #[test]
+    fn a_response_that_goes_on_and_means_that_contradict_leave_no_value() {
+        let mut found = compared(Influence::Supply);
+        let contradiction = |found: &Comparison| {
+            let row = rows(&SUPPLY_SENSITIVITY, found).remove(0);
+            withholds(&row, None, "alternating_intervals");
+            let only = row.objections.first().map(|o| (o.check, o.finding.found.id.clone()));
+            assert_eq!(row.objections.len(), 1, "{row:?}");
+            only.map_or(String::new(), |(check, id)| format!("{check}: {id}"))
+        };
+        let differing =
+            |means: f64| ByMeans { means: combination(means, 0.03), model: combination(-2.0, 0.03) };
+        found.by_means = vec![differing(-1.8)];
+        assert_eq!(contradiction(&found), "response: criticism_found.interval_means");
+        found.by_means = vec![differing(-1.95)];
+        shows(&rows(&SUPPLY_SENSITIVITY, &found)[0], -2.0, "alternating_intervals");
+        // A response that is seen explains the means.
+        found.by_means = vec![differing(-1.8)];
+        found.response = Some(Response { time_constant_s: 60.0, remaining: 0.13 });
+        assert_eq!(contradiction(&found), "response: criticism_found.still_responding");
+        found.response = Some(Response { time_constant_s: 20.0, remaining: 0.002 });
+        let row = rows(&SUPPLY_SENSITIVITY, &found).remove(0);
+        assert_eq!(notes(&row)[1], "compared.responded");
+        assert!(row.objections.is_empty() && row.value.is_some());
+    }

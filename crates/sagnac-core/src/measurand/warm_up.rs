@@ -67,6 +67,10 @@ fn unknown(m: &Measurand, row: Estimate, why: Missing, is_time: bool) -> Estimat
 
 fn time(m: &Measurand, found: &WarmUpFindings, channel: &str) -> Estimate {
     let r = &found.time;
+    // The objection says why.
+    if found.is_contradicted() {
+        return m.not_identifiable(channel, None, METHOD);
+    }
     if found.too_short || found.drifts_on() {
         let hours = Arg::figures(found.length_s / 3600.0, 3);
         let note = if found.drifts_on() {
@@ -94,6 +98,7 @@ mod tests {
     use super::*;
     use crate::estimate::Spread;
     use crate::temperature::read::Reading;
+    use crate::temperature::stays::Departure;
     use crate::temperature::warm_up::Settled;
     use crate::temperature::{StartAsked, WarmUpTest};
 
@@ -111,7 +116,10 @@ mod tests {
             start,
             time: reading(time_s),
             always_inside: false,
-            transient: reading(-3.0),
+            transient: Reading {
+                value: -3.0,
+                spread: Spread::Curve(vec![(-2.0, -3.4), (0.0, -3.0), (2.0, -2.6)]),
+            },
             time_constants_s: vec![90.0, 600.0],
             length_s: 5400.0,
             blocks: vec![],
@@ -119,6 +127,8 @@ mod tests {
             final_deg_h: 0.0,
             too_short: false,
             settled: Settled { remaining: reading(0.0), at_most_deg_h: 0.05, at_least_s: 700.0 },
+            departure: None,
+            smoothed_s: None,
         }
     }
 
@@ -210,6 +220,21 @@ mod tests {
         at_least(&time, Some(700.0));
         near(number(&time, "thermal.not_settled", "hours"), 1.5);
         near(number(&time, "thermal.not_settled", "band"), 0.05);
+    }
+
+    #[test]
+    fn what_contradicts_the_decays_leaves_the_time_open() {
+        let mut again = found(Start::Shown(0.0), 480.0);
+        again.departure = Some(Departure { from_s: 6000.0, to_s: 6600.0, deg_h: 0.12 });
+        let time = row(&WARM_UP_TIME, &again);
+        withholds(&time, None, "decays_gls");
+        (again.departure, again.smoothed_s) = (None, Some(60.0));
+        withholds(&row(&WARM_UP_TIME, &again), None, "decays_gls");
+        // Where the start is only declared, a unit without a transient may have been warm before.
+        let mut warm = found(Start::Declared, 20.0);
+        warm.transient = reading(5.0);
+        let time = row(&WARM_UP_TIME, &warm);
+        withholds(&time, None, "decays_gls");
     }
 
     #[test]

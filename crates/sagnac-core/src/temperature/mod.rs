@@ -26,6 +26,7 @@ pub mod sampler;
 pub mod segments;
 pub mod separate;
 pub mod start;
+pub mod stays;
 mod test;
 pub mod track;
 pub mod warm_up;

@@ -11,6 +11,7 @@ use super::gls::{Fitted, Modes};
 use super::read::{self, Reading};
 use super::sampler::{self, Draw, Range};
 use super::start::Start;
+use super::stays::{Course, Departure};
 use super::test::WarmUpTest;
 use super::track::{Means, bridged};
 use crate::numeric::optimize::coordinate_ascent;
@@ -60,12 +61,29 @@ pub struct WarmUpFindings {
     pub too_short: bool,
     /// What the transient has still to go at the end of the record.
     pub settled: Settled,
+    /// The bias out of its band again after the transient, by running means.
+    pub departure: Option<Departure>,
+    /// Time over which the output was smoothed before delivery, s.
+    pub smoothed_s: Option<f64>,
 }
 
 impl WarmUpFindings {
     /// True when what the transient has still to go may leave the band: the end of the record is no final value.
     pub fn drifts_on(&self) -> bool {
         self.settled.at_most_deg_h > self.test.band_deg_h
+    }
+
+    /// True where something contradicts the time that the decays give.
+    pub fn is_contradicted(&self) -> bool {
+        let may_have_been_warm = self.start == Start::Declared && self.without_transient();
+        self.departure.is_some() || self.smoothed_s.is_some() || may_have_been_warm
+    }
+
+    /// True when the bias was not seen to move after switching on.
+    pub fn without_transient(&self) -> bool {
+        let r = &self.transient;
+        self.time.value <= 0.0
+            || r.spread.interval(r.value, 0.95).is_none_or(|i| i.low <= 0.0 && i.high >= 0.0)
     }
 }
 
@@ -135,7 +153,12 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest, start: Start) -> Opti
     let level = mean(&y) - mean(&raw);
     let modelled: Vec<f64> = raw.iter().map(|v| v + level).collect();
     let upper = time.spread.bound(time.value, 0.975).unwrap_or(length_s);
+    let (block_s, first_s) = (coarse.block_s, *times.first()?);
+    let course = Course { values: &y, modelled: &modelled, block_s, first_s };
+    let final_deg_h = mean(modelled.get(from..)?);
     Some(WarmUpFindings {
+        departure: course.departure(upper, final_deg_h, test.band_deg_h),
+        smoothed_s: course.smoothed_s(),
         test: test.clone(),
         start,
         always_inside: upper <= 0.0,
@@ -146,7 +169,7 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest, start: Start) -> Opti
         time_constants_s: shape,
         length_s,
         blocks: times.iter().copied().zip(y.iter().copied()).collect(),
-        final_deg_h: mean(modelled.get(from..)?),
+        final_deg_h,
         modelled,
     })
 }

@@ -1,0 +1,241 @@
+//! A bias that follows the level of an influence with a delay, as behind a first-order lag.
+//!
+//! A regulator that warms, a shield that saturates slowly: where this takes longer than the settling that is left out, the
+//! bias still moves within the intervals. Slow noise would explain it just as well, and the change between levels would come
+//! out too small. So the course of the lag is set beside the level, over a range of time constants, before the noise gets its
+//! share: `y = … + k·x(t) + a·(z(t) − x(t))`, where z follows the drive x with the time constant and k is the change after it
+//! has settled.
+
+use super::cut::{Cut, span_s};
+use super::gls;
+use super::intervals::Intervals;
+use crate::estimate::{Spread, normal_quantile};
+use crate::numeric::reml::{Combination, Fit};
+use crate::rate_table::blocks::Blocks;
+use nalgebra::{DMatrix, DVector};
+
+/// Probability by chance, over all time constants, from which a response counts as seen.
+const SEEN: f64 = 2e-3;
+/// Share of a step still to come at the end of an interval up to which the response has ended there.
+const ENDED: f64 = 0.05;
+/// Ratio of neighbouring time constants in the search, and in its refinement.
+const RATIOS: (f64, f64) = (2.0, 1.2);
+/// Longest time constant, in lengths of the longest interval.
+const LONGEST: f64 = 8.0;
+/// Loss of twice the log-likelihood up to which a time constant comes into question with 95 %.
+const IN_QUESTION: f64 = 3.84;
+/// Coverage of the intervals that two estimates of one change are compared by.
+const COVERAGE: f64 = 0.95;
+
+/// A response that was seen.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Response {
+    /// Time constant, s.
+    pub time_constant_s: f64,
+    /// Share of a step that is still to come at the end of the shortest interval.
+    pub remaining: f64,
+}
+
+impl Response {
+    /// True where the response goes on at the end of an interval, so that the settled change is extrapolated.
+    pub fn goes_on(&self) -> bool {
+        self.remaining > ENDED
+    }
+
+    /// Time after a change of level by which the response has ended, s.
+    pub fn waiting_s(&self) -> f64 {
+        -ENDED.ln() * self.time_constant_s
+    }
+}
+
+/// When the level changed, and to what.
+pub struct Changes {
+    /// Start of every interval with the settling that is left out, s.
+    starts_s: Vec<f64>,
+    /// End of every interval, s.
+    ends_s: Vec<f64>,
+    /// Drive of every interval along each axis that is used.
+    drives: Vec<Vec<f64>>,
+}
+
+/// The mean as a fit of columns: what does not depend on the time constant, and the lags beside it.
+pub struct Courses<'a> {
+    /// Rows.
+    pub cut: &'a Cut,
+    /// When the level changed.
+    pub changes: &'a Changes,
+    /// Covariance that is known.
+    pub known: &'a DMatrix<f64>,
+    /// Components of the noise.
+    pub components: &'a [DMatrix<f64>],
+    /// How many of them are kept however small.
+    pub own: usize,
+}
+
+/// A fit with lags of one time constant.
+struct Tried {
+    time_constant_s: f64,
+    fit: Fit,
+    /// Twice the log-likelihood, comparable between sets of columns of one size.
+    twice_log_likelihood: f64,
+    /// Probability of so large a share of the lag by chance.
+    by_chance: f64,
+}
+
+impl Changes {
+    /// Of intervals whose settling was left out; `drives` are those of every interval along each axis.
+    pub fn new(blocks: &Blocks, found: &Intervals, settling_s: f64, drives: Vec<Vec<f64>>) -> Changes {
+        let start = |at: usize| span_s(blocks, &blocks.list[at]).0 - settling_s;
+        Changes {
+            starts_s: found.list.iter().map(|i| start(i.blocks.0)).collect(),
+            ends_s: found.list.iter().map(|i| span_s(blocks, &blocks.list[i.blocks.1 - 1]).1).collect(),
+            drives,
+        }
+    }
+
+    fn lengths(&self) -> impl Iterator<Item = f64> {
+        self.starts_s.iter().zip(&self.ends_s).map(|(from, to)| to - from)
+    }
+
+    /// What a lag is behind the drive along one axis, by row. The level of the first interval had been there before.
+    fn behind(&self, axis: usize, cut: &Cut, time_constant_s: f64) -> DVector<f64> {
+        let drive = &self.drives[axis];
+        let mut behind = vec![0.0; drive.len()];
+        for k in 1..drive.len() {
+            let passed = self.starts_s[k] - self.starts_s[k - 1];
+            behind[k] = behind[k - 1] * (-passed / time_constant_s).exp() + drive[k - 1] - drive[k];
+        }
+        DVector::from_fn(cut.rows.len(), |i, _| {
+            let k = cut.of[i];
+            let half = 0.5 * cut.rows.length_s[i] / time_constant_s;
+            let mean = if half > 1e-6 { half.sinh() / half } else { 1.0 };
+            behind[k] * (-(cut.rows.mid_s[i] - self.starts_s[k]) / time_constant_s).exp() * mean
+        })
+    }
+
+    /// The lags along every axis that move anything.
+    fn columns(&self, cut: &Cut, time_constant_s: f64) -> Vec<DVector<f64>> {
+        let all = (0..self.drives.len()).map(|axis| self.behind(axis, cut, time_constant_s));
+        all.filter(|c| c.amax() > 0.0).map(|c| &c / c.amax()).collect()
+    }
+}
+
+impl Courses<'_> {
+    fn tried(&self, x: &DMatrix<f64>, time_constant_s: f64) -> Option<Tried> {
+        let lags = self.changes.columns(self.cut, time_constant_s);
+        let first = x.ncols();
+        let mut columns: Vec<DVector<f64>> = x.column_iter().map(|c| c.into_owned()).collect();
+        columns.extend(lags);
+        if columns.len() == first || columns.len() >= self.cut.rows.len() {
+            return None;
+        }
+        let wide = DMatrix::from_columns(&columns);
+        let fit = gls::pruned_fit(&self.cut.y, &wide, self.known, self.components, self.own)?;
+        // A restricted likelihood depends on the scale of the columns; without it two sets of one size compare.
+        let scale = (wide.transpose() * &wide).cholesky()?.l().diagonal().map(f64::ln).sum();
+        let chance = |at: usize| {
+            let c = fit.coefficient(at);
+            let spread = Spread::StudentT { standard_uncertainty: c.standard, dof: c.dof };
+            2.0 * spread.probability_above(0.0, c.value.abs()).unwrap_or(0.5)
+        };
+        let axes = (columns.len() - first) as f64;
+        let by_chance = (first..columns.len()).map(chance).fold(1.0, f64::min) * axes;
+        let twice_log_likelihood = fit.twice_log_likelihood + 2.0 * scale;
+        Some(Tried { time_constant_s, fit, twice_log_likelihood, by_chance })
+    }
+
+    /// Looks for a response beside the columns of the drive.
+    pub fn find(&self, x: &DMatrix<f64>) -> Option<Response> {
+        let mut lengths: Vec<f64> = self.cut.rows.length_s.clone();
+        lengths.sort_by(f64::total_cmp);
+        let low = *lengths.get(lengths.len() / 2)?;
+        let high = LONGEST * self.changes.lengths().fold(0.0, f64::max);
+        let count = ((high / low).ln() / RATIOS.0.ln()).ceil().max(1.0) as i32;
+        let tried: Vec<Tried> = (0..=count).filter_map(|i| self.tried(x, low * RATIOS.0.powi(i))).collect();
+        let all = tried.len() as f64;
+        if !tried.iter().any(|t| t.by_chance * all < SEEN) {
+            return None;
+        }
+        let best = self.refined(x, tried)?;
+        let shortest = self.changes.lengths().fold(f64::INFINITY, f64::min);
+        let time_constant_s = best.first()?.time_constant_s;
+        Some(Response { time_constant_s, remaining: (-shortest / time_constant_s).exp() })
+    }
+
+    /// The time constants about the best one that come into question, the best first.
+    fn refined(&self, x: &DMatrix<f64>, mut tried: Vec<Tried>) -> Option<Vec<Tried>> {
+        let best = |list: &[Tried]| {
+            list.iter()
+                .max_by(|a, b| a.twice_log_likelihood.total_cmp(&b.twice_log_likelihood))
+                .map(|t| t.time_constant_s)
+        };
+        let middle = best(&tried)?;
+        let steps = (RATIOS.0.ln() / RATIOS.1.ln()).floor() as i32;
+        tried.extend(
+            (-steps..=steps).filter(|i| *i != 0).filter_map(|i| self.tried(x, middle * RATIOS.1.powi(i))),
+        );
+        tried.sort_by(|a, b| b.twice_log_likelihood.total_cmp(&a.twice_log_likelihood));
+        let top = tried.first()?.twice_log_likelihood;
+        tried.retain(|t| top - t.twice_log_likelihood <= IN_QUESTION);
+        Some(tried)
+    }
+
+    /// Coefficients of the columns with the lag of a response beside them, and with what is not known of its time constant.
+    pub fn settled(&self, x: &DMatrix<f64>, response: &Response) -> Option<Vec<Combination>> {
+        let list = self.refined(x, vec![self.tried(x, response.time_constant_s)?])?;
+        let best = list.first()?;
+        let of = |at: usize| {
+            let c = best.fit.coefficient(at);
+            let values = list.iter().map(|t| t.fit.coefficient(at).value);
+            let (low, high) =
+                values.fold((c.value, c.value), |(low, high), v| (f64::min(low, v), f64::max(high, v)));
+            let half = 0.5 * (high - low) / normal_quantile(0.5 + 0.5 * COVERAGE);
+            Combination { standard: c.standard.hypot(half), ..c }
+        };
+        Some((0..x.ncols()).map(of).collect())
+    }
+}
+
+/// The change per drive along one axis by plain means of the intervals, which know nothing of the noise.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ByMeans {
+    /// What the interval means give, with the scatter about them.
+    pub means: Combination,
+    /// What the model of the noise gives.
+    pub model: Combination,
+}
+
+impl ByMeans {
+    /// True where the two differ by more than the intervals of both allow.
+    pub fn contradicts(&self) -> bool {
+        let half = |c: &Combination| {
+            let spread = Spread::StudentT { standard_uncertainty: c.standard, dof: c.dof };
+            spread.interval(0.0, COVERAGE).map_or(f64::INFINITY, |i| i.high)
+        };
+        (self.means.value - self.model.value).abs() > half(&self.means) + half(&self.model)
+    }
+}
+
+/// Least squares through the plain means of the intervals on the means of the columns; `None` where none are left over.
+pub fn by_means(cut: &Cut, x: &DMatrix<f64>, intervals: usize) -> Option<Vec<Combination>> {
+    let dof = intervals.checked_sub(x.ncols()).filter(|d| *d > 0)? as f64;
+    let mut weights = vec![0.0; intervals];
+    let mut y = DVector::zeros(intervals);
+    let mut columns = DMatrix::zeros(intervals, x.ncols());
+    for (i, k) in cut.of.iter().enumerate() {
+        let weight = cut.rows.length_s[i];
+        weights[*k] += weight;
+        y[*k] += weight * cut.y[i];
+        (0..x.ncols()).for_each(|j| columns[(*k, j)] += weight * x[(i, j)]);
+    }
+    for (k, weight) in weights.iter().enumerate() {
+        y[k] /= weight;
+        columns.row_mut(k).scale_mut(1.0 / weight);
+    }
+    let normal = (columns.transpose() * &columns).cholesky()?;
+    let b = normal.solve(&(columns.transpose() * &y));
+    let left = (&y - &columns * &b).norm_squared() / dof;
+    let inverse = normal.inverse();
+    let of = |j: usize| Combination { value: b[j], standard: (left * inverse[(j, j)]).sqrt(), dof };
+    Some((0..x.ncols()).map(of).collect())
+}

@@ -1,0 +1,162 @@
+//! Whether a bias stays in its band once the transient after switching on has ended, by running means alone.
+//!
+//! The time of the transient rests on decays. A bias that leaves the band again later, because a door was opened or a heater
+//! switched, is no decay: slow noise takes it, and the time says nothing of it. The running mean shares no assumption with the
+//! decays: it leaves the band or it does not. A departure counts where it is far outside the white noise that neighbouring
+//! means show.
+//!
+//! What was smoothed before delivery has no such noise left, and its transient is that of the filter. It shows by deviations
+//! that grow with the averaging time from the shortest one on.
+
+/// Standard deviations of a running mean beyond which it is no white noise.
+const BEYOND_NOISE: f64 = 5.0;
+/// Longest running mean, as a share of the record.
+const MAX_SHARE: f64 = 0.125;
+/// Longest averaging time in blocks at which smoothing is looked for.
+const MAX_SMOOTHED: usize = 64;
+/// Ratio of variances of means over longer and the shortest time from which the output was smoothed. Without smoothing
+/// white noise makes it less than 1.
+const SMOOTHED_RATIO: f64 = 2.0;
+
+/// A bias that left its band after the transient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Departure {
+    /// Start of the first running mean outside, s from switching on.
+    pub from_s: f64,
+    /// End of the last one, s.
+    pub to_s: f64,
+    /// Farthest running mean from the final value, deg/h.
+    pub deg_h: f64,
+}
+
+/// Block means of a record with what is known of them.
+pub struct Course<'a> {
+    /// Means, deg/h.
+    pub values: &'a [f64],
+    /// The transient with the mean of the record, deg/h.
+    pub modelled: &'a [f64],
+    /// Length of a block, s.
+    pub block_s: f64,
+    /// Middle of the first block, s.
+    pub first_s: f64,
+}
+
+/// Mean square of second differences of means over `m` blocks, as a variance of such a mean; white noise gives its variance.
+fn variance_of_means(values: &[f64], m: usize) -> Option<f64> {
+    let means: Vec<f64> = values.chunks_exact(m).map(|c| c.iter().sum::<f64>() / m as f64).collect();
+    let triples = means.iter().zip(means.iter().skip(1)).zip(means.iter().skip(2));
+    let squares: Vec<f64> = triples.map(|((a, b), c)| (a - 2.0 * b + c).powi(2) / 6.0).collect();
+    (squares.len() >= 8).then(|| squares.iter().sum::<f64>() / squares.len() as f64)
+}
+
+impl Course<'_> {
+    fn residual(&self) -> Vec<f64> {
+        self.values.iter().zip(self.modelled).map(|(y, m)| y - m).collect()
+    }
+
+    /// Departures from the band about the final value that begin after a time.
+    pub fn departure(&self, after_s: f64, final_deg_h: f64, band_deg_h: f64) -> Option<Departure> {
+        let residual = self.residual();
+        let white = variance_of_means(&residual, 1)?;
+        let first = ((after_s - self.first_s) / self.block_s).ceil().max(0.0) as usize;
+        let longest = (MAX_SHARE * residual.len() as f64) as usize;
+        let sums = |values: &mut dyn Iterator<Item = f64>| -> Vec<f64> {
+            let mut sums = vec![0.0];
+            let mut sum = 0.0;
+            values.for_each(|v| {
+                sum += v;
+                sums.push(sum);
+            });
+            sums
+        };
+        let off = sums(&mut self.values.iter().map(|v| v - final_deg_h));
+        let left = sums(&mut residual.iter().copied());
+        let mut found: Option<Departure> = None;
+        let mut window = 1;
+        while window <= longest {
+            let deviation = (white / window as f64).sqrt();
+            for i in first..=residual.len().saturating_sub(window) {
+                let mean = |sums: &[f64]| (sums[i + window] - sums[i]) / window as f64;
+                let away = mean(&off);
+                if away.abs() <= band_deg_h || mean(&left).abs() <= BEYOND_NOISE * deviation {
+                    continue;
+                }
+                let from_s = self.first_s + (i as f64 - 0.5) * self.block_s;
+                let to_s = from_s + window as f64 * self.block_s;
+                let so_far = found.unwrap_or(Departure { from_s, to_s, deg_h: away });
+                found = Some(Departure {
+                    from_s: so_far.from_s.min(from_s),
+                    to_s: so_far.to_s.max(to_s),
+                    deg_h: if away.abs() > so_far.deg_h.abs() { away } else { so_far.deg_h },
+                });
+            }
+            window *= 2;
+        }
+        found
+    }
+
+    /// Time over which the output was smoothed, s; `None` where it was not.
+    pub fn smoothed_s(&self) -> Option<f64> {
+        let residual = self.residual();
+        let shortest = variance_of_means(&residual, 1)?;
+        let longer = (1..).map(|k| 1 << k).take_while(|m| *m <= MAX_SMOOTHED);
+        let ratios: Vec<(usize, f64)> =
+            longer.filter_map(|m| Some((m, variance_of_means(&residual, m)? / shortest))).collect();
+        // A single jump raises the variance of long means, and hardly that of two blocks.
+        ratios.first().filter(|r| r.1 > 1.0)?;
+        let largest = ratios.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        (largest.1 > SMOOTHED_RATIO).then(|| largest.0 as f64 * self.block_s)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::temperature::sampler::normal;
+    use rand::SeedableRng;
+    use rand_xoshiro::Xoshiro256PlusPlus;
+
+    const BLOCK_S: f64 = 7.0;
+
+    /// A settled record of 2000 blocks with noise of 0.05 deg/h, moved by so much for 90 blocks in its middle.
+    fn record(seed: u64, moved: f64) -> Vec<f64> {
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
+        let at = |i: usize| if (900..990).contains(&i) { moved } else { 0.0 };
+        (0..2000).map(|i| 12.0 + at(i) + 0.05 * normal(&mut rng)).collect()
+    }
+
+    fn departure(values: &[f64]) -> Option<Departure> {
+        let modelled = vec![12.0; values.len()];
+        let course = Course { values, modelled: &modelled, block_s: BLOCK_S, first_s: 0.5 * BLOCK_S };
+        course.departure(500.0, 12.0, 0.02)
+    }
+
+    #[test]
+    fn a_bias_that_leaves_the_band_again_is_seen_and_noise_is_not() {
+        for seed in 0..20 {
+            assert_eq!(departure(&record(seed, 0.0)), None, "{seed}");
+            for moved in [0.06, -0.12] {
+                let found = departure(&record(seed, moved)).unwrap();
+                assert!(found.from_s < 7.0 * 900.0 + 100.0 && found.to_s > 7.0 * 990.0 - 100.0, "{found:?}");
+                assert!((found.deg_h / moved - 1.0).abs() < 0.6, "{found:?}");
+            }
+            // Within the band it may do what it likes.
+            assert_eq!(departure(&record(seed, 0.012)), None, "{seed}");
+        }
+    }
+
+    #[test]
+    fn a_smoothed_output_is_seen() {
+        let of = |values: &[f64]| {
+            let modelled = vec![12.0; values.len()];
+            Course { values, modelled: &modelled, block_s: BLOCK_S, first_s: 3.5 }.smoothed_s()
+        };
+        for seed in 0..20 {
+            let plain = record(seed, 0.0);
+            assert_eq!(of(&plain), None, "{seed}");
+            let means: Vec<f64> = plain.windows(10).map(|w| w.iter().sum::<f64>() / 10.0).collect();
+            let found = of(&means).unwrap();
+            assert!((28.0..=120.0).contains(&found), "{found}");
+        }
+    }
+}
