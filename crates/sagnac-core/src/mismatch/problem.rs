@@ -17,6 +17,7 @@ use crate::effect::{
 };
 use crate::noise::model::NoiseModel;
 use crate::numeric::cosine::{fast_length, inverse_dct2};
+use crate::recording::sensor;
 use std::sync::Arc;
 
 /// Samples up to which a record is looked at in one resolution.
@@ -378,7 +379,7 @@ fn spectra(
 
 pub(super) fn drivers(regular: &Regular, claim: &Claim) -> Drivers {
     let column = |c: Column| regular.columns.get(&c).cloned();
-    let temperature = column(Column::Temperature);
+    let temperature = column(Column::Temperature).map(|t| sensor::between_steps(&t).unwrap_or(t));
     Drivers {
         dt_s: regular.grid.dt_s,
         start_s: regular.grid.start_s,

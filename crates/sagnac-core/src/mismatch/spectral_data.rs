@@ -10,7 +10,7 @@ use crate::effect::{Drivers, ModeBin, Model, Nuisance};
 use crate::noise::data::NoiseType;
 use crate::noise::model::{Bin, Spectral, bin_ratio, claimed_unit_density};
 use crate::numeric::cosine::dct2;
-use crate::numeric::order::SortNumbers;
+use crate::recording::sensor;
 use std::sync::Arc;
 
 /// Modes that have a bin each.
@@ -280,8 +280,11 @@ fn nuisance_column(nuisance: Nuisance, drivers: &Drivers) -> Option<Vec<f64>> {
 }
 
 /// The part of a series that its spectrum tells from the white noise of a sensor: each cosine mode is weighted by the
-/// share of its neighbourhood's power that lies above the floor.
+/// share of its neighbourhood's power that lies above the floor. Of one that reads in coarse steps, the course between them.
 pub fn smoothed(values: &[f64]) -> Vec<f64> {
+    if let Some(course) = sensor::between_steps(values) {
+        return course;
+    }
     let n = values.len();
     if n < 32 {
         return values.to_vec();

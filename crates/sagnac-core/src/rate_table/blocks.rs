@@ -1,6 +1,6 @@
 //! A recording on a rate table, averaged over short blocks: bounded in memory at any length.
 
-use crate::recording::{Channel, Role, SampleBlock, Sink};
+use crate::recording::{Channel, Role, SampleBlock, Sink, sensor};
 
 /// Blocks are joined in pairs beyond this number.
 const MOST_BLOCKS: usize = 1 << 17;
@@ -58,6 +58,25 @@ pub struct Blocks {
 }
 
 impl Blocks {
+    /// Frees the temperature of the steps and the noise of its thermometer: noise at constant temperature is no range of it.
+    #[must_use]
+    pub fn with_freed_temperature(mut self) -> Blocks {
+        let known = |b: &&mut Block| b.temperature.is_finite();
+        let readings: Vec<f64> = self.list.iter().map(|b| b.temperature).filter(|t| t.is_finite()).collect();
+        let freed = if sensor::is_steady(&readings) {
+            let mean = readings.iter().sum::<f64>() / readings.len() as f64;
+            vec![mean; readings.len()]
+        } else if let Some(course) = sensor::between_steps(&readings) {
+            course
+        } else {
+            return self;
+        };
+        for (block, value) in self.list.iter_mut().filter(known).zip(freed) {
+            block.temperature = value;
+        }
+        self
+    }
+
     /// Time of the start of a block, s from the start of the recording.
     pub fn start_s(&self, at: usize) -> f64 {
         self.list.get(at).map_or(0.0, |b| b.first_index as f64 * self.interval_s)

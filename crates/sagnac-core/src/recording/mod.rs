@@ -4,6 +4,7 @@
 //! inside, and every consumer is a [`Sink`] that takes sample blocks.
 
 pub mod integrity;
+pub mod sensor;
 pub mod window;
 
 use crate::units::Unit;

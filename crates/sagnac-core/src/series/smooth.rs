@@ -1,6 +1,7 @@
 //! A column freed from the noise of its sensor as far as its spectrum tells the two apart.
 
 use crate::numeric::cosine::{dct2, inverse_dct2};
+use crate::recording::sensor;
 
 /// Modes over which a power is averaged before it is judged.
 const NEIGHBOURS: usize = 4;
@@ -11,8 +12,12 @@ const DISTINCT: f64 = 4.0;
 /// A column without the white noise of its sensor, as far as the spectrum tells them apart.
 ///
 /// Modes are judged by their power against the white floor of the sensor, which the upper half of them shows: each is kept by the
-/// share of it that is above the floor. A quantised or slow sensor without a white floor is left as it is.
+/// share of it that is above the floor. A slow sensor without a white floor is left as it is, and of one that reads in coarse
+/// steps the course between them is taken.
 pub fn smooth(values: &[f64]) -> Vec<f64> {
+    if let Some(course) = sensor::between_steps(values) {
+        return course;
+    }
     let n = values.len();
     if n < 64 {
         return values.to_vec();

@@ -10,6 +10,7 @@ use super::test::{SegmentKind, TemperatureTest};
 use super::track::{Means, bridged};
 use super::zones::{self, Zone};
 use crate::numeric::cosine::inverse_dct2;
+use crate::recording::sensor;
 use crate::recording::window::TimeSpan;
 
 /// Blocks of the model at most.
@@ -97,7 +98,7 @@ pub fn schedule(
     test: &TemperatureTest,
 ) -> Option<Schedule> {
     let coarse = means.merged(coarse_factor(means));
-    let (measured, missing) = bridged(coarse.values.get(temperature)?)?;
+    let (measured, missing) = temperature_course(means, temperature)?;
     let steps = Steps { first_s: coarse.first_s, step_s: coarse.block_s, values: &measured };
     let commanded = command.and_then(|c| coarse.values.get(c)).and_then(|v| bridged(v)).map(|c| c.0);
     let by = commanded.as_deref().map_or(steps, |values| Steps { values, ..steps });
@@ -114,6 +115,17 @@ pub fn schedule(
         command: commanded.as_deref().map(series),
         missing,
     })
+}
+
+/// The temperature in the blocks of the model, freed of the steps of its thermometer, and the share that was missing.
+fn temperature_course(means: &Means, temperature: usize) -> Option<(Vec<f64>, f64)> {
+    let (readings, _) = bridged(means.values.get(temperature)?)?;
+    let factor = coarse_factor(means);
+    let coarse = means.merged(factor);
+    let (measured, missing) = bridged(coarse.values.get(temperature)?)?;
+    let Some(course) = sensor::between_steps(&readings) else { return Some((measured, missing)) };
+    let mean = |c: &[f64]| c.iter().sum::<f64>() / c.len() as f64;
+    Some((course.chunks_exact(factor).map(mean).collect(), missing))
 }
 
 fn coarse_factor(means: &Means) -> usize {
@@ -147,7 +159,7 @@ fn analyse(
 ) -> Option<Analysis> {
     let coarse = means.merged(coarse_factor(means));
     let (rate_deg_h, bridged_share) = bridged(coarse.values.get(rate)?)?;
-    let (temperature_deg_c, _) = bridged(coarse.values.get(temperature)?)?;
+    let temperature_deg_c = temperature_course(means, temperature)?.0;
     let course = Course {
         block_s: coarse.block_s,
         first_s: coarse.first_s,

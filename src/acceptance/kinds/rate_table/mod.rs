@@ -78,7 +78,8 @@ impl TestKind for RateTable {
 
     fn evaluate(self, reading: &Reading<'_>, collected: Collector, _: Progress<'_>) -> Run<StepEvidence> {
         let (procedure, setup) = (reading.procedure(), self.setup);
-        let run = TableRun::new(collected.finish(reading.report.tau0_measured_s), &setup);
+        let blocks = collected.finish(reading.report.tau0_measured_s).with_freed_temperature();
+        let run = TableRun::new(blocks, &setup);
         let found = evidence::evaluate(procedure, &run, &setup);
         let of = |m: &MeasurandSpec| found.iter().flat_map(|c| m.measurand.evaluate_steps(c)).collect();
         let estimates = procedure.measurands.iter().map(of).collect();
