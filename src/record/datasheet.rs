@@ -483,6 +483,9 @@ pub struct InputMeasurand {
     /// Its interval.
     #[serde(default)]
     pub interval: Option<Interval>,
+    /// Part of its standard uncertainty that all tests on the same equipment have in common, in the unit of the value.
+    #[serde(default)]
+    pub common_standard_uncertainty: Option<f64>,
     /// False where the quantity is only bounded.
     #[serde(default)]
     pub identifiable: Option<bool>,

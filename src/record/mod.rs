@@ -216,6 +216,10 @@ pub struct MeasurandRecord {
     pub unit: String,
     /// 95 % interval.
     pub interval: Option<Interval>,
+    /// Part of the standard uncertainty that all tests on the same equipment at the same site have in common, in the unit of
+    /// the value: it does not average out over units. Absent without a value, and where results do not say.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub common_standard_uncertainty: Option<f64>,
     /// Whether the record can show the quantity.
     pub identifiable: bool,
     /// Bound where it cannot.

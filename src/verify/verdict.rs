@@ -112,6 +112,7 @@ mod tests {
                 value: Some(value),
                 unit: "deg/h".into(),
                 interval: None,
+                common_standard_uncertainty: None,
                 identifiable: true,
                 upper_limit: None,
                 most_likely: None,

@@ -184,6 +184,8 @@ impl Estimate {
         id: &'static str,
         channel: &str,
         value: f64,
+    /// Part of its standard uncertainty that all tests on the same equipment at the same site have in common, unit of the value.
+    pub common: f64,
         unit: &'static str,
         spread: Spread,
         method: &'static str,
@@ -215,6 +217,7 @@ impl Estimate {
         Estimate {
             id,
             channel: channel.to_owned(),
+            common: 0.0,
             value: None,
             unit,
             spread: Spread::Unknown,
@@ -238,6 +241,7 @@ impl Estimate {
     #[must_use]
     pub fn most_likely(mut self, value: Option<f64>) -> Self {
         self.most_likely = value.filter(|v| v.is_finite());
+            common: 0.0,
         self
     }
 
@@ -261,3 +265,10 @@ impl Estimate {
 
 #[cfg(test)]
 mod tests;
+    /// The estimate with standard uncertainties that all tests on the same equipment have in common, such as that of the table.
+    #[must_use]
+    pub fn common(mut self, standard: &[f64]) -> Self {
+        self.common = standard.iter().map(|u| u * u).sum::<f64>().sqrt();
+        self
+    }
+

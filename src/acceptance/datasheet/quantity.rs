@@ -3,7 +3,7 @@
 use super::outlook::{outlook, risks};
 use super::units::TestedUnit;
 use crate::estimate::{Interval, UpperLimit, normal_quantile};
-use crate::i18n::Note;
+use crate::i18n::{Arg, Note};
 use crate::lot::population::{
     Central, LEAST_VALUES, LOTS_FOR_SPREAD, Method, NOT_NORMAL, Of, Population, Reading, Side, Unit,
 };
@@ -70,6 +70,21 @@ impl Row<'_> {
         }
     }
 
+    /// Part of the standard uncertainty on a scale that all units have in common; `None` where the result does not say.
+    fn common(&self, scale: SheetScale) -> Option<f64> {
+        let stated = self.told.common_standard_uncertainty.filter(|u| *u >= 0.0 && u.is_finite())?;
+        match scale {
+            SheetScale::Linear => Some(stated),
+            SheetScale::Log => Some(stated / self.value()?),
+        }
+    }
+
+    /// Standard uncertainty of the value on a scale without what all units have in common; `None` without an interval.
+    fn own(&self, scale: SheetScale) -> Option<f64> {
+        let (whole, common) = (self.standard(scale)?, self.common(scale).unwrap_or(0.0));
+        Some((whole * whole - common * common).max(0.0).sqrt())
+    }
+
     /// Standard uncertainty of the value on a scale; `None` without an interval.
     fn standard(&self, scale: SheetScale) -> Option<f64> {
         let (value, interval) = (self.value()?, self.told.interval?);
@@ -109,11 +124,16 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
     let valued = rows.len() - bounded;
     let needed = LEAST_VALUES.max(rows.len().div_ceil(2));
     let on_scale = on_scale(&rows, &lots, scale, &mut notes);
+    let common = common(&rows, scale);
     let population = if valued >= needed { Population::of(&on_scale) } else { None };
+    let population = population.map(|p| p.with_common_error(common.unwrap_or(0.0)));
     let signed = measurand::find(of.2).map_or(scale == SheetScale::Linear, |m| m.signed);
     let sides: &[Side] = if signed { &[Side::Upper, Side::Lower] } else { &[Side::Upper] };
     match &population {
-        Some(p) => say(&mut notes, p, bounded, count, scale),
+        Some(p) => {
+            say(&mut notes, p, bounded, count, scale);
+            notes.extend(said_of_common(common, &rows, scale));
+        }
         None => notes.push(Note::new("datasheet.note.too_few").with("n", valued).with("needed", needed)),
     }
     let back = |v: f64| if scale == SheetScale::Log { v.exp() } else { v };
@@ -177,6 +197,29 @@ fn scale(id: &str, rows: &[Row<'_>]) -> SheetScale {
     if positive && !signed { SheetScale::Log } else { SheetScale::Linear }
 }
 
+/// The error that the units have in common on a scale: the largest that a result states. `None` where one does not say.
+fn common(rows: &[Row<'_>], scale: SheetScale) -> Option<f64> {
+    let valued = rows.iter().filter(|r| r.value().is_some());
+    valued.map(|r| r.common(scale)).try_fold(0.0, |most: f64, u| Some(most.max(u?)))
+}
+
+/// What must be known of an error in common: how large it is, or that nothing is known of one.
+fn said_of_common(common: Option<f64>, rows: &[Row<'_>], scale: SheetScale) -> Option<Note> {
+    let unit = rows.first()?.told.unit.as_str();
+    let with = |key: &'static str, u: f64| {
+        let (value, unit) = if scale == SheetScale::Log { (100.0 * u, "%") } else { (u, unit) };
+        Note::new(key).with("u", Arg::figures(value, 2)).with("unit", unit)
+    };
+    match common {
+        Some(u) if u > 0.0 => Some(with("datasheet.note.common_error", u)),
+        Some(_) => None,
+        None => {
+            let largest = rows.iter().filter_map(|r| r.standard(scale)).fold(0.0, f64::max);
+            (largest > 0.0).then(|| with("datasheet.note.common_unknown", largest))
+        }
+    }
+}
+
 /// Number of the lot of each row.
 fn lots(rows: &[Row<'_>]) -> Vec<usize> {
     let mut names: Vec<&str> = vec![];
@@ -192,7 +235,7 @@ fn lots(rows: &[Row<'_>]) -> Vec<usize> {
 
 /// The units on the scale. A bounded unit is given the uncertainty that the others have in the middle.
 fn on_scale(rows: &[Row<'_>], lots: &[usize], scale: SheetScale, notes: &mut Vec<Note>) -> Vec<Unit> {
-    let mut known: Vec<f64> = rows.iter().filter_map(|r| r.standard(scale)).collect();
+    let mut known: Vec<f64> = rows.iter().filter_map(|r| r.own(scale)).collect();
     let without = rows.iter().filter(|r| r.value().is_some()).count() - known.len();
     if without > 0 {
         notes.push(Note::new("datasheet.note.no_interval").with("n", without));
@@ -203,7 +246,7 @@ fn on_scale(rows: &[Row<'_>], lots: &[usize], scale: SheetScale, notes: &mut Vec
         .zip(lots)
         .filter_map(|(row, lot)| {
             let reading = match (row.value(), row.bound()) {
-                (Some(v), _) => Reading::Value { value: to(v), standard: row.standard(scale).unwrap_or(0.0) },
+                (Some(v), _) => Reading::Value { value: to(v), standard: row.own(scale).unwrap_or(0.0) },
                 (None, Some(bound)) => row
                     .likelihood(bound, scale)
                     .unwrap_or(Reading::AtMost { bound: to(bound.value), standard: usual }),
@@ -244,6 +287,9 @@ fn method(method: Method) -> &'static str {
 fn say(notes: &mut Vec<Note>, p: &Population, bounded: usize, lots: usize, scale: SheetScale) {
     if bounded > 0 {
         notes.push(Note::new("datasheet.note.bounded").with("n", bounded));
+    }
+    if p.below_values() > 0 {
+        notes.push(Note::new("datasheet.note.common_bound").with("n", p.below_values()));
     }
     if lots > 1 && lots < LOTS_FOR_SPREAD {
         notes.push(Note::new("datasheet.note.few_lots").with("n", lots).with("needed", LOTS_FOR_SPREAD));

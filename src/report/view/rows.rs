@@ -348,6 +348,7 @@ mod tests {
             method: "mean".into(),
             limit: Some(LimitRecord {
                 min: limits[0],
+            common_standard_uncertainty: None,
                 max: limits[1],
                 unit: "deg/h".into(),
                 rule: Rule::GuardBand,

@@ -23,6 +23,8 @@ pub const LOTS_FOR_SPREAD: usize = 5;
 pub const NOT_NORMAL: f64 = 0.05;
 /// The share of the variance up to which errors are nothing.
 const NOTHING: f64 = 1e-4;
+/// Difference of bounds, in the deviation of the values, up to which they are one.
+const ONE_BOUND: f64 = 1e-6;
 
 /// A unit on the scale of the population.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -108,6 +110,8 @@ pub struct Central {
 pub struct Population {
     values: Vec<f64>,
     bounded: usize,
+    below_values: usize,
+    common: f64,
     lots: usize,
     measurement: f64,
     draws: Vec<Draw>,
@@ -119,8 +123,9 @@ impl Population {
     /// The population of some units. `None` where no spread can be told: below [`LEAST_VALUES`] values, with a number that is not
     /// finite, or with values that are all the same.
     pub fn of(units: &[Unit]) -> Option<Population> {
-        let arranged = Arranged::of(units)?;
         let values: Vec<f64> = units.iter().filter_map(|u| u.value()).collect();
+        let (units, below_values) = below_values(units, &values);
+        let arranged = Arranged::of(&units)?;
         let mut errors: Vec<f64> = units.iter().filter(|u| u.value().is_some()).map(Unit::standard).collect();
         let measurement = (errors.iter().map(|u| u * u).sum::<f64>() / errors.len() as f64).sqrt();
         errors.sort_ascending();
@@ -137,6 +142,8 @@ impl Population {
         let normality = arranged.bounded.is_empty().then(|| normality(&values)).flatten();
         Some(Population {
             bounded: units.len() - values.len(),
+            below_values,
+            common: 0.0,
             lots: arranged.lots.len(),
             values,
             measurement,
@@ -144,6 +151,20 @@ impl Population {
             simple,
             normality,
         })
+    }
+
+    /// The population where every value has an error in common besides its own, such as that of the table that all units were
+    /// tested on: it moves all of them together, and no number of units averages it out.
+    #[must_use]
+    pub fn with_common_error(mut self, standard: f64) -> Population {
+        self.common = standard.max(0.0);
+        self.simple &= self.common == 0.0;
+        self
+    }
+
+    /// How many units with one bound in common were taken to lie below the values.
+    pub fn below_values(&self) -> usize {
+        self.below_values
     }
 
     /// The median of the true values with its interval of some coverage.
@@ -272,7 +293,8 @@ impl Population {
     /// Mean and deviation of μ + z·√(σ² + error²) in each draw.
     fn parts(&self, z: f64, error: f64) -> Vec<(f64, f64)> {
         let of = |d: &Draw| {
-            (d.level.mean + z * (d.variances.total() + error * error).sqrt(), d.level.variance.sqrt())
+            let deviation = (d.level.variance + self.common * self.common).sqrt();
+            (d.level.mean + z * (d.variances.total() + error * error).sqrt(), deviation)
         };
         self.draws.iter().map(of).collect()
     }
@@ -353,6 +375,29 @@ impl Arranged {
         draw.level.mean += self.middle;
         draw
     }
+}
+
+/// The units, a bound that several of them have in common moved down to the smallest value, and how many these are.
+///
+/// Where a unit with a lower reading has a value, such a bound is no place below which readings were not told. It is the
+/// confidence limit of a reading that was not told from nothing, and what is known of that reading is that it lies below the
+/// values.
+fn below_values(units: &[Unit], values: &[f64]) -> (Vec<Unit>, usize) {
+    let smallest = values.iter().copied().fold(f64::INFINITY, f64::min);
+    let bounds: Vec<f64> = units.iter().filter(|u| u.value().is_none()).map(Unit::place).collect();
+    let low = bounds.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = bounds.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let is_one = bounds.len() > 1 && high - low <= ONE_BOUND * variance(values).sqrt();
+    if !is_one || smallest >= low {
+        return (units.to_vec(), 0);
+    }
+    let moved = |u: &Unit| match u.reading {
+        Reading::AtMost { standard, .. } => {
+            Unit { reading: Reading::AtMost { bound: smallest, standard }, ..*u }
+        }
+        Reading::Value { .. } => *u,
+    };
+    (units.iter().map(moved).collect(), bounds.len())
 }
 
 /// Variance with n − 1.

@@ -57,7 +57,9 @@ fn sensitivity(m: &Measurand, compared: &ComparisonEvidence<'_>) -> Vec<Estimate
     let u = found.test.level_uncertainty * found.test.influence.degree();
     let rows = found.axes.iter().zip(&found.per_unit).enumerate().map(|(at, (axis, c))| {
         let degrees = found.temperature.as_ref().and_then(|t| t.per_drive.get(at));
-        row(m, found, &found.place(axis, None), c, &[u * c.value.abs(), of_temperature(found, degrees)])
+        let of_level = u * c.value.abs();
+        row(m, found, &found.place(axis, None), c, &[of_level, of_temperature(found, degrees)])
+            .common(&[of_level])
     });
     rows.collect()
 }
@@ -96,9 +98,9 @@ fn remarks(found: &Comparison) -> Vec<Note> {
     if found.scatter {
         notes.push(Note::new("compared.scatter"));
     }
+    notes.extend(late(found));
     if let Some(d) = found.too_warm() {
         notes.push(Note::new("compared.warmer").with("difference", Arg::figures(d.abs(), 2)));
-    notes.extend(late(found));
     } else if let Some(t) = found.temperature.as_ref().filter(|t| t.follows()) {
         let difference = Arg::figures(t.difference().abs(), 2);
         notes.push(match found.test.temperature_coefficient {
@@ -112,21 +114,21 @@ fn remarks(found: &Comparison) -> Vec<Note> {
     notes
 }
 
-#[cfg(test)]
-mod tests {
 /// What the values are of, where the bias followed the level late and had settled.
 fn late(found: &Comparison) -> Option<Note> {
     let response = found.response.as_ref().filter(|r| !r.goes_on())?;
     Some(Note::new("compared.responded").with("time_constant", Arg::figures(response.time_constant_s, 2)))
 }
 
+#[cfg(test)]
+mod tests {
     use super::super::test_evidence::{combination, near, notes, number, shows, student, withholds};
     use super::*;
     use crate::influence::comparison::{IntervalMean, Shift};
     use crate::influence::nuisance::{Following, Nuisance};
+    use crate::influence::response::{ByMeans, Response};
     use crate::influence::setup::ComparisonTest;
 
-    use crate::influence::response::{ByMeans, Response};
     fn following(temperature: bool, shifts: [f64; 2], by_chance: f64) -> Following {
         let what = Nuisance { channel: "beside".into(), unit: "degC", temperature };
         Following { what, shifts: shifts.to_vec(), per_drive: vec![0.5, -2.0], by_chance }
@@ -171,10 +173,10 @@ fn late(found: &Comparison) -> Option<Note> {
             line: None,
             drift: true,
             scatter: false,
-            temperature: Some(following(true, [0.3, -0.6], 0.5)),
-            others: vec![],
             response: None,
             by_means: vec![],
+            temperature: Some(following(true, [0.3, -0.6], 0.5)),
+            others: vec![],
         }
     }
 
@@ -250,7 +252,6 @@ fn late(found: &Comparison) -> Option<Note> {
         withholds(row, None, "alternating_intervals");
         assert_eq!(notes(row), ["compared.intervals", "compared.in_step"]);
     }
-}
 
     #[test]
     fn a_response_that_goes_on_and_means_that_contradict_leave_no_value() {
@@ -277,3 +278,4 @@ fn late(found: &Comparison) -> Option<Note> {
         assert_eq!(notes(&row)[1], "compared.responded");
         assert!(row.objections.is_empty() && row.value.is_some());
     }
+}

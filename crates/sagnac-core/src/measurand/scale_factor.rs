@@ -47,13 +47,14 @@ fn scale_factor(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
         sine_response::row(m, e, |s, slope| {
             let others = [e.setup.rate_uncertainty * (slope.value * factor).abs()];
             m.measured(&e.channel, slope.value * factor, spread(slope, factor.abs(), &others), s.method)
+                .common(&others)
                 .note(Note::new("on_table.at_zero"))
         })
     } else {
         let Some(line) = &e.line else { return vec![] };
         let others = systematic(line, e).map(|u| u * 1e-6 * (line.factor * factor).abs());
         let spread = spread(&line.slope(), factor.abs(), &others);
-        m.measured(&e.channel, line.factor * factor, spread, METHOD).note(cited(line, e))
+        m.measured(&e.channel, line.factor * factor, spread, METHOD).common(&others).note(cited(line, e))
     };
     vec![Estimate { unit, ..row }]
 }
@@ -63,12 +64,14 @@ fn error(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
         return vec![sine_response::row(m, e, |s, slope| {
             let spread = spread(slope, 1e6, &[1e6 * e.setup.rate_uncertainty]);
             m.measured(&e.channel, (slope.value - 1.0) * 1e6, spread, s.method)
+                .common(&[1e6 * e.setup.rate_uncertainty])
                 .note(Note::new("on_table.at_zero"))
         })];
     }
     let Some(line) = &e.line else { return vec![] };
-    let spread = spread(&line.slope(), 1e6, &systematic(line, e).map(|u| u * line.factor.abs()));
-    vec![m.measured(&e.channel, (line.factor - 1.0) * 1e6, spread, METHOD)]
+    let of_equipment = systematic(line, e).map(|u| u * line.factor.abs());
+    let spread = spread(&line.slope(), 1e6, &of_equipment);
+    vec![m.measured(&e.channel, (line.factor - 1.0) * 1e6, spread, METHOD).common(&of_equipment)]
 }
 
 /// The bias of the line without the Earth rate along the axis, where the site tells it.
@@ -81,6 +84,7 @@ fn bias(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
     let others = [line.factor * earth.uncertainty_deg_h, e.setup.rate_uncertainty * earth.rate_deg_h];
     vec![
         m.measured(&e.channel, found.value, spread(&found, 1.0, &others), METHOD)
+            .common(&others)
             .note(Note::new("on_table.earth_removed").with("earth", Arg::figures(earth.rate_deg_h, 5))),
     ]
 }

@@ -77,7 +77,9 @@ fn evaluate(m: &Measurand, gyro: &GyroEvidence, options: &Options) -> Vec<Estima
     let longest = Note::new("note.bias_uncertainty")
         .with("u", standard_uncertainty)
         .with("longest_h", 1.0 / (3600.0 * u.lowest_hz));
-    let estimate = m.measured(&gyro.channel, value, spread, "mean").note(earth).note(longest);
+    let of_site: Vec<f64> = u.others.iter().map(|(_, variance)| variance.sqrt()).collect();
+    let estimate =
+        m.measured(&gyro.channel, value, spread, "mean").common(&of_site).note(earth).note(longest);
     vec![rounded.into_iter().fold(estimate, Estimate::note)]
 }
 
