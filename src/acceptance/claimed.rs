@@ -62,9 +62,9 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
             n_rel: n.relative,
             b_rel: b.relative,
             k_rel: k.relative,
-            n_deg_rt_h: n.bound,
-            b_deg_h: b.bound,
-            k_deg_h_rt_h: k.bound,
+            n_at_most_deg_rt_h: n.at_most,
+            b_at_most_deg_h: b.at_most,
+            k_at_most_deg_h_rt_h: k.at_most,
             // Nothing is known of a bias that was not measured.
             bias_deg_h: if bias.is_some() { deviation } else { UNKNOWN },
             ..Uncertainty::default()

@@ -192,6 +192,27 @@ static UNCERTAINTY: TableSpec = TableSpec {
             "0.0005",
             "Of K where it is stated as 0, deg/h/√h.",
         ),
+        with_default(
+            "N_at_most_deg_rt_h",
+            Kind::Number(COEFFICIENT),
+            "0.0",
+            "0.003",
+            "Upper limit (95 %) of N where it is stated as 0 because a record did not resolve it, deg/√h.",
+        ),
+        with_default(
+            "B_at_most_deg_h",
+            Kind::Number(COEFFICIENT),
+            "0.0",
+            "0.004",
+            "Upper limit (95 %) of B where it is stated as 0 because a record did not resolve it, deg/h.",
+        ),
+        with_default(
+            "K_at_most_deg_h_rt_h",
+            Kind::Number(COEFFICIENT),
+            "0.0",
+            "0.001",
+            "Upper limit (95 %) of K where it is stated as 0 because a record did not resolve it, deg/h/√h.",
+        ),
         with_default("bias_deg_h", Kind::Number(COEFFICIENT), "0.0", "0.03", "Of the bias, deg/h."),
         with_default(
             "temperature_coefficient_deg_h_per_degC",

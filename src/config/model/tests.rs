@@ -202,6 +202,7 @@ fn bounds_of_coefficients_stated_as_zero_are_written_and_read() {
     claim.noise.b = 0.0;
     claim.uncertainty.b_deg_h = 0.0021;
     claim.uncertainty.k_deg_h_rt_h = 3e-4;
+    claim.uncertainty.n_at_most_deg_rt_h = 0.012;
     let again = read(&write(&claim));
     assert_eq!(again.uncertainty, claim.uncertainty);
     assert!(!write(&read(CONTRACT)).contains("\nN_deg_rt_h = 0.0\n"));

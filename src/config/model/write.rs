@@ -70,6 +70,9 @@ pub fn write(claim: &Claim) -> String {
         ("N_deg_rt_h", u.n_deg_rt_h),
         ("B_deg_h", u.b_deg_h),
         ("K_deg_h_rt_h", u.k_deg_h_rt_h),
+        ("N_at_most_deg_rt_h", u.n_at_most_deg_rt_h),
+        ("B_at_most_deg_h", u.b_at_most_deg_h),
+        ("K_at_most_deg_h_rt_h", u.k_at_most_deg_h_rt_h),
         ("skewness", u.skewness),
     ];
     for (key, value) in where_stated.into_iter().filter(|(_, value)| *value > 0.0) {

@@ -98,9 +98,9 @@ fn part(data: &Path, unit: usize, axis: &str) -> Result<Part, String> {
         true => (value, rel),
         false => (0.5 * bound, 0.5),
     };
-    let (n, n_rel) = level(claim.noise.n, told.n_rel, told.n_deg_rt_h);
-    let (b, b_rel) = level(claim.noise.b, told.b_rel, told.b_deg_h);
-    let (k, k_rel) = level(claim.noise.k, told.k_rel, told.k_deg_h_rt_h);
+    let (n, n_rel) = level(claim.noise.n, told.n_rel, told.of_zero()[0]);
+    let (b, b_rel) = level(claim.noise.b, told.b_rel, told.of_zero()[1]);
+    let (k, k_rel) = level(claim.noise.k, told.k_rel, told.of_zero()[2]);
     let mean = claim.mean.bias_deg_h;
     Ok(Part {
         name: format!("recording {unit} {axis}"),

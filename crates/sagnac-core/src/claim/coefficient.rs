@@ -4,7 +4,7 @@
 const HALF_WIDTH: f64 = 1.96;
 /// Upper limit of a coefficient that is not resolved, in deviations of its prior. A value beyond the prior is no mismatch
 /// yet: the recording itself is asked. A wide prior would let a random walk stand for a single jump.
-const OF_LIMIT: f64 = 6.0;
+const LIMIT_OF_PRIOR: f64 = 6.0;
 /// Logarithm of the ratio of a value to the end of its interval that counts at most.
 const LARGEST: f64 = 3.0;
 
@@ -15,8 +15,13 @@ pub struct Coefficient {
     pub value: f64,
     /// Relative standard deviation.
     pub relative: f64,
-    /// Deviation of a value of 0, in its own unit: a sixth of its upper limit.
-    pub bound: f64,
+    /// Upper limit of a value of 0, in its own unit.
+    pub at_most: f64,
+}
+
+/// Deviation of the prior of a coefficient that is stated as 0: what its author gives it, or what follows from an upper limit.
+pub fn prior_of_zero(deviation: f64, at_most: f64) -> f64 {
+    if deviation > 0.0 { deviation } else { at_most / LIMIT_OF_PRIOR }
 }
 
 impl Coefficient {
@@ -28,15 +33,12 @@ impl Coefficient {
             let above = (high / value).max(1.0).ln();
             below.max(above) / HALF_WIDTH
         });
-        Coefficient { value, relative: if relative.is_finite() { relative } else { LARGEST }, bound: 0.0 }
+        Coefficient { value, relative: if relative.is_finite() { relative } else { LARGEST }, at_most: 0.0 }
     }
 
     /// What is known by an upper limit.
     pub fn at_most(limit: f64) -> Coefficient {
-        Coefficient {
-            bound: if limit.is_finite() { limit / OF_LIMIT } else { 0.0 },
-            ..Coefficient::default()
-        }
+        Coefficient { at_most: if limit.is_finite() { limit } else { 0.0 }, ..Coefficient::default() }
     }
 }
 
@@ -52,7 +54,8 @@ mod tests {
         let open = Coefficient::found(1.0, Some((0.0, 1.1)));
         assert!((open.relative - 3.0 / 1.96).abs() < 1e-12, "{open:?}");
         assert_eq!(Coefficient::found(1.0, None).relative, 0.0);
-        assert_eq!(Coefficient::at_most(6.0), Coefficient { bound: 1.0, ..Coefficient::default() });
-        assert_eq!(Coefficient::at_most(f64::INFINITY).bound, 0.0);
+        assert_eq!(Coefficient::at_most(6.0), Coefficient { at_most: 6.0, ..Coefficient::default() });
+        assert_eq!(Coefficient::at_most(f64::INFINITY).at_most, 0.0);
+        assert_eq!((prior_of_zero(0.0, 6.0), prior_of_zero(0.5, 6.0), prior_of_zero(0.0, 0.0)), (1.0, 0.5, 0.0));
     }
 }

@@ -4,6 +4,8 @@
 mod coefficient;
 mod profile;
 
+use coefficient::prior_of_zero;
+
 pub use coefficient::Coefficient;
 pub use profile::{Profile, SimulationPlan};
 
@@ -65,6 +67,12 @@ pub struct Uncertainty {
     pub b_deg_h: f64,
     /// The same of K, deg/h/√h.
     pub k_deg_h_rt_h: f64,
+    /// Upper limit of N where the claim states 0 and a record did not resolve it, deg/√h.
+    pub n_at_most_deg_rt_h: f64,
+    /// The same of B, deg/h.
+    pub b_at_most_deg_h: f64,
+    /// The same of K, deg/h/√h.
+    pub k_at_most_deg_h_rt_h: f64,
     /// deg/h. The engine leaves the bias free whatever it is.
     pub bias_deg_h: f64,
     /// deg/h/°C.
@@ -73,6 +81,17 @@ pub struct Uncertainty {
     pub scale_factor_ppm: f64,
     /// Largest third standardised moment, of either sign, that the noise of single samples may have; 0 for noise of an even law.
     pub skewness: f64,
+}
+
+impl Uncertainty {
+    /// Deviations of N, B and K where the claim states 0; 0 for exactly nothing.
+    pub fn of_zero(&self) -> [f64; 3] {
+        [
+            prior_of_zero(self.n_deg_rt_h, self.n_at_most_deg_rt_h),
+            prior_of_zero(self.b_deg_h, self.b_at_most_deg_h),
+            prior_of_zero(self.k_deg_h_rt_h, self.k_at_most_deg_h_rt_h),
+        ]
+    }
 }
 
 /// An effect with its parameters.

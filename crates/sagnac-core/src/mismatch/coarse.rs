@@ -17,7 +17,7 @@ pub fn group(lsb_arcsec: f64, claim: &Claim, samples: usize) -> usize {
     let dt_s = 1.0 / claim.sample_rate_hz;
     // 1 deg/h over 1 s is 1 arcsec.
     // White noise that a claim only bounds moves it by no more.
-    let n = if claim.noise.n > 0.0 { claim.noise.n } else { claim.uncertainty.n_deg_rt_h };
+    let n = if claim.noise.n > 0.0 { claim.noise.n } else { claim.uncertainty.of_zero()[0] };
     let moved_arcsec = 60.0 * n * dt_s.sqrt();
     if lsb_arcsec <= moved_arcsec || moved_arcsec <= 0.0 {
         return 1;

@@ -45,7 +45,7 @@ pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<C
     }
     step(2 * ROUNDS);
     let [n, b, k, q] = [found.n, found.b, found.k, found.q];
-    if [n, b, k, q].iter().all(|c| c.value <= 0.0 && c.bound <= 0.0) {
+    if [n, b, k, q].iter().all(|c| c.value <= 0.0 && c.at_most <= 0.0) {
         return Err("explain.error.no_noise".into());
     }
     Ok(claim(series, &fitted, &found))
@@ -75,13 +75,13 @@ fn claim(series: &Series, mean: &mean::Fitted, noise: &noise::Found) -> Claim {
             n_rel: deviation(n.relative),
             b_rel: deviation(b.relative),
             k_rel: deviation(k.relative),
-            n_deg_rt_h: deviation(n.bound),
-            b_deg_h: deviation(b.bound),
-            k_deg_h_rt_h: deviation(k.bound),
+            n_at_most_deg_rt_h: deviation(n.at_most),
+            b_at_most_deg_h: deviation(b.at_most),
+            k_at_most_deg_h_rt_h: deviation(k.at_most),
             bias_deg_h: deviation(mean.bias_sd),
             temperature_coefficient_deg_h_per_degc: deviation(mean.temperature_sd),
             scale_factor_ppm: deviation(mean.scale_factor_sd),
-            skewness: 0.0,
+            ..Uncertainty::default()
         },
         effects: noise.effects.clone(),
     }

@@ -82,7 +82,7 @@ impl Noise {
             base,
             claimed: base,
             deviation: [u.n_rel, u.b_rel, u.k_rel],
-            bound: [u.n_deg_rt_h, u.b_deg_h, u.k_deg_h_rt_h],
+            bound: u.of_zero(),
             freed: [false; 3],
             quantization_arcsec: claim.quantization_lsb_arcsec / 12f64.sqrt(),
             spectra: vec![],

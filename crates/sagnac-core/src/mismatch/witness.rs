@@ -45,9 +45,7 @@ fn free(claim: &Claim) -> Claim {
     let mut out = claim.clone();
     let u = &mut out.uncertainty;
     (u.n_rel, u.b_rel, u.k_rel) = (LOOSE, LOOSE, LOOSE);
-    for bound in [&mut u.n_deg_rt_h, &mut u.b_deg_h, &mut u.k_deg_h_rt_h] {
-        *bound *= 100.0;
-    }
+    [u.n_deg_rt_h, u.b_deg_h, u.k_deg_h_rt_h] = u.of_zero().map(|deviation| 100.0 * deviation);
     u.temperature_coefficient_deg_h_per_degc = f64::INFINITY;
     u.scale_factor_ppm = f64::INFINITY;
     out
