@@ -151,7 +151,6 @@ pub fn verdict(explanation: &Explanation, words: Translator) -> Vec<String> {
         let (rows, length) = (count(r.rows as u64, words.lang), duration(r.duration_s(), words.lang));
         let given = [("rows", rows.as_str()), ("length", &length), ("p", &p), ("alpha", &alpha)];
         let key = match explanation.verdict == MismatchVerdict::Consistent {
-            true if explanation.family_p_value < explanation.alpha => "explain.sentence.consistent_faint",
             true => "explain.sentence.consistent",
             false => "explain.sentence.unlocated",
         };

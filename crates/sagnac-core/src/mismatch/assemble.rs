@@ -91,6 +91,10 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let principal = principal_places(&found.named, after);
     let gained = best.fit.log_likelihood - base.fit.log_likelihood + local_gain;
     let (mut findings, rest) = causes(&found.named, gained, problem, after, options);
+    let family = smallest_p(&selection.first, before);
+    if findings.is_empty() && family < options.alpha {
+        findings.extend(unnamed::of_all_together(before, family, problem, options));
+    }
     let alternatives = alternatives::all(selection, &findings, problem);
     columns::as_recorded(&mut findings, &recorded.read_from);
     let columns = columns::records(problem, best, &found.named, &recorded.read_from);
@@ -111,7 +115,6 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let levelled = found.level.is_some();
     let augmented = augmented(problem, claim, best, stated.collect(), levelled, added.as_deref());
     let correction = with(added, found.taken.as_deref());
-    let family = smallest_p(&selection.first, before);
     let baseline = figures(base, &held_base, spectra.rows, 0.0);
     let explanation = Explanation {
         format: "explain/1".to_owned(),

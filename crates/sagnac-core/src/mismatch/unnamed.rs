@@ -35,8 +35,34 @@ pub(super) fn cause(
 ) -> Option<Finding> {
     let alpha = options.alpha;
     let bound = if nothing_found { (0.3 * alpha).min(1e-3) } else { DEPARTED };
-    let mut departed: Vec<&Departure> = after.iter().filter(|d| d.below(bound, after.len())).collect();
-    departed.sort_ascending_by(|a| a.ln_p);
+    let departed = after.iter().filter(|d| d.below(bound, after.len())).collect();
+    let mut cause = of_departures(departed, problem, options)?;
+    let ln_p = (cause.ln_p + (after.len().max(1) as f64).ln()).min(0.0);
+    (cause.finding.delta_bic, cause.finding.p_value) = (-2.0 * ln_p, ln_p.exp().max(1e-300));
+    Some(cause.finding)
+}
+
+/// What the tests show together where no single effect is justified: their probability is below the significance, so that the
+/// recording departs from the hypothesis, most plainly where the clearest of them says.
+pub(super) fn of_all_together(
+    before: &[Departure],
+    p_value: f64,
+    problem: &Problem,
+    options: &Options,
+) -> Option<Finding> {
+    let clearest = before.iter().min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))?;
+    let cause = of_departures(vec![clearest], problem, options)?;
+    Some(Finding { delta_bic: -2.0 * p_value.ln(), p_value, ..cause.finding })
+}
+
+/// A cause without a name, and the logarithm of the probability of its clearest departure.
+struct Unnamed {
+    finding: Finding,
+    ln_p: f64,
+}
+
+fn of_departures(mut departed: Vec<&Departure>, problem: &Problem, options: &Options) -> Option<Unnamed> {
+    departed.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
     departed.sort_by_key(|d| d.narrows());
     let worst = departed.first()?;
     let mut places: Vec<PlaceRecord> = vec![];
@@ -47,8 +73,7 @@ pub(super) fn cause(
         }
     }
     places.truncate(3);
-    let ln_p = (worst.ln_p + (after.len().max(1) as f64).ln()).min(0.0);
-    Some(Finding {
+    let finding = Finding {
         kind: UNKNOWN.to_owned(),
         effect: None,
         column: None,
@@ -60,11 +85,12 @@ pub(super) fn cause(
         probabilities: BTreeMap::new(),
         parameters: BTreeMap::new(),
         places,
-        delta_bic: -2.0 * ln_p,
-        p_value: ln_p.exp().max(1e-300),
+        delta_bic: 0.0,
+        p_value: 1.0,
         heldout_gain: None,
         removed_share: None,
-    })
+    };
+    Some(Unnamed { finding, ln_p: worst.ln_p })
 }
 
 /// What a departure looks like, for a report.
