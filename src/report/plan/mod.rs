@@ -11,7 +11,7 @@ use super::translator::{Field, Translator};
 use crate::i18n::{Lang, Note};
 use crate::plan::Plan;
 use crate::plan::record::{AlternativePlan, CausePlan, PairPlan, PlanOutcome};
-use print::{chance, title};
+use print::{at_most, chance, title};
 use serde::{Deserialize, Serialize};
 
 /// What `plan.json` holds.
@@ -184,7 +184,7 @@ fn cause(cause: &CausePlan, words: Translator) -> CauseView {
             Some(kind) => title(kind, words),
         },
         found: chance(a.found, words),
-        alone: chance(a.probability, words),
+        alone: at_most(a.probability, words),
     };
     let pair = |p: &PairPlan| PairRow {
         truth: title(&p.truth, words),

@@ -17,3 +17,9 @@ pub(super) fn chance(probability: f64, words: Translator) -> String {
         p => percent((p * 100.0).round() / 100.0, words.lang),
     }
 }
+
+/// A probability that other explanations than those planned for can only lower.
+pub(super) fn at_most(probability: f64, words: Translator) -> String {
+    let percent = percent((probability * 100.0).ceil() / 100.0, words.lang);
+    words.with("plan.at_most", &[("percent", &percent)])
+}
