@@ -44,6 +44,8 @@ pub enum Style {
     Model,
     /// One term of the model; the number tells terms apart.
     Term(u8),
+    /// A term of the model that the record does not resolve: what it may hold at most.
+    UnresolvedTerm(u8),
     /// One of several units on the same axes; the number tells them apart.
     Unit(u8),
     /// A limit; points are upper ones.

@@ -3,6 +3,7 @@
 use crate::figure::Style;
 use crate::noise::composite::Part;
 use crate::noise::data::NoiseType;
+use crate::noise::identification::Identification;
 use crate::noise::model::TERMS;
 
 /// Number of the style of lines; N, B, K, Q and R come first.
@@ -18,6 +19,33 @@ pub fn style(part: Part) -> Style {
         Part::Markov(_) => MARKOV,
         Part::QuasiPeriodic(_) => QUASI_PERIODIC,
     })
+}
+
+/// Style and legend of a part of what was identified: a term that the record does not resolve is dashed, and named so.
+pub fn identified(part: Part, found: &Identification) -> (Style, &'static str) {
+    match (style(part), part) {
+        (Style::Term(n), Part::Term(term)) if !resolves(found, term) => {
+            (Style::UnresolvedTerm(n), unresolved_legend(term))
+        }
+        (style, _) => (style, legend(part)),
+    }
+}
+
+/// True for a term that is claimed, and for N where a white level was read.
+fn resolves(found: &Identification, term: NoiseType) -> bool {
+    let is_read = || term == NoiseType::AngleRandomWalk && found.read_angle_random_walk().value.is_some();
+    found.claims(term) || is_read()
+}
+
+/// Legend of a term that is not resolved.
+fn unresolved_legend(term: NoiseType) -> &'static str {
+    match term {
+        NoiseType::Quantization => "figure.unresolved.quantization",
+        NoiseType::AngleRandomWalk => "figure.unresolved.angle_random_walk",
+        NoiseType::Flicker => "figure.unresolved.bias_instability",
+        NoiseType::RateRandomWalk => "figure.unresolved.rate_random_walk",
+        NoiseType::RateRamp => "figure.unresolved.rate_ramp",
+    }
 }
 
 /// Legend of a part.

@@ -137,7 +137,8 @@ fn model_curves(gyro: &GyroEvidence, from: f64, to: f64) -> Vec<Layer> {
     let (tones, noises): (Vec<Part>, Vec<Part>) =
         model.parts().into_iter().partition(|p| matches!(p, Part::Line(_)));
     for part in noises {
-        layers.push(draw::line(drawn(&[part]), parts::style(part), parts::legend(part)));
+        let (style, legend) = parts::identified(part, &gyro.identification);
+        layers.push(draw::line(drawn(&[part]), style, legend));
     }
     if let Some(first) = tones.first() {
         layers.push(draw::line(drawn(&tones), parts::style(*first), parts::legend(*first)));

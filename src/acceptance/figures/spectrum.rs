@@ -63,7 +63,8 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
             .map(|(f, d)| (f, if d >= least && d > 0.0 { d } else { f64::NAN }))
             .collect();
         if points.iter().any(|p| p.1.is_finite()) {
-            layers.push(draw::line(points, parts::style(part), parts::legend(part)));
+            let (style, legend) = parts::identified(part, &gyro.identification);
+            layers.push(draw::line(points, style, legend));
         }
     }
     layers.push(draw::line(curve, Style::Model, "figure.legend.model"));

@@ -136,14 +136,17 @@ fn flicker(page: &mut Page, found: &Inspection) {
         let background = gyro.identification.supported.with(NoiseType::Flicker, 0.0);
         let smallest =
             expected_upper_limit(NoiseType::Flicker, &background, gyro.digest.samples, found.tau0_s);
-        let note = match (smallest, estimate.value) {
-            (Some(smallest), Some(b)) => {
+        let note = match (smallest, estimate.value, estimate.upper_limit) {
+            (Some(smallest), Some(b), _) => {
                 Note::new("inspect.flicker_found").with("b", plain(b, 3)).with("smallest", plain(smallest, 2))
             }
-            (Some(smallest), None) => {
+            (Some(smallest), None, Some(limit)) => Note::new("inspect.flicker_bounded")
+                .with("limit", plain(limit.value, 3))
+                .with("smallest", plain(smallest, 2)),
+            (Some(smallest), None, None) => {
                 Note::new("inspect.flicker_smallest").with("smallest", plain(smallest, 2))
             }
-            (None, _) => Note::new("inspect.flicker_unknown"),
+            (None, _, _) => Note::new("inspect.flicker_unknown"),
         };
         page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
     }

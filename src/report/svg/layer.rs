@@ -248,7 +248,8 @@ pub fn extent(panels: &[&Panel], scale: Scale, ordinate: bool) -> Option<(f64, f
     for layer in panels.iter().flat_map(|p| &p.layers) {
         match layer {
             Layer::Line { points, style, .. } | Layer::Points { points, style, .. } => {
-                let follows = scale == Scale::Log && matches!(style, Style::Term(_));
+                let follows =
+                    scale == Scale::Log && matches!(style, Style::Term(_) | Style::UnresolvedTerm(_));
                 let range = if follows { &mut side } else { &mut main };
                 points.iter().filter(|p| !p.0.is_nan() && !p.1.is_nan()).for_each(|p| {
                     grow(range, if ordinate { p.1 } else { p.0 });

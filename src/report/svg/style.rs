@@ -46,6 +46,9 @@ const TERMS: [(&str, &str, Marker); 8] = [
     ("#c1440e", "3 1.6 3 5", Marker::Diamond),
 ];
 
+/// Dash of a term that the record does not resolve: sparser than that of any other.
+const UNRESOLVED: &str = "3 7";
+
 /// The look of a part.
 pub fn look(style: Style) -> Look {
     let plain = Look { colour: "#0072b2", dash: "", width: 1.5, marker: Marker::Disc, fill_opacity: 0.18 };
@@ -56,6 +59,10 @@ pub fn look(style: Style) -> Look {
         Style::Term(n) | Style::Unit(n) => {
             let (colour, dash, marker) = TERMS[usize::from(n) % TERMS.len()];
             Look { colour, dash, width: 1.4, marker, ..plain }
+        }
+        Style::UnresolvedTerm(n) => {
+            let term = look(Style::Term(n));
+            Look { dash: UNRESOLVED, width: 1.1, ..term }
         }
         Style::Limit => {
             Look { colour: "#a50026", dash: "12 4", width: 1.8, marker: Marker::Ceiling, fill_opacity: 0.10 }

@@ -48,6 +48,11 @@ const METHOD: &str = "slope_readout";
 /// Part of a reading that a term must make up for the reading to be taken as its own.
 const ALONE: f64 = 0.98;
 
+/// Part of a reading up to which the fit gives all of it to other terms.
+const NOTHING: f64 = 0.1;
+/// Points up to which a line at the end of a record may be one by chance: two octaves.
+const FEW_POINTS: usize = 3;
+
 fn read_out(m: &Measurand, gyro: &GyroEvidence, term: NoiseType) -> Estimate {
     let samples = gyro.digest.samples as f64;
     let points: Vec<SlopePoint> = gyro
@@ -69,6 +74,16 @@ fn read_out(m: &Measurand, gyro: &GyroEvidence, term: NoiseType) -> Estimate {
     };
     let on_line: Vec<f64> = points.iter().map(|p| p.tau_s).collect();
     let own = own_part(gyro, term, on_line.iter().filter(|t| (found.from_s..=found.to_s).contains(*t)));
+    // A slope of two octaves at the end of the record comes about by chance.
+    let at_end = points.last().is_some_and(|p| p.tau_s <= found.to_s);
+    if at_end && found.points <= FEW_POINTS && own < NOTHING {
+        return m.not_identifiable(&gyro.channel, None, METHOD).note(
+            Note::new("readout.by_others")
+                .with("slope", Arg::Stated(slope(term)))
+                .with("from_s", found.from_s)
+                .with("to_s", found.to_s),
+        );
+    }
     let spread = reaching_down(Spread::ChiSquare { dof: found.dof }, found.value, own);
     let estimate = m.measured(&gyro.channel, found.value, spread, METHOD).note(
         Note::new("readout.line")
