@@ -106,10 +106,15 @@ pub fn whole(
             );
         }
     }
+    let bounded = of(Verdict::Pass).filter(|r| r.value.is_none()).count();
     let worst = rows.iter().map(|r| r.verdict).max().unwrap_or(Verdict::None);
     let verdict = if invalid.is_empty() { worst } else { Verdict::Indeterminate };
     match verdict {
+        Verdict::Pass if judged == 1 && bounded == 1 => reasons.push("summary.one_passed_by_limit".into()),
         Verdict::Pass if judged == 1 => reasons.push(Note::new("summary.one_passed").with("n", judged)),
+        Verdict::Pass if bounded > 0 => {
+            reasons.push(Note::new("summary.passed_by_limits").with("n", judged).with("bounded", bounded));
+        }
         Verdict::Pass => reasons.push(Note::new("summary.all_passed").with("n", judged)),
         Verdict::None => reasons.push(Note::new("summary.no_limits")),
         _ => {}
@@ -173,12 +178,12 @@ mod tests {
             value: Some(1.0),
             unit: "deg/h".into(),
             interval: None,
+            common_standard_uncertainty: None,
             identifiable: true,
             upper_limit: None,
             most_likely: None,
             lower_limit: None,
             method: "mean".into(),
-            common_standard_uncertainty: None,
             limit: None,
             reference: None,
             verdict,

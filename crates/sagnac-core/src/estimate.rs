@@ -121,10 +121,7 @@ impl Spread {
                 let d = ChiSquared::new(dof.max(1e-3)).ok()?;
                 (threshold > 0.0).then(|| d.cdf(dof * (value / threshold).powi(2)))
             }
-            Spread::Curve(points) => {
-                let flipped: Vec<(f64, f64)> = points.iter().map(|(z, v)| (*v, *z)).collect();
-                interpolate(&flipped, threshold).map(|z| 1.0 - normal_probability(z))
-            }
+            Spread::Curve(points) => score_at(points, threshold).map(|z| normal_probability(-z)),
             Spread::Unknown => None,
         }
     }
@@ -135,6 +132,29 @@ impl Spread {
         let (low, high) = (self.bound(value, tail)?, self.bound(value, 1.0 - tail)?);
         (low.is_finite() && high.is_finite()).then_some(Interval { low, high, coverage })
     }
+}
+
+/// Normal scores over which the slope of a tail is read.
+const TAIL_SCORES: f64 = 1.0;
+
+/// Normal score of a value on a curve. Beyond its ends a normal tail goes on as steep as the last score of the curve: the table
+/// ends where draws do, and the probability goes on to fall.
+fn score_at(points: &[(f64, f64)], value: f64) -> Option<f64> {
+    let (first, last) = (points.first()?, points.last()?);
+    let tail = |end: &(f64, f64), inner: Option<&(f64, f64)>| {
+        let (z, v) = inner?;
+        let slope = (end.1 - v) / (end.0 - z);
+        let beyond = (value - end.1) / slope;
+        Some(if beyond.is_finite() { end.0 + beyond } else { end.0 })
+    };
+    if value > last.1 {
+        return tail(last, points.iter().rev().find(|p| last.0 - p.0 >= TAIL_SCORES)).or(Some(last.0));
+    }
+    if value < first.1 {
+        return tail(first, points.iter().find(|p| p.0 - first.0 >= TAIL_SCORES)).or(Some(first.0));
+    }
+    let flipped: Vec<(f64, f64)> = points.iter().map(|(z, v)| (*v, *z)).collect();
+    interpolate(&flipped, value)
 }
 
 /// Linear interpolation in ascending pairs; the end segments are held, not extended.
@@ -164,6 +184,8 @@ pub struct Estimate {
     pub unit: &'static str,
     /// Confidence distribution.
     pub spread: Spread,
+    /// Part of its standard uncertainty that all tests on the same equipment at the same site have in common, unit of the value.
+    pub common: f64,
     /// Bound, where the value is `None`.
     pub upper_limit: Option<UpperLimit>,
     /// Where the likelihood is largest, where the value is `None`: no claim, and what errors are counted by.
@@ -184,8 +206,6 @@ impl Estimate {
         id: &'static str,
         channel: &str,
         value: f64,
-    /// Part of its standard uncertainty that all tests on the same equipment at the same site have in common, unit of the value.
-    pub common: f64,
         unit: &'static str,
         spread: Spread,
         method: &'static str,
@@ -197,6 +217,7 @@ impl Estimate {
             value,
             unit,
             spread,
+            common: 0.0,
             upper_limit: None,
             most_likely: None,
             lower_limit: None,
@@ -217,10 +238,10 @@ impl Estimate {
         Estimate {
             id,
             channel: channel.to_owned(),
-            common: 0.0,
             value: None,
             unit,
             spread: Spread::Unknown,
+            common: 0.0,
             upper_limit,
             most_likely: None,
             lower_limit: None,
@@ -241,7 +262,13 @@ impl Estimate {
     #[must_use]
     pub fn most_likely(mut self, value: Option<f64>) -> Self {
         self.most_likely = value.filter(|v| v.is_finite());
-            common: 0.0,
+        self
+    }
+
+    /// The estimate with standard uncertainties that all tests on the same equipment have in common, such as that of the table.
+    #[must_use]
+    pub fn common(mut self, standard: &[f64]) -> Self {
+        self.common = standard.iter().map(|u| u * u).sum::<f64>().sqrt();
         self
     }
 
@@ -265,10 +292,3 @@ impl Estimate {
 
 #[cfg(test)]
 mod tests;
-    /// The estimate with standard uncertainties that all tests on the same equipment have in common, such as that of the table.
-    #[must_use]
-    pub fn common(mut self, standard: &[f64]) -> Self {
-        self.common = standard.iter().map(|u| u * u).sum::<f64>().sqrt();
-        self
-    }
-

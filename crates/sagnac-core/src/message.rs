@@ -71,6 +71,19 @@ impl Arg {
         Arg::Decimals { value, digits, zeros: false }
     }
 
+    /// A length of time as it was stated, s, in the largest unit that shows it in a few digits.
+    pub fn span(seconds: f64) -> Arg {
+        let is_short = |value: f64| {
+            let scaled = value * 100.0;
+            value >= 1.0 && (scaled - scaled.round()).abs() < 1e-6
+        };
+        let (key, value) = [("span.hours", seconds / 3600.0), ("span.minutes", seconds / 60.0)]
+            .into_iter()
+            .find(|(_, value)| is_short(*value))
+            .unwrap_or(("span.seconds", seconds));
+        Arg::from(Note::new(key).with("n", Arg::Stated(value)))
+    }
+
     /// An id under a prefix of the locale tables, such as `measurand` and `static_bias`.
     pub fn key(prefix: &str, id: &str) -> Arg {
         Arg::Key(format!("{prefix}.{id}"))

@@ -11,17 +11,20 @@ impl Condition for Duration {
         let Some(required_s) = facts.procedure.conditions.minimum_duration_s else { return vec![] };
         // Half a sample short is the rounding of a stamp, not a short test.
         let enough = facts.usable_s >= required_s - 0.5 * facts.sample_interval_s;
-        let (status, key) = if enough {
+        let (status, key) = if facts.usable_s >= required_s {
             (ConditionStatus::Ok, "note.condition.duration_enough")
+        } else if enough {
+            (ConditionStatus::Ok, "note.condition.duration_rounded")
         } else {
             (ConditionStatus::Invalid, "note.condition.duration_short")
         };
         let note = Note::new(key)
             .with("usable_h", facts.usable_s / 3600.0)
-            .with("required_h", required_s / 3600.0)
+            .with("usable", Arg::span(facts.usable_s))
+            .with("required", Arg::span(required_s))
             .with("warm_up_min", facts.procedure.conditions.warm_up_s / 60.0);
         let observed = [("usable_h", facts.usable_s / 3600.0)];
-        let required = Note::new("note.required.duration").with("hours", Arg::Stated(required_s / 3600.0));
+        let required = Note::new("note.required.duration").with("length", Arg::span(required_s));
         vec![record("duration", status, &observed, Some(required), note)]
     }
 }

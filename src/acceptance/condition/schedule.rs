@@ -198,10 +198,14 @@ fn rates(run: &Run, test: &TemperatureTest) -> ConditionRecord {
     record("ramp_rate", status, &[("rate_deg_c_h", rate), ("guard_deg_c_h", u)], Some(required), note)
 }
 
+/// Share of its length that a dwell must show: where a ramp ends is known to some minutes only.
+const LEAST_DWELL_SHARE: f64 = 0.9;
+
 /// Every dwell between ramps long and quiet enough.
 fn dwells(run: &Run, test: &TemperatureTest, least_s: f64) -> ConditionRecord {
     let required = Note::new("schedule.required.dwell")
         .with("minutes", Arg::Stated(least_s / 60.0))
+        .with("tolerance", Arg::Stated(100.0 * (1.0 - LEAST_DWELL_SHARE)))
         .with("drift", Arg::Stated(test.dwell_drift_deg_c_h));
     // Between two ramps there must be one; after the last ramp it need not be there.
     let mut shortest: Option<(f64, f64, f64)> = None;
@@ -233,8 +237,7 @@ fn dwells(run: &Run, test: &TemperatureTest, least_s: f64) -> ConditionRecord {
         .filter(|s| s.kind == SegmentKind::Dwell)
         .map(|s| s.rate_deg_c_h.abs())
         .fold(0.0, f64::max);
-    // The place where a ramp ends is known to some minutes only.
-    let long_enough = length >= 0.9 * least_s;
+    let long_enough = length >= LEAST_DWELL_SHARE * least_s;
     let quiet = restless <= test.dwell_drift_deg_c_h;
     let (status, key) = match (long_enough, quiet) {
         (true, true) => (ConditionStatus::Ok, "schedule.dwell"),

@@ -277,7 +277,11 @@ fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
 /// the axis that turns, nothing but a turn of the inner axis tells.
 fn response(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord> {
     let id = id_of("table_response", channel, facts);
-    let required = Some(Note::new("on_table.required.response"));
+    let required = Some(
+        Note::new("on_table.required.response")
+            .with("low", Arg::Stated(*ACCEPTED_FACTORS.start()))
+            .with("high", Arg::Stated(*ACCEPTED_FACTORS.end())),
+    );
     let Some(factor) = channel.factor else {
         let note = Note::new("on_table.no_line");
         return (!facts.about_outer).then(|| record(id, ConditionStatus::Invalid, &[], required, note));

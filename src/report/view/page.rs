@@ -117,7 +117,7 @@ impl View {
         let words = Translator { lang };
         let mut footnotes = vec![];
         let (judged, further) = rows::rows(record, words, &mut footnotes);
-        let channels: BTreeSet<&str> = record.measurands.iter().map(|m| m.channel.as_str()).collect();
+        let several_channels = has_several_channels(&record.measurands);
         View {
             title: record
                 .procedure
@@ -125,7 +125,7 @@ impl View {
                 .map_or_else(|| words.t("report.title_analysis"), |p| words.local(&p.title)),
             verdict: record.verdict.id(),
             verdict_word: words.verdict(record.verdict),
-            summary: summary(&record.summary, &record.measurands, channels.len() > 1, words),
+            summary: summary(&record.summary, &record.measurands, several_channels, words),
             contradicted: record
                 .summary
                 .iter()
@@ -137,7 +137,7 @@ impl View {
             identity: identity(record, words),
             recordings: recordings(record, words),
             files: files(record, words),
-            several_channels: channels.len() > 1,
+            several_channels,
             several_judged: judged.iter().any(|r| judged.first().is_some_and(|f| f.channel != r.channel)),
             has_references: judged.iter().chain(&further).any(|r| !r.reference.is_empty()),
             shared_rule: match judged.first() {
@@ -216,6 +216,11 @@ fn methods_of(rows: &[Row]) -> Vec<Field> {
         }
     }
     out
+}
+
+/// True where rows belong to more channels than one, so that each must be named.
+fn has_several_channels(rows: &[MeasurandRecord]) -> bool {
+    rows.iter().any(|m| rows.first().is_some_and(|first| first.channel != m.channel))
 }
 
 /// Names of the conditions that are only declared, in alphabetical order.
@@ -463,7 +468,7 @@ fn one(part: &PhasePart<'_>, lang: Lang) -> PhaseView {
         title: words.local(&phase.title),
         verdict: phase.verdict.id(),
         verdict_word: words.verdict(phase.verdict),
-        summary: phase.summary.iter().map(|n| words.say(n)).collect(),
+        summary: summary(&phase.summary, &phase.measurands, has_several_channels(&phase.measurands), words),
         procedure,
         files: phase.recording.iter().map(|f| f.path.clone()).collect(),
         folder: phase.folder.clone().unwrap_or_default(),

@@ -119,18 +119,17 @@ pub fn value(m: &MeasurandRecord, words: Translator) -> String {
     }
 }
 
-/// The interval as printed.
+/// The interval as printed. One that begins or ends at the value has one side only.
 pub fn interval(m: &MeasurandRecord, words: Translator) -> String {
-    match (m.interval, m.value) {
-        (Some(i), Some(_)) => {
-            let rounding = rounding(m);
-            words.with(
-                "report.interval",
-                &[("low", &rounding.show(i.low, words.lang)), ("high", &rounding.show(i.high, words.lang))],
-            )
-        }
-        _ => String::new(),
-    }
+    let (Some(i), Some(value)) = (m.interval, m.value) else { return String::new() };
+    let rounding = rounding(m);
+    let [low, value, high] = [i.low, value, i.high].map(|v| rounding.show(v, words.lang));
+    let (low, high) = match (low == value, high == value) {
+        (true, false) => (None, Some(high)),
+        (false, true) => (Some(low), None),
+        _ => (Some(low), Some(high)),
+    };
+    between(low, high, false, words)
 }
 
 /// The 95 % bound of a quantity without a value.
@@ -273,8 +272,16 @@ fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> R
         risk: m.specific_risk.map_or_else(String::new, |p| percent(p, lang)),
         reference: m.reference.as_ref().map_or_else(String::new, |r| limit(r.value, lang)),
         verdict: m.verdict.id(),
-        verdict_word: words.verdict(m.verdict),
+        verdict_word: verdict_word(m, words),
         footnotes: numbers,
+    }
+}
+
+/// The verdict of a row in words. Of a quantity that the record does not resolve, only its upper limit is known to be inside.
+fn verdict_word(m: &MeasurandRecord, words: Translator) -> String {
+    match (m.verdict, m.value) {
+        (Verdict::Pass, None) => words.t("verdict.met_by_upper_limit"),
+        (verdict, _) => words.verdict(verdict),
     }
 }
 
@@ -341,6 +348,7 @@ mod tests {
             value: Some(0.4),
             unit: "deg/h".into(),
             interval: None,
+            common_standard_uncertainty: None,
             identifiable: true,
             upper_limit: None,
             most_likely: None,
@@ -348,7 +356,6 @@ mod tests {
             method: "mean".into(),
             limit: Some(LimitRecord {
                 min: limits[0],
-            common_standard_uncertainty: None,
                 max: limits[1],
                 unit: "deg/h".into(),
                 rule: Rule::GuardBand,

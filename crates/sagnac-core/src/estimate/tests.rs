@@ -61,6 +61,15 @@ fn curves_are_read_both_ways() {
     let curve = Spread::Curve((-40..=40).map(|i| (f64::from(i) / 10.0, 2.0 + 0.03 * f64::from(i))).collect());
     assert!((curve.bound(2.0, 0.975).unwrap() - (2.0 + 0.3 * 1.959_964)).abs() < 1e-6);
     assert!((curve.probability_above(2.0, 2.3).unwrap() - 0.158_655).abs() < 1e-5);
+    // Beyond its ends the probability goes on to fall: 6 and 18 standard deviations.
+    for z in [6.0, 18.0f64] {
+        let found = curve.probability_above(2.0, 2.0 + 0.3 * z).unwrap();
+        assert!((found / normal_probability(-z) - 1.0).abs() < 1e-6, "{z}: {found}");
+        assert!(curve.probability_above(2.0, 2.0 - 0.3 * z).unwrap() > 0.999_999);
+    }
+    // One that ends at a bound of the quantity has nothing beyond it.
+    let ends = Spread::Curve(vec![(-4.0, 0.0), (0.0, 0.0), (4.0, 2.0)]);
+    assert!(ends.probability_above(0.0, -1.0).unwrap() > 0.999_9);
 }
 
 #[test]
