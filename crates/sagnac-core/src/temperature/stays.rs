@@ -8,8 +8,12 @@
 //! What was smoothed before delivery has no such noise left, and its transient is that of the filter. It shows by deviations
 //! that grow with the averaging time from the shortest one on.
 
-/// Standard deviations of a running mean beyond which it is no white noise.
-const BEYOND_NOISE: f64 = 5.0;
+use crate::estimate::normal_quantile;
+
+/// Probability that white noise alone leaves the band somewhere in a record, all lengths of means together.
+const BY_CHANCE: f64 = 2e-3;
+/// Lengths of means, and independent places of one length in the length of the record over that of the mean, that are counted.
+const LOOKS: f64 = 60.0;
 /// Longest running mean, as a share of the record.
 const MAX_SHARE: f64 = 0.125;
 /// Longest averaging time in blocks at which smoothing is looked for.
@@ -21,11 +25,11 @@ const SMOOTHED_RATIO: f64 = 2.0;
 /// A bias that left its band after the transient.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Departure {
-    /// Start of the first running mean outside, s from switching on.
+    /// Start of the running mean that is clearest outside, s from switching on.
     pub from_s: f64,
-    /// End of the last one, s.
+    /// Its end, s.
     pub to_s: f64,
-    /// Farthest running mean from the final value, deg/h.
+    /// Its distance from the final value, deg/h.
     pub deg_h: f64,
 }
 
@@ -71,28 +75,26 @@ impl Course<'_> {
         };
         let off = sums(&mut self.values.iter().map(|v| v - final_deg_h));
         let left = sums(&mut residual.iter().copied());
-        let mut found: Option<Departure> = None;
+        // The mean that is farthest from noise tells best from when to when the bias was outside.
+        let mut clearest: Option<(f64, Departure)> = None;
         let mut window = 1;
         while window <= longest {
             let deviation = (white / window as f64).sqrt();
+            let looks = LOOKS * residual.len() as f64 / window as f64;
+            let least = normal_quantile(1.0 - 0.5 * BY_CHANCE / looks);
             for i in first..=residual.len().saturating_sub(window) {
                 let mean = |sums: &[f64]| (sums[i + window] - sums[i]) / window as f64;
-                let away = mean(&off);
-                if away.abs() <= band_deg_h || mean(&left).abs() <= BEYOND_NOISE * deviation {
-                    continue;
+                let (away, beyond) = (mean(&off), mean(&left).abs() / deviation);
+                let is_clearer = clearest.as_ref().is_none_or(|(most, _)| beyond > *most);
+                if away.abs() > band_deg_h && beyond > least && is_clearer {
+                    let from_s = self.first_s + (i as f64 - 0.5) * self.block_s;
+                    let to_s = from_s + window as f64 * self.block_s;
+                    clearest = Some((beyond, Departure { from_s, to_s, deg_h: away }));
                 }
-                let from_s = self.first_s + (i as f64 - 0.5) * self.block_s;
-                let to_s = from_s + window as f64 * self.block_s;
-                let so_far = found.unwrap_or(Departure { from_s, to_s, deg_h: away });
-                found = Some(Departure {
-                    from_s: so_far.from_s.min(from_s),
-                    to_s: so_far.to_s.max(to_s),
-                    deg_h: if away.abs() > so_far.deg_h.abs() { away } else { so_far.deg_h },
-                });
             }
-            window *= 2;
+            window = (window + 1).max(window * 5 / 4);
         }
-        found
+        clearest.map(|(_, departure)| departure)
     }
 
     /// Time over which the output was smoothed, s; `None` where it was not.
@@ -137,8 +139,10 @@ mod tests {
             assert_eq!(departure(&record(seed, 0.0)), None, "{seed}");
             for moved in [0.06, -0.12] {
                 let found = departure(&record(seed, moved)).unwrap();
-                assert!(found.from_s < 7.0 * 900.0 + 100.0 && found.to_s > 7.0 * 990.0 - 100.0, "{found:?}");
-                assert!((found.deg_h / moved - 1.0).abs() < 0.6, "{found:?}");
+                let (from_s, to_s) = (900.0 * BLOCK_S, 990.0 * BLOCK_S);
+                let near = |at: f64, s: f64| (at - s).abs() < 0.7 * (to_s - from_s);
+                assert!(near(found.from_s, from_s) && near(found.to_s, to_s), "{found:?}");
+                assert!((0.5..2.5).contains(&(found.deg_h / moved)), "{found:?}");
             }
             // Within the band it may do what it likes.
             assert_eq!(departure(&record(seed, 0.012)), None, "{seed}");
