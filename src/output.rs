@@ -8,6 +8,7 @@
 
 mod addressed;
 mod checksums;
+mod contained;
 mod csv;
 mod earlier;
 mod error;
@@ -16,21 +17,26 @@ mod kind;
 mod parquet;
 mod part;
 mod partial;
+mod stores;
+mod transfer;
 
 pub use addressed::AddressedFolder;
 pub use checksums::{
     CHECKSUMS_FILE, UNREAD, checksums, read_checksums, sha256, sha256_of_file, sha256_of_several,
 };
+pub use contained::{Found, NotRead, found_below, open_below, read_below, sha256_below};
 pub use csv::quoted;
 pub use error::OutputError;
 pub use file::StagedFile;
-pub use kind::{Kind, LIMITS_FILE, PROCEDURE_FILE};
+pub use kind::{Kind, LIMITS_FILE, PROCEDURE_FILE, SIGNATURES_FOLDER};
 pub use parquet::{Column, write_table};
 pub use part::StagedPart;
-pub use partial::abandon_all;
+pub use partial::{abandon_all, is_partial, remove_abandoned};
+pub use stores::{STORE_MARKER, outside_stores};
+pub use transfer::{ProvenCopy, TransferError};
 
 use crate::i18n::Note;
-use earlier::Earlier;
+use earlier::{Earlier, starts_with_format};
 use error::io;
 use partial::Partial;
 use serde::Serialize;
@@ -113,6 +119,7 @@ impl StagedFolder {
         let Some(name) = target.file_name() else {
             return Err(OutputError::NoName(target.to_owned()));
         };
+        outside_stores(target)?;
         // A folder of another kind is refused for what it is.
         if !order.fresh && earlier::is_of(target, kind) {
             outside(target, &order.read)?;
@@ -316,7 +323,8 @@ fn is_own(folder: &Path, json: &[u8]) -> bool {
     Kind::ALL.iter().any(|k| fs::read(folder.join(k.record_file())).is_ok_and(|found| found == json))
 }
 
-fn sync_folder(path: &Path) -> Result<(), OutputError> {
+/// Waits until the names in a folder are on the disk.
+pub(crate) fn sync_folder(path: &Path) -> Result<(), OutputError> {
     File::open(path).and_then(|f| f.sync_all()).map_err(io("output_error.sync", path))
 }
 

@@ -150,15 +150,17 @@ fn argument(
 pub fn refuse(error: &Error, lang: Lang) -> ExitCode {
     let asked_for = !error.use_stderr();
     if asked_for || error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
-        // A reader that went away is no error.
-        let _ = error.print();
+        super::stdout::check(error.print());
     } else if lang == Lang::En {
         // What was typed stands in it, so that it goes the way of all text from outside.
         super::place::eprint_diagnostic(&error.to_string());
     } else {
         super::place::eprint_diagnostic(&complaint(error, lang));
     }
-    ExitCode::from(if asked_for { super::exit::PASS } else { super::exit::ERROR })
+    ExitCode::from(super::stdout::settled(
+        if asked_for { super::exit::PASS } else { super::exit::ERROR },
+        lang,
+    ))
 }
 
 /// The complaint in a language, for the kinds that the tables know; in the words of the library for others.

@@ -2,8 +2,8 @@
 
 use super::keep::StoreArgs;
 use super::options::{Pages, pdf_pages, renderer};
-use super::printer::{print_styled, terminal as standard_output};
-use super::{exit, place, store};
+use super::printer::terminal as standard_output;
+use super::{exit, place, stdout, store};
 use crate::acceptance::history::history;
 use crate::i18n::{Lang, Note};
 use crate::ingest::serial;
@@ -114,7 +114,7 @@ pub fn main(args: &HistoryArgs, lang: Lang) -> Result<u8, String> {
             write(out, &bytes, args.force).map_err(say)?;
             place::print(&format!("{}\n", place::shown(out)));
         }
-        None if args.format == HistoryFormat::Table => print_styled(&text),
+        None if args.format == HistoryFormat::Table => stdout::write_styled(&text),
         None => place::print(&text),
     }
     Ok(exit::PASS)

@@ -42,6 +42,7 @@ mod selftest;
 mod sign;
 mod simulate;
 mod single_test;
+mod stdout;
 mod store;
 mod verify;
 mod writer;
@@ -146,19 +147,21 @@ enum Verb {
         Example:\n  sagnac prove proofs/closed-loop-ramp.toml --data /data --out proved")]
     Prove(prove::ProveArgs),
     /// Find out whether a folder of results is still what was written, and who signed it
-    #[command(after_help = "Exit codes: 0 nothing differs, 1 something differs, 2 could not.\n\n\
-        Examples:\n  sagnac verify reports/SN-0042 --signers allowed_signers\n  \
-        sagnac verify reports/SN-0042 --recording unit-0042.csv.gz")]
-    Verify(verify::VerifyArgs),
-    /// Sign a folder of results
     #[command(
-        after_help = "Example:\n  sagnac sign reports/SN-0042 --key ~/.ssh/id_ed25519 --role tested --name \"A. Ivanova\""
+        after_help = "Exit codes: 0 nothing differs, 1 something differs, 2 could not, 3 a check that was asked for could not be made.\n\n\
+        Examples:\n  sagnac verify reports/SN-0042 --signers allowed_signers\n  \
+        sagnac verify reports/SN-0042 --recording unit-0042.csv.gz"
+    )]
+    Verify(verify::VerifyArgs),
+    /// Sign a folder of results, and let rows pass where there is a reason
+    #[command(
+        after_help = "Examples:\n  sagnac sign reports/SN-0042 --key ~/.ssh/id_ed25519 --role tested --name \"A. Ivanova\"\n  \
+        sagnac sign reports/SN-0042 --key lead.pub --role approved --waive bias_instability --reason \"deviation permit 17\""
     )]
     Sign(sign::SignArgs),
-    /// Sign a folder of results that another has signed, and let rows pass where there is a reason
-    #[command(after_help = "Examples:\n  sagnac approve reports/SN-0042 --key ~/.ssh/id_ed25519\n  \
-        sagnac approve reports/SN-0042 --key lead.pub --waive bias_instability --reason \"deviation permit 17\"")]
-    Approve(sign::ApproveArgs),
+    /// Sign a folder of results that another has signed: `sign --role approved`
+    #[command(after_help = "Example:\n  sagnac approve reports/SN-0042 --key ~/.ssh/id_ed25519")]
+    Approve(sign::SignArgs),
     /// Keep results: immutable, addressed by content, with an index of all attempts at a test
     #[command(after_help = "Exit codes: 0 done, 1 something is wrong in the store, 2 could not.\n\n\
         Examples:\n  sagnac store init /srv/sagnac\n  \
@@ -251,8 +254,9 @@ pub fn main() -> ExitCode {
         Verb::Schema(args) => schema::main(&args),
         Verb::Selftest => selftest::main(lang),
     };
-    ExitCode::from(done.unwrap_or_else(|message| {
+    let code = done.unwrap_or_else(|message| {
         place::eprint_diagnostic(&message);
         exit::ERROR
-    }))
+    });
+    ExitCode::from(stdout::settled(code, lang))
 }

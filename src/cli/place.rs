@@ -1,14 +1,15 @@
 //! Where results go, and how text reaches the user.
 
+use super::stdout;
 use crate::i18n::{Lang, Localize, Note, visible, visible_lines};
 use chrono::{DateTime, Utc};
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// Writes to standard output; a reader that went away (`| head`) is no error. What a file or its name holds cannot
-/// steer the terminal: all that the program says goes through here or [`eprint_diagnostic`].
+/// Writes to standard output. What a file or its name holds cannot steer the terminal: all that the program says goes
+/// through here or [`eprint_diagnostic`].
 pub fn print(text: &str) {
-    let _ = std::io::stdout().lock().write_all(visible_lines(text).as_bytes());
+    stdout::write(visible_lines(text).as_bytes());
 }
 
 /// Writes to standard error.

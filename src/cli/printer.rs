@@ -3,11 +3,11 @@
 use super::options::{OutputArgs, PrintFormat};
 use super::place;
 use super::progress::{Display, Progress};
+use super::stdout;
 use crate::i18n::{Lang, Localize, Note};
 use crate::output::Kind;
 use crate::report::terminal::Terminal;
 use anstream::{AutoStream, ColorChoice};
-use std::io::Write;
 use std::path::Path;
 
 /// Width where standard output is no terminal and `COLUMNS` is not set.
@@ -38,7 +38,7 @@ impl Printer {
     /// Prints a part of the outcome while the work goes on, where the outcome is printed as text.
     pub fn line(self, text: impl FnOnce(Terminal) -> String) {
         if !self.quiet && self.format != PrintFormat::Json {
-            print_styled(&text(terminal()));
+            stdout::write_styled(&text(terminal()));
         }
     }
 
@@ -61,14 +61,13 @@ impl Printer {
                     .with("reason", e.to_string());
                 place::error(&note, self.lang)
             })?;
-            // A reader that went away is no error.
-            let _ = std::io::stdout().lock().write_all(&contents);
+            stdout::write(&contents);
             return Ok(());
         }
         let terminal = terminal();
         let place = Note::new("terminal.report").with("place", place::shown(&page)).say(self.lang);
         let said = if self.quiet { format!("{place}\n") } else { format!("{}\n{place}\n", text(terminal)) };
-        print_styled(&said);
+        stdout::write_styled(&said);
         Ok(())
     }
 }
@@ -83,14 +82,8 @@ impl Printer {
 }
 
 /// The choice of colours: `NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`, `TERM`, and whether standard output is a terminal.
-fn choice() -> ColorChoice {
+pub fn choice() -> ColorChoice {
     AutoStream::choice(&std::io::stdout())
-}
-
-/// Prints text with the control sequences that the report gave it, or without them where colours are not wanted. A reader that
-/// went away is no error.
-pub fn print_styled(text: &str) {
-    let _ = AutoStream::new(std::io::stdout().lock(), choice()).write_all(text.as_bytes());
 }
 
 /// What standard output is.

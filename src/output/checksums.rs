@@ -19,14 +19,19 @@ pub const UNREAD: &str = "unread";
 
 /// SHA-256 of a file, hexadecimal; `None` for what is no file or cannot be read.
 pub fn sha256_of_file(path: &Path) -> Option<String> {
-    let mut file = path.is_file().then(|| File::open(path).ok()).flatten()?;
+    let file = path.is_file().then(|| File::open(path).ok()).flatten()?;
+    sha256_of_reader(file).ok()
+}
+
+/// SHA-256 of everything that can be read.
+pub(super) fn sha256_of_reader(mut from: impl Read) -> std::io::Result<String> {
     let (mut hash, mut block) = (Sha256::new(), vec![0; 1 << 16]);
     loop {
-        match file.read(&mut block) {
-            Ok(0) => return Some(hexadecimal(&hash.finalize())),
+        match from.read(&mut block) {
+            Ok(0) => return Ok(hexadecimal(&hash.finalize())),
             Ok(n) => hash.update(block.get(..n).unwrap_or_default()),
             Err(e) if e.kind() == std::io::ErrorKind::Interrupted => {}
-            Err(_) => return None,
+            Err(e) => return Err(e),
         }
     }
 }

@@ -114,10 +114,19 @@ impl Earlier {
 
 /// True when a folder holds the file that tells its kind.
 pub(super) fn is_of(folder: &Path, kind: Kind) -> bool {
-    let (name, start) = (kind.record_file(), kind.start());
-    let mut head = String::new();
-    let read = File::open(folder.join(name)).and_then(|f| f.take(64).read_to_string(&mut head));
-    read.is_ok() && head.split_whitespace().collect::<String>().starts_with(start)
+    starts_with_format(&folder.join(kind.record_file()), kind.start())
+}
+
+/// True for a JSON file that begins so, spaces aside.
+pub(super) fn starts_with_format(file: &Path, start: &str) -> bool {
+    let mut head = vec![];
+    // A pipe of that name would wait for a writer.
+    if !file.is_file() {
+        return false;
+    }
+    let read = File::open(file).and_then(|f| f.take(64).read_to_end(&mut head));
+    let head: String = String::from_utf8_lossy(&head).split_whitespace().collect();
+    read.is_ok() && head.starts_with(start)
 }
 
 /// The first entry below a folder that is neither a listed file nor a folder for such.

@@ -1,7 +1,7 @@
 //! A single file that appears whole or not at all.
 
 use super::partial::{self, Partial};
-use super::{OutputError, io, outside_file, parent};
+use super::{OutputError, io, outside_file, outside_stores, parent};
 use crate::i18n::Note;
 use std::fs::File;
 use std::io::Read;
@@ -22,6 +22,20 @@ impl StagedFile {
     /// # Errors
     /// [`OutputError`] when the place cannot be written or is taken.
     pub fn begin(target: &Path, read: &[PathBuf], force: bool) -> Result<StagedFile, OutputError> {
+        outside_stores(target)?;
+        StagedFile::begin_anywhere(target, read, force)
+    }
+
+    /// Begins a file that will appear at `target`, which may lie in a store: for what a store itself writes. A file there stays,
+    /// unless it holds the same.
+    ///
+    /// # Errors
+    /// As [`StagedFile::begin`].
+    pub fn within_store(target: &Path) -> Result<StagedFile, OutputError> {
+        StagedFile::begin_anywhere(target, &[], false)
+    }
+
+    fn begin_anywhere(target: &Path, read: &[PathBuf], force: bool) -> Result<StagedFile, OutputError> {
         let Some(name) = target.file_name() else {
             return Err(OutputError::NoName(target.to_owned()));
         };

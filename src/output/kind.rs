@@ -8,6 +8,9 @@ pub const PROCEDURE_FILE: &str = "procedure.toml";
 /// Name of the copy of the limits file in the folder of a result.
 pub const LIMITS_FILE: &str = "limits.toml";
 
+/// Folder of the signatures in a folder of results.
+pub const SIGNATURES_FOLDER: &str = "signatures";
+
 /// What a folder holds; one kind never takes the place of another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {
@@ -108,7 +111,8 @@ impl Kind {
         let page = stem.is_some_and(|(stem, _)| stem == self.page_stem())
             || match self {
                 Kind::Result => {
-                    matches!(name, "explain" | "phases" | "measurands.csv" | "measurands.parquet")
+                    matches!(name, "explain" | "phases" | SIGNATURES_FOLDER)
+                        || matches!(name, "measurands.csv" | "measurands.parquet")
                         || matches!(name, "junit.xml" | "dcc.xml" | "atml.xml")
                 }
                 Kind::Joint => name == "recordings",

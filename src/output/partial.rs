@@ -127,8 +127,13 @@ fn made_here(name: &str) -> Option<bool> {
     ours.then(|| boot == Some(BOOT.as_str()))
 }
 
+/// True for the name of something in the making, or of what a killed run left of it.
+pub fn is_partial(name: &str) -> bool {
+    made_here(name).is_some()
+}
+
 /// Removes what killed runs left in a folder. Best effort: it is clutter and harms nobody.
-pub(super) fn remove_abandoned(parent: &Path) {
+pub fn remove_abandoned(parent: &Path) {
     for entry in fs::read_dir(parent).into_iter().flatten().flatten() {
         let Some(here) = made_here(&entry.file_name().to_string_lossy()) else { continue };
         let Ok(kind) = entry.file_type() else { continue };

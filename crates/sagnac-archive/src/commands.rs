@@ -11,7 +11,7 @@ use sagnac_archive::job::{Job, beside};
 use sagnac_archive::job_list::{self, Listing};
 use sagnac_archive::run::{self, Order, Place, Report};
 use sagnac_archive::{results, session, stores};
-use std::io::IsTerminal;
+use std::io::{IsTerminal, Write};
 use std::net::{IpAddr, Ipv4Addr, SocketAddr};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -215,7 +215,7 @@ async fn list(args: ListArgs) -> Result<u8, String> {
         let endings = listing.endings.join(", ");
         return Err(format!("{}: no recording with an ending of {endings}; see --endings", args.folder));
     }
-    println!("{found} recordings listed in {}", args.out);
+    say(format_args!("{found} recordings listed in {}\n", args.out))?;
     Ok(DONE)
 }
 
@@ -274,7 +274,16 @@ async fn run(args: RunArgs) -> Result<u8, String> {
     let progress = bar();
     let report = run::run(&order, &progress).await;
     progress.finish_and_clear();
-    Ok(told(&report?, &out))
+    told(&report?, &out)
+}
+
+/// Writes to standard output. What does not reach a disk that is full was not said; a reader that went away is no error.
+fn say(text: std::fmt::Arguments<'_>) -> Result<(), String> {
+    let mut out = std::io::stdout().lock();
+    match out.write_fmt(text).and_then(|()| out.flush()) {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => Err(format!("standard output: {e}")),
+        _ => Ok(()),
+    }
 }
 
 fn time(given: Option<String>) -> Result<String, String> {
@@ -305,19 +314,19 @@ fn bar() -> ProgressBar {
 }
 
 /// Says what a run did; gives the exit code.
-fn told(report: &Report, out: &str) -> u8 {
+fn told(report: &Report, out: &str) -> Result<u8, String> {
     let counts = report.counts;
     for text in report.unreached.iter().take(NAMED) {
         eprintln!("warning: {text}");
     }
-    println!(
-        "{} recordings: {} results, {} errors kept as data, {} out of reach; {out}",
+    say(format_args!(
+        "{} recordings: {} results, {} errors kept as data, {} out of reach; {out}\n",
         report.pending, counts.results, counts.errors, counts.unreached
-    );
+    ))?;
     if counts.unreached > 0 {
-        println!("The same command tries again what was out of reach.");
+        say(format_args!("The same command tries again what was out of reach.\n"))?;
     }
-    if counts.errors + counts.unreached > 0 { WITH_ERRORS } else { DONE }
+    Ok(if counts.errors + counts.unreached > 0 { WITH_ERRORS } else { DONE })
 }
 
 async fn query(args: QueryArgs) -> Result<u8, String> {
@@ -331,12 +340,15 @@ async fn query(args: QueryArgs) -> Result<u8, String> {
     let rows = context.sql(&args.sql).await.map_err(sentence)?;
     let batches = rows.collect().await.map_err(sentence)?;
     if args.csv {
-        let mut writer = WriterBuilder::new().build(std::io::stdout().lock());
+        let mut table = vec![];
+        let mut writer = WriterBuilder::new().build(&mut table);
         for batch in &batches {
             writer.write(batch).map_err(|e| format!("{e}; choose members of lists and structs by name"))?;
         }
+        drop(writer);
+        say(format_args!("{}", String::from_utf8_lossy(&table)))?;
     } else {
-        println!("{}", pretty_format_batches(&batches).map_err(|e| e.to_string())?);
+        say(format_args!("{}\n", pretty_format_batches(&batches).map_err(|e| e.to_string())?))?;
     }
     Ok(DONE)
 }
