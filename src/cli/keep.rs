@@ -10,9 +10,10 @@ use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::serial;
 use crate::output::Kind;
 use crate::record::{RunRecord, SheetInput, SiblingsRecord};
-use crate::store::{Filter, Store, StoreError, attempt_of};
+use crate::store::{Filter, Reservation, Store, StoreError, attempt_of};
 use clap::Args;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
 
 /// The variable of the environment that names a store.
 const VARIABLE: &str = "SAGNAC_STORE";
@@ -55,12 +56,14 @@ pub struct Keeper {
     path: Option<PathBuf>,
     recordings: bool,
     lang: Lang,
+    /// The numbers of the attempts that are being made, until their results are in the store.
+    numbers: Mutex<Vec<Reservation>>,
 }
 
 impl Keeper {
     /// Keeps nothing.
     pub fn none(lang: Lang) -> Keeper {
-        Keeper { path: None, recordings: false, lang }
+        Keeper { path: None, recordings: false, lang, numbers: Mutex::default() }
     }
 
     /// What the options ask for. A store that cannot be used is found now, before any work is done.
@@ -68,7 +71,12 @@ impl Keeper {
     /// # Errors
     /// The diagnostic, in words.
     pub fn new(args: &StoreArgs, lang: Lang) -> Result<Keeper, String> {
-        let keeper = Keeper { path: args.path(lang)?, recordings: args.keep_recording, lang };
+        let keeper = Keeper {
+            path: args.path(lang)?,
+            recordings: args.keep_recording,
+            lang,
+            numbers: Mutex::default(),
+        };
         if let Some(store) = keeper.open()? {
             for note in store.notes() {
                 place::eprint_diagnostic(&place::warning(note, lang));
@@ -92,7 +100,11 @@ impl Keeper {
     /// The diagnostic, in words.
     pub fn place_among_others(&self, record: &mut RunRecord) -> Result<(), String> {
         if let Some(store) = self.open()? {
-            record.attempt = attempt_of(&store, record).map_err(|e| self.say(&e))?;
+            let attempt = attempt_of(&store, record).map_err(|e| self.say(&e))?;
+            record.attempt = attempt.map(|(attempt, number)| {
+                self.numbers.lock().unwrap_or_else(PoisonError::into_inner).push(number);
+                attempt
+            });
             record.siblings = self.siblings(&store, record)?;
         }
         Ok(())

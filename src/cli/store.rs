@@ -87,7 +87,7 @@ enum What {
         #[arg(value_name = "STORE")]
         store: PathBuf,
     },
-    /// Compute every hash anew and compare the index with the folders
+    /// Read everything anew: hashes, index, recordings, signatures, chains of attempts
     Verify {
         /// Folder of the store
         #[arg(value_name = "STORE")]
@@ -111,13 +111,13 @@ pub fn main(args: &StoreVerbArgs, lang: Lang) -> Result<u8, String> {
             done(&Note::new("store.exported").with("n", rows).with("file", place::shown(out)), lang)
         }
         What::Supersede { store, superseded, by, reason, operator } => {
-            let mut opened = Store::open(store).map_err(say)?;
+            let mut opened = said(Store::open(store), lang)?;
             let operator = operator.as_deref().unwrap_or_default();
             opened.supersede(superseded, by, reason, operator, now()).map_err(say)?;
             done(&"store.superseded".into(), lang)
         }
         What::Prune { store, to, before } => {
-            let mut opened = Store::open(store).map_err(say)?;
+            let mut opened = said(Store::open(store), lang)?;
             let moved = opened.prune(to, before.as_deref(), &now()).map_err(say)?;
             done(&Note::new("store.pruned").with("n", moved).with("folder", place::shown(to)), lang)
         }
@@ -127,7 +127,7 @@ pub fn main(args: &StoreVerbArgs, lang: Lang) -> Result<u8, String> {
             found(&rebuilt.findings, &note.with("statements", rebuilt.statements), lang)
         }
         What::Verify { store } => {
-            let opened = open_to_read(store, lang)?;
+            let opened = said(Store::open_to_verify(store), lang)?;
             let verified = store::verify(&opened).map_err(say)?;
             let note = Note::new("store.verified").with("n", verified.results);
             let note = note.with("statements", verified.statements).with("wrong", verified.findings.len());
@@ -145,7 +145,12 @@ fn now() -> String {
 /// # Errors
 /// The diagnostic, in words.
 pub fn open_to_read(path: &Path, lang: Lang) -> Result<Store, String> {
-    let store = Store::open_to_read(path).map_err(|e| place::error(&e.note(), lang))?;
+    said(Store::open_to_read(path), lang)
+}
+
+/// A store that was opened, with what must be known of it said.
+fn said(opened: Result<Store, StoreError>, lang: Lang) -> Result<Store, String> {
+    let store = opened.map_err(|e| place::error(&e.note(), lang))?;
     for note in store.notes() {
         place::eprint_diagnostic(&place::warning(note, lang));
     }
@@ -181,7 +186,13 @@ impl Tally {
         let added = match store.add(folder) {
             Ok(added) => added,
             // What is no result is left out; a store that cannot be written ends the import.
-            Err(e @ (StoreError::Result { .. } | StoreError::NoTest(_))) => {
+            Err(
+                e @ (StoreError::Result { .. }
+                | StoreError::NoTest(_)
+                | StoreError::NoFile(_)
+                | StoreError::Contradicted { .. }
+                | StoreError::OtherSignatures(_)),
+            ) => {
                 self.refuse(&e.note(), lang);
                 return Ok(());
             }
@@ -223,10 +234,7 @@ impl Tally {
 
 fn import(store: &Path, folders: &[PathBuf], recordings: &[PathBuf], lang: Lang) -> Result<u8, String> {
     let say = |e: StoreError| place::error(&e.note(), lang);
-    let mut opened = Store::open(store).map_err(say)?;
-    for note in opened.notes() {
-        place::eprint_diagnostic(&place::warning(note, lang));
-    }
+    let mut opened = said(Store::open(store), lang)?;
     let mut tally = Tally::default();
     for named in folders {
         let is_table = !named.is_dir() && !tables_at(named).is_empty();

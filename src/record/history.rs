@@ -82,6 +82,8 @@ pub struct HistoryCounts {
     pub superseded: usize,
     /// Tests that were not done as required: aborted, or with a condition that was not met.
     pub not_done: usize,
+    /// Units with a procedure of which the store lacks attempts that later ones name: they count in no yield.
+    pub incomplete: usize,
     /// Results of products without a serial number, which count in no yield.
     pub without_serial: usize,
 }

@@ -4,11 +4,14 @@ use super::address::{address, sha256};
 use super::entry::Entry;
 use super::error::{StoreError, io};
 use super::opened::Store;
-use crate::output::{AddressedFolder, Kind, is_plain};
-use crate::record::read;
+use crate::output::{
+    AddressedFolder, CHECKSUMS_FILE, Kind, NotRead, SIGNATURES_FOLDER, StagedFile, read_below, read_checksums,
+};
+use crate::record::read::{MAX_BYTES, ReadError};
+use crate::signing;
 use serde::Deserialize;
-use std::collections::BTreeMap;
-use std::fs;
+use std::collections::{BTreeMap, BTreeSet};
+use std::io::Write;
 use std::path::Path;
 
 /// What came of a folder.
@@ -30,32 +33,44 @@ struct Listing {
 }
 
 impl Store {
-    /// Copies a result folder into the store. It is there whole or not at all.
+    /// Copies a result folder into the store, with its signatures. It is there whole or not at all. Links are not followed, and nothing
+    /// but ordinary files is opened.
     ///
     /// # Errors
-    /// [`StoreError`] where the folder holds no result of a test, or the store cannot be written.
+    /// [`StoreError`] where the folder holds no result of a test, one that its own hashes contradict, or the store cannot be written.
     pub fn add(&mut self, folder: &Path) -> Result<Added, StoreError> {
         self.writable()?;
-        let record = folder.join(Kind::Result.record_file());
-        let bytes =
-            read::bytes(&record).map_err(|source| StoreError::Result { path: record.clone(), source })?;
+        let name = Kind::Result.record_file();
+        let record = folder.join(name);
+        let bytes = contents(folder, name)?.ok_or_else(|| StoreError::Result {
+            path: record.clone(),
+            source: ReadError::Io(std::io::ErrorKind::NotFound.into()),
+        })?;
         let entry = Entry::of_json(&bytes, &record)?;
-        let staged = AddressedFolder::begin(&self.layout.results())?;
-        let (mut hashes, mut missing) = (BTreeMap::new(), vec![]);
-        for name in listed(&bytes) {
-            let is_record = name == Kind::Result.record_file();
-            let contents = if is_record { Some(bytes.clone()) } else { contents(folder, &name)? };
-            let Some(contents) = contents else {
-                missing.push(name);
-                continue;
-            };
-            staged.write(&name, &contents)?;
-            hashes.insert(name, sha256(&contents));
+        let (mut files, mut missing) = (BTreeMap::from([(name.to_owned(), bytes)]), vec![]);
+        for name in listed(files.get(name).map(Vec::as_slice).unwrap_or_default()) {
+            match contents(folder, &name)? {
+                Some(contents) => {
+                    files.insert(name, contents);
+                }
+                None => missing.push(name),
+            }
         }
+        let hashes: BTreeMap<String, String> =
+            files.iter().map(|(name, contents)| (name.clone(), sha256(contents))).collect();
+        agree(folder, files.get(CHECKSUMS_FILE), &hashes)?;
+        let signatures = signatures(folder)?;
         let address = address(&hashes);
         let target = self.layout.result(&address);
+        let staged = AddressedFolder::begin(&self.layout.results())?;
+        for (name, contents) in files.iter().chain(&signatures) {
+            staged.write(name, contents)?;
+        }
         let pending = if target.is_dir() { None } else { Some(self.begin_pending(&address)?) };
         let new = staged.publish(&target)?;
+        if !new {
+            add_signatures(&target, &signatures)?;
+        }
         self.with_index(|index| index.add(&address, &entry))?;
         if let Some(pending) = pending {
             pending.end();
@@ -64,23 +79,58 @@ impl Store {
     }
 }
 
-/// The files of a result: itself and those that it lists. Results of other programs list none.
-fn listed(record: &[u8]) -> Vec<String> {
+/// The files that a result lists, beside itself. Results of other programs list none.
+fn listed(record: &[u8]) -> BTreeSet<String> {
     let listing: Listing = serde_json::from_slice(record).unwrap_or_default();
     let own = Kind::Result.record_file();
-    let others = listing.files.into_iter().filter(|name| name != own);
-    std::iter::once(own.to_owned()).chain(others).collect()
+    listing.files.into_iter().filter(|name| name != own).collect()
 }
 
 /// The bytes of a file of a folder; `None` where it is missing. A name that leads elsewhere names no file of it.
 fn contents(folder: &Path, name: &str) -> Result<Option<Vec<u8>>, StoreError> {
-    if !is_plain(name) {
-        return Ok(None);
-    }
     let path = folder.join(name);
-    match fs::read(&path) {
+    match read_below(folder, name, MAX_BYTES as u64) {
         Ok(bytes) => Ok(Some(bytes)),
-        Err(e) if e.kind() == std::io::ErrorKind::NotFound => Ok(None),
-        Err(e) => Err(io("store_error.unreadable", &path)(e)),
+        Err(NotRead::Missing | NotRead::Outside) => Ok(None),
+        Err(NotRead::Link | NotRead::NoFile | NotRead::TooLarge) => Err(StoreError::NoFile(path)),
+        Err(NotRead::Io(e)) => Err(io("store_error.unreadable", &path)(e)),
     }
+}
+
+/// Refuses a folder whose own list of hashes contradicts what it holds. Files may be missing; results of other programs have no list.
+fn agree(folder: &Path, list: Option<&Vec<u8>>, hashes: &BTreeMap<String, String>) -> Result<(), StoreError> {
+    // A list that the record does not name contradicts it all the same.
+    let unlisted = if list.is_none() { contents(folder, CHECKSUMS_FILE)? } else { None };
+    let Some(list) = list.or(unlisted.as_ref()) else { return Ok(()) };
+    let contradicted =
+        |name: &str| StoreError::Contradicted { path: folder.to_owned(), name: name.to_owned() };
+    let stated = std::str::from_utf8(list).ok().and_then(read_checksums);
+    let stated = stated.ok_or_else(|| contradicted(CHECKSUMS_FILE))?;
+    let differs = |(name, hash): &(&String, &String)| stated.get(*name) != Some(hash);
+    match hashes.iter().filter(|(name, _)| *name != CHECKSUMS_FILE).find(differs) {
+        Some((name, _)) => Err(contradicted(name)),
+        None => Ok(()),
+    }
+}
+
+/// The files of the signatures of a folder, by their names in it.
+fn signatures(folder: &Path) -> Result<BTreeMap<String, Vec<u8>>, StoreError> {
+    let names = signing::files(folder).into_iter().map(|name| format!("{SIGNATURES_FOLDER}/{name}"));
+    names.filter_map(|name| Some(contents(folder, &name).transpose()?.map(|bytes| (name, bytes)))).collect()
+}
+
+/// Puts signatures beside a result that the store holds already. Those that are there stay.
+fn add_signatures(result: &Path, signatures: &BTreeMap<String, Vec<u8>>) -> Result<(), StoreError> {
+    for (name, bytes) in signatures {
+        match contents(result, name)? {
+            Some(there) if there == *bytes => {}
+            Some(_) => return Err(StoreError::OtherSignatures(result.join(name))),
+            None => {
+                let staged = StagedFile::within_store(&result.join(name))?;
+                staged.file()?.write_all(bytes).map_err(|e| staged.refused(e))?;
+                staged.publish()?;
+            }
+        }
+    }
+    Ok(())
 }

@@ -4,19 +4,25 @@ use super::entry::{Entry, EntryTest, Reason, ReasonKind};
 use super::error::StoreError;
 use super::index::{Attempt, Filter};
 use super::opened::Store;
+use super::reservation::Reservation;
 use crate::estimate::Verdict;
 use crate::i18n::{Arg, Note};
 use crate::record::{AttemptRecord, EarlierAttempt, Message, RunRecord};
+use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Earlier attempts that a sentence names.
 const NAMED: usize = 5;
 
-/// Which attempt the test in a record is. `None` where nothing tells the unit, or the record is no test.
+/// Which attempt the test in a record is, and its number, which no other takes meanwhile. `None` where nothing tells the unit, or the
+/// record is no test.
 ///
 /// # Errors
-/// What the index refuses.
-pub fn attempt_of(store: &Store, record: &RunRecord) -> Result<Option<AttemptRecord>, StoreError> {
+/// What the index or the disk refuses.
+pub fn attempt_of(
+    store: &Store,
+    record: &RunRecord,
+) -> Result<Option<(AttemptRecord, Reservation)>, StoreError> {
     let bytes = serde_json::to_vec_pretty(record)
         .map_err(|e| StoreError::Database { path: store.layout.index(), reason: e.to_string() })?;
     let Ok(entry) = Entry::of_json(&bytes, Path::new("")) else { return Ok(None) };
@@ -28,13 +34,17 @@ pub fn attempt_of(store: &Store, record: &RunRecord) -> Result<Option<AttemptRec
         procedure: Some(entry.test.procedure.clone()),
         ..Filter::default()
     };
+    let _turn = store.take_turn()?;
+    let (unit, procedure) = (entry.unit.key(), &entry.test.procedure);
+    let taken = store.highest_taken(&unit, procedure)?;
     let earlier = store.attempts(&filter)?;
-    Ok(Some(record_of(&earlier, &entry.test)))
+    let before = earlier.iter().map(|a| a.number).max().unwrap_or(0).max(taken);
+    let reservation = store.reserve(&unit, procedure, before + 1)?;
+    Ok(Some((record_of(&earlier, reservation.number, &entry.test), reservation)))
 }
 
 /// The record of an attempt after others.
-fn record_of(earlier: &[Attempt], test: &EntryTest) -> AttemptRecord {
-    let number = earlier.len() as u64 + 1;
+fn record_of(earlier: &[Attempt], number: u64, test: &EntryTest) -> AttemptRecord {
     AttemptRecord {
         number,
         earlier: earlier.iter().map(one).collect(),
@@ -43,7 +53,7 @@ fn record_of(earlier: &[Attempt], test: &EntryTest) -> AttemptRecord {
 }
 
 fn one(attempt: &Attempt) -> EarlierAttempt {
-    let Attempt { address, entry, number, superseded } = attempt;
+    let Attempt { address, entry, number, superseded, missing: _ } = attempt;
     EarlierAttempt {
         number: *number,
         result: address.clone(),
@@ -65,6 +75,10 @@ fn summary(earlier: &[Attempt], number: u64, test: &EntryTest) -> Vec<Note> {
     let mut notes = vec![
         Note::new("attempt.again").with("number", number).with("earlier", Arg::Several(list, "; ".into())),
     ];
+    let missing: BTreeSet<&String> = earlier.iter().flat_map(|a| &a.missing).collect();
+    if !missing.is_empty() {
+        notes.push(Note::new("attempt.missing").with("n", missing.len()));
+    }
     let tests: Vec<(u64, &EntryTest)> =
         earlier.iter().map(|a| (a.number, &a.entry.test)).chain([(number, test)]).collect();
     for pair in tests.windows(2) {
@@ -119,7 +133,7 @@ mod tests {
             "measurands": [{{"id": "{failed}", "verdict": "{verdict}"}}]}}"#
         );
         let entry = Entry::of_json(json.as_bytes(), Path::new("")).unwrap();
-        Attempt { address: number.to_string(), entry, number, superseded: None }
+        Attempt { address: number.to_string(), entry, number, superseded: None, missing: vec![] }
     }
 
     #[test]
@@ -127,7 +141,7 @@ mod tests {
         let earlier =
             [attempt(1, "fail", "angle_random_walk", "a"), attempt(2, "indeterminate", "static_bias", "a")];
         let test = attempt(3, "pass", "static_bias", "b").entry.test;
-        let record = record_of(&earlier, &test);
+        let record = record_of(&earlier, 3, &test);
         assert_eq!(record.number, 3);
         let said: Vec<String> = record.summary.iter().map(|m| m.say(Lang::En)).collect();
         assert!(said[0].contains('3') && said[0].contains("1: fail"), "{said:?}");
@@ -138,7 +152,7 @@ mod tests {
 
     #[test]
     fn a_first_attempt_says_nothing() {
-        let record = record_of(&[], &attempt(1, "pass", "static_bias", "a").entry.test);
+        let record = record_of(&[], 1, &attempt(1, "pass", "static_bias", "a").entry.test);
         assert_eq!((record.number, record.earlier.len(), record.summary.len()), (1, 0, 0));
     }
 }

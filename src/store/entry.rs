@@ -77,6 +77,8 @@ pub struct EntryTest {
     pub evaluated_at: String,
     /// Number of the attempt as the result states it; 0 where it does not.
     pub attempt: u64,
+    /// Addresses of the attempts before it, as the result states them.
+    pub earlier: Vec<String>,
 }
 
 /// A measurand of a result.
@@ -235,6 +237,14 @@ struct GivenSession {
 #[derive(Deserialize)]
 struct GivenAttempt {
     number: u64,
+    #[serde(default)]
+    earlier: Vec<GivenEarlier>,
+}
+
+#[derive(Deserialize)]
+struct GivenEarlier {
+    #[serde(default)]
+    result: String,
 }
 
 #[derive(Deserialize)]
@@ -314,7 +324,8 @@ impl Given {
                 station: text(self.session.station),
                 operator: text(self.session.operator),
                 evaluated_at: text(self.session.evaluated_at),
-                attempt: self.attempt.map_or(0, |a| a.number),
+                attempt: self.attempt.as_ref().map_or(0, |a| a.number),
+                earlier: self.attempt.into_iter().flat_map(|a| a.earlier).map(|e| e.result).collect(),
             },
             verdict: self.verdict,
             result_sha256,

@@ -1,7 +1,7 @@
 //! Why a store cannot be used, or a folder cannot be added to it.
 
 use crate::i18n::{Arg, Lang, Localize, Note, io_reason};
-use crate::output::OutputError;
+use crate::output::{OutputError, TransferError};
 use crate::record::read::ReadError;
 use rusqlite::ErrorCode;
 use std::fmt;
@@ -52,6 +52,13 @@ pub enum StoreError {
         /// The latest version that is known here.
         known: i64,
     },
+    /// The index is of an earlier version and cannot be made anew where it is.
+    EarlierIndex {
+        /// The index.
+        path: PathBuf,
+        /// Its version.
+        found: i64,
+    },
     /// Nothing can be written into the store.
     ReadOnly(PathBuf),
     /// Others have held the store for too long.
@@ -72,8 +79,23 @@ pub enum StoreError {
     },
     /// What is no acceptance test of a unit has no place in a store.
     NoTest(PathBuf),
+    /// A file of a result is a link, a pipe or another thing that is no ordinary file, or too large.
+    NoFile(PathBuf),
+    /// The hashes that a result states contradict one of its files.
+    Contradicted {
+        /// The folder.
+        path: PathBuf,
+        /// The file.
+        name: String,
+    },
+    /// Other signatures of the result are in the store already.
+    OtherSignatures(PathBuf),
     /// A file is not the recording that was evaluated.
     OtherRecording(PathBuf),
+    /// What stands at the target of a copy is not the recording.
+    OtherCopy(PathBuf),
+    /// A folder that recordings are to leave the store for lies in a store.
+    InsideStore(PathBuf),
     /// No result, or more than one, has an address that begins so.
     Address {
         /// What was given.
@@ -108,6 +130,9 @@ impl StoreError {
             StoreError::LaterIndex { path, found, known } => at("store_error.later_index", path)
                 .with("found", found.to_string())
                 .with("known", known.to_string()),
+            StoreError::EarlierIndex { path, found } => {
+                at("store_error.earlier_index", path).with("found", found.to_string())
+            }
             StoreError::ReadOnly(path) => at("store_error.read_only", path),
             StoreError::Busy(path) => at("store_error.busy", path),
             StoreError::Database { path, reason } => {
@@ -115,7 +140,14 @@ impl StoreError {
             }
             StoreError::Result { path, source } => source.note(path),
             StoreError::NoTest(path) => at("store_error.no_test", path),
+            StoreError::NoFile(path) => at("store_error.no_file", path),
+            StoreError::Contradicted { path, name } => {
+                at("store_error.contradicted", path).with("name", name.as_str())
+            }
+            StoreError::OtherSignatures(path) => at("store_error.other_signatures", path),
             StoreError::OtherRecording(path) => at("store_error.other_recording", path),
+            StoreError::OtherCopy(path) => at("store_error.other_copy", path),
+            StoreError::InsideStore(path) => at("store_error.inside_store", path),
             StoreError::Address { given, count: 0 } => {
                 Note::new("store_error.no_address").with("given", given.as_str())
             }
@@ -139,6 +171,21 @@ impl StoreError {
             Some(ErrorCode::ReadOnly) => StoreError::ReadOnly(path),
             Some(ErrorCode::DatabaseBusy | ErrorCode::DatabaseLocked) => StoreError::Busy(path),
             _ => StoreError::Database { path, reason },
+        }
+    }
+}
+
+impl From<TransferError> for StoreError {
+    fn from(error: TransferError) -> StoreError {
+        match error {
+            TransferError::NoSource(path) => {
+                io("store_error.unreadable", &path)(std::io::ErrorKind::NotFound.into())
+            }
+            TransferError::Source(path, source) => io("store_error.unreadable", &path)(source),
+            TransferError::SourceDiffers(path) => StoreError::OtherRecording(path),
+            TransferError::TargetDiffers(path) => StoreError::OtherCopy(path),
+            TransferError::Same(path) => StoreError::InsideStore(path),
+            TransferError::Target(error) => StoreError::Output(error),
         }
     }
 }

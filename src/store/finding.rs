@@ -22,30 +22,115 @@ pub enum Finding {
         /// Why.
         why: String,
     },
+    /// Something that no store holds, a link in place of a file among it.
+    Stray(PathBuf),
+    /// A signature of a result does not hold.
+    Signature {
+        /// The folder of the result.
+        path: PathBuf,
+        /// The statement that was signed.
+        name: String,
+    },
+    /// A copy of a recording has been changed.
+    Recording(PathBuf),
+    /// The tables of the index are not those of this program.
+    Tables,
+    /// The index says otherwise of a result than its folder.
+    IndexDiffers {
+        /// Address of the result.
+        address: String,
+        /// What differs.
+        parts: Vec<Part>,
+    },
     /// The index lacks a result.
     NotIndexed(String),
     /// The index has a result whose folder is missing.
     NoFolder(String),
+    /// The index has a statement, by its hash, whose file is missing or says otherwise.
+    NoStatement(String),
+    /// The index lacks a statement, or says otherwise.
+    StatementNotIndexed(String),
+    /// A result names an earlier attempt that the store does not hold.
+    NoAttempt {
+        /// Address of the result.
+        address: String,
+        /// Address of the earlier attempt.
+        missing: String,
+    },
+    /// A result counts in its own place, through corrections that lead round.
+    Circle(String),
+    /// A correction is of a result that the store does not hold.
+    CorrectsNothing(String),
+}
+
+/// A part of what the index has of a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Part {
+    /// The unit.
+    Unit,
+    /// Procedure, limits, station, operator, moment.
+    Test,
+    /// Verdict and reasons.
+    Verdict,
+    /// Measured values and their limits.
+    Values,
+    /// Recordings.
+    Recordings,
+    /// The place among the attempts of the unit.
+    Place,
+    /// What counts in its place.
+    Correction,
+}
+
+impl Part {
+    /// The key of its name.
+    fn key(self) -> &'static str {
+        match self {
+            Part::Unit => "store_part.unit",
+            Part::Test => "store_part.test",
+            Part::Verdict => "store_part.verdict",
+            Part::Values => "store_part.values",
+            Part::Recordings => "store_part.recordings",
+            Part::Place => "store_part.place",
+            Part::Correction => "store_part.correction",
+        }
+    }
 }
 
 impl Finding {
     /// What is wrong, as a note.
     pub fn note(&self) -> Note {
-        let shown = |path: &Path| path.display().to_string();
+        let of_path =
+            |key: &'static str, path: &Path| Note::new(key).with("path", path.display().to_string());
+        let of_address = |key: &'static str, address: &str| Note::new(key).with("address", address);
         match self {
             Finding::Changed { path, found } => {
-                Note::new("store_finding.changed").with("path", shown(path)).with("found", found.as_str())
+                of_path("store_finding.changed", path).with("found", found.as_str())
             }
-            Finding::Statement(path) => Note::new("store_finding.statement").with("path", shown(path)),
-            Finding::Unreadable { path, why } => Note::new("store_finding.unreadable")
-                .with("path", shown(path))
-                .with("why", Arg::from(why.as_str())),
-            Finding::NotIndexed(address) => {
-                Note::new("store_finding.not_indexed").with("address", address.as_str())
+            Finding::Statement(path) => of_path("store_finding.statement", path),
+            Finding::Unreadable { path, why } => {
+                of_path("store_finding.unreadable", path).with("why", Arg::from(why.as_str()))
             }
-            Finding::NoFolder(address) => {
-                Note::new("store_finding.no_folder").with("address", address.as_str())
+            Finding::Stray(path) => of_path("store_finding.stray", path),
+            Finding::Signature { path, name } => {
+                of_path("store_finding.signature", path).with("name", name.as_str())
             }
+            Finding::Recording(path) => of_path("store_finding.recording", path),
+            Finding::Tables => "store_finding.tables".into(),
+            Finding::IndexDiffers { address, parts } => {
+                let parts = parts.iter().map(|p| Arg::Key(p.key().to_owned())).collect();
+                of_address("store_finding.index_differs", address)
+                    .with("parts", Arg::Several(parts, ", ".into()))
+            }
+            Finding::NotIndexed(address) => of_address("store_finding.not_indexed", address),
+            Finding::NoFolder(address) => of_address("store_finding.no_folder", address),
+            Finding::NoStatement(hash) => of_address("store_finding.no_statement", hash),
+            Finding::StatementNotIndexed(hash) => of_address("store_finding.statement_not_indexed", hash),
+            Finding::NoAttempt { address, missing } => {
+                of_address("store_finding.no_attempt", address).with("missing", missing.as_str())
+            }
+            Finding::Circle(address) => of_address("store_finding.circle", address),
+            Finding::CorrectsNothing(address) => of_address("store_finding.corrects_nothing", address),
         }
     }
 }

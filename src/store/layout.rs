@@ -6,11 +6,14 @@
 //! statements/           corrections and moved recordings, each a file named by its hash
 //! recordings/           copies of recordings, where they are kept
 //! pending/              addresses of results that the index may lack yet
+//! attempts/             numbers of attempts that are being made
 //! index.sqlite          the index: made anew from the rest by `store rebuild`
 //! lock                  held by who uses the index, and alone by who replaces it
+//! turn.lock             held by who decides something that another must not decide meanwhile
 //! ```
 
 use super::error::{StoreError, io};
+use crate::output::{STORE_MARKER, is_partial};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -36,7 +39,7 @@ impl Layout {
 
     /// The file that says what the folder is.
     pub fn marker(&self) -> PathBuf {
-        self.root.join("store.json")
+        self.root.join(STORE_MARKER)
     }
 
     /// All result folders.
@@ -64,6 +67,11 @@ impl Layout {
         self.root.join("pending")
     }
 
+    /// The numbers of attempts that are being made.
+    pub fn attempts(&self) -> PathBuf {
+        self.root.join("attempts")
+    }
+
     /// The index.
     pub fn index(&self) -> PathBuf {
         self.root.join("index.sqlite")
@@ -72,6 +80,20 @@ impl Layout {
     /// What is locked.
     pub fn lock(&self) -> PathBuf {
         self.root.join("lock")
+    }
+
+    /// What is locked by who decides something that another must not decide meanwhile.
+    pub fn turn(&self) -> PathBuf {
+        self.root.join("turn.lock")
+    }
+
+    /// The names of the copies of a recording, but for what killed processes left of others.
+    ///
+    /// # Errors
+    /// [`StoreError::Io`] where the folder cannot be read.
+    pub fn copies(&self, sha256: &str) -> Result<Vec<String>, StoreError> {
+        let all = names(&self.recordings().join(sha256))?;
+        Ok(all.into_iter().filter(|name| !is_partial(name)).collect())
     }
 
     /// The addresses of all result folders, in ascending order.

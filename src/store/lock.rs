@@ -12,6 +12,8 @@ use std::time::{Duration, Instant};
 
 /// How long others may hold the lock, or a transaction of the database.
 pub(super) const PATIENCE: Duration = Duration::from_secs(60);
+/// What a process listed and did not finish is forgotten after this time, where no lock tells: none takes as long.
+pub(super) const FORGOTTEN_AFTER: Duration = Duration::from_secs(24 * 3600);
 /// Pause between two attempts.
 const PAUSE: Duration = Duration::from_millis(5);
 

@@ -1,17 +1,16 @@
-//! The index made anew, and every hash computed anew.
+//! The index made anew.
 
-use super::address::{address, sha256};
 use super::error::{StoreError, io};
 use super::finding::Finding;
-use super::folders::{Filled, fill, statements};
-use super::index::Index;
-use super::layout::{Layout, names};
+use super::folders::{Filled, fill};
+use super::index::{Age, Index};
+use super::layout::Layout;
 use super::lock::{self, Sharing};
 use super::marker::marker;
-use super::opened::Store;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::i18n::Note;
+use crate::output::sync_folder;
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// What an index was made from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -24,17 +23,6 @@ pub struct Rebuilt {
     pub findings: Vec<Finding>,
 }
 
-/// What was looked at.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Verified {
-    /// Results.
-    pub results: usize,
-    /// Statements.
-    pub statements: usize,
-    /// What is wrong.
-    pub findings: Vec<Finding>,
-}
-
 /// Makes the index of a store anew from its folders and statements. The earlier one stays until the new one is whole.
 ///
 /// # Errors
@@ -43,22 +31,61 @@ pub fn rebuild(path: &Path) -> Result<Rebuilt, StoreError> {
     let layout = Layout::at(path);
     let shared_disk = marker(&layout)?.shared_disk || lock::is_shared_disk(path);
     let _lock = lock::take(&layout.lock(), Sharing::Alone)?;
-    let new = layout.index().with_extension("sqlite.new");
-    remove_database(&new)?;
-    let mut index = Index::create(&new, shared_disk)?;
-    let Filled { results, statements, findings } = fill(&mut index, &layout)?;
-    index.close()?;
-    // What the earlier index left in its log must not be taken for that of the new one.
-    remove_database(&layout.index())?;
-    fs::rename(&new, layout.index()).map_err(io("output_error.put_in_place", &layout.index()))?;
+    let Filled { results, statements, findings } = make_anew(&layout, shared_disk)?;
     Ok(Rebuilt { results, statements, findings })
 }
 
-fn remove_database(path: &Path) -> Result<(), StoreError> {
-    for ending in ["", "-wal", "-shm", "-journal"] {
+/// Makes an index anew that is missing or of an earlier version, for who has the store alone; says so. Another may have done it
+/// meanwhile.
+pub(super) fn make_current(layout: &Layout, shared_disk: bool) -> Result<Option<Note>, StoreError> {
+    let key = match Index::open(&layout.index(), shared_disk) {
+        Ok(index) => match index.age()? {
+            Age::Current => return Ok(None),
+            Age::Earlier(found) => {
+                index.back_up(found)?;
+                "store.index_of_earlier"
+            }
+        },
+        Err(StoreError::NoIndex(_)) => "store.index_missing",
+        Err(e) => return Err(e),
+    };
+    let filled = make_anew(layout, shared_disk)?;
+    Ok(Some(Note::new(key).with("path", layout.root().display().to_string()).with("n", filled.results)))
+}
+
+/// Makes the index anew, for who has the store alone.
+fn make_anew(layout: &Layout, shared_disk: bool) -> Result<Filled, StoreError> {
+    let (new, place) = (layout.index().with_extension("sqlite.new"), layout.index());
+    remove_database(&new)?;
+    let mut index = Index::create(&new, shared_disk)?;
+    let filled = fill(&mut index, layout)?;
+    index.close()?;
+    // What the earlier index left in its log must not be taken for that of the new one. The earlier one stays whole until the new
+    // one is in its place; one that is damaged goes before, since a missing index is made anew by whoever opens the store next.
+    let settled = Index::open(&place, shared_disk).and_then(Index::settle);
+    let has_log = database_files(&place).iter().skip(1).any(|file| file.exists());
+    if settled.is_err() || has_log {
+        remove_database(&place)?;
+    }
+    fs::rename(&new, &place).map_err(io("output_error.put_in_place", &place))?;
+    sync_folder(layout.root())?;
+    Ok(filled)
+}
+
+/// A database and the files that it keeps beside it.
+pub(super) fn database_files(path: &Path) -> Vec<PathBuf> {
+    let with = |ending: &str| {
         let mut name = path.as_os_str().to_owned();
         name.push(ending);
-        match fs::remove_file(&name) {
+        PathBuf::from(name)
+    };
+    ["", "-wal", "-shm", "-journal"].map(with).to_vec()
+}
+
+/// Removes a database, and what it keeps beside it after that.
+pub(super) fn remove_database(path: &Path) -> Result<(), StoreError> {
+    for file in database_files(path) {
+        match fs::remove_file(&file) {
             Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
                 return Err(io("output_error.write", path)(e));
             }
@@ -66,47 +93,4 @@ fn remove_database(path: &Path) -> Result<(), StoreError> {
         }
     }
     Ok(())
-}
-
-/// Computes the address of every result and the hash of every statement anew, and sets the index against them.
-///
-/// # Errors
-/// [`StoreError`] where the index or a folder cannot be read at all.
-pub fn verify(store: &Store) -> Result<Verified, StoreError> {
-    let layout = &store.layout;
-    store.index.check()?;
-    let mut findings = vec![];
-    let statements = statements(layout, &mut findings)?.len();
-    let there = layout.addresses()?;
-    for expected in &there {
-        let folder = layout.result(expected);
-        match address_of(&folder) {
-            Ok(found) if found == *expected => {}
-            Ok(found) => findings.push(Finding::Changed { path: folder, found }),
-            Err(why) => findings.push(Finding::Unreadable { path: folder, why: why.to_string() }),
-        }
-    }
-    let there: BTreeSet<String> = there.into_iter().collect();
-    let indexed: BTreeSet<String> = store.index.addresses()?.into_iter().collect();
-    findings.extend(there.difference(&indexed).cloned().map(Finding::NotIndexed));
-    findings.extend(indexed.difference(&there).cloned().map(Finding::NoFolder));
-    Ok(Verified { results: there.len(), statements, findings })
-}
-
-/// The address of whatever a folder holds.
-fn address_of(folder: &Path) -> Result<String, StoreError> {
-    let mut hashes = BTreeMap::new();
-    let mut open = vec![(folder.to_owned(), String::new())];
-    while let Some((at, before)) = open.pop() {
-        for name in names(&at)? {
-            let (path, name) = (at.join(&name), format!("{before}{name}"));
-            if path.is_dir() {
-                open.push((path, format!("{name}/")));
-            } else {
-                let bytes = fs::read(&path).map_err(io("store_error.unreadable", &path))?;
-                hashes.insert(name, sha256(&bytes));
-            }
-        }
-    }
-    Ok(address(&hashes))
 }

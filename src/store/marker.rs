@@ -4,8 +4,9 @@ use super::error::{StoreError, io};
 use super::index::{Index, Journal};
 use super::layout::{Layout, STORE_FORMAT, names};
 use super::lock;
+use super::maintenance::{database_files, remove_database};
 use crate::i18n::Note;
-use crate::output::StagedFile;
+use crate::output::{StagedFile, is_partial};
 use crate::record::read;
 use serde::{Deserialize, Serialize};
 use std::fs;
@@ -29,13 +30,14 @@ pub(super) struct Marker {
 pub fn init(path: &Path, shared_disk: bool) -> Result<Vec<Note>, StoreError> {
     let layout = Layout::at(path);
     fs::create_dir_all(path).map_err(io("output_error.create_folder", path))?;
-    if !names(path)?.is_empty() {
+    if !is_free(&layout)? {
         return Err(StoreError::Taken(path.to_owned()));
     }
     let shared_disk = shared_disk || lock::is_shared_disk(path);
     for folder in [layout.results(), layout.statements(), layout.pending()] {
         fs::create_dir_all(&folder).map_err(io("output_error.create_folder", &folder))?;
     }
+    remove_database(&layout.index())?;
     let index = Index::create(&layout.index(), shared_disk)?;
     let shared_disk = index.journal == Journal::Rollback;
     index.close()?;
@@ -43,10 +45,28 @@ pub fn init(path: &Path, shared_disk: bool) -> Result<Vec<Note>, StoreError> {
     let bytes = serde_json::to_vec_pretty(&marker)
         .map_err(|e| StoreError::Database { path: layout.marker(), reason: e.to_string() })?;
     // The last of all: a folder without it is no store.
-    let staged = StagedFile::begin(&layout.marker(), &[], true)?;
+    let staged = StagedFile::within_store(&layout.marker())?;
     staged.file()?.write_all(&bytes).map_err(io("output_error.write", &layout.marker()))?;
     staged.publish()?;
     Ok(if shared_disk { vec![on_shared_disk(&layout)] } else { vec![] })
+}
+
+/// True for a folder that is empty, or holds no more than what a killed `init` leaves: empty folders, and an index behind them.
+fn is_free(layout: &Layout) -> Result<bool, StoreError> {
+    let folders = [layout.results(), layout.statements(), layout.pending()];
+    let database = database_files(&layout.index());
+    let behind_folders = folders.iter().all(|f| f.is_dir());
+    for name in names(layout.root())? {
+        let path = layout.root().join(&name);
+        let is_left = match folders.contains(&path) {
+            true => names(&path)?.is_empty(),
+            false => is_partial(&name) || (behind_folders && database.contains(&path)),
+        };
+        if !is_left {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 /// What is to be known of a store on a disk that its users share.

@@ -4,16 +4,15 @@ use super::error::{StoreError, io};
 use super::folders;
 use super::index::{Age, Attempt, Counted, Filter, Index, Journal};
 use super::layout::{Layout, is_address, names};
-use super::lock::{self, Lock, Sharing};
+use super::lock::{self, FORGOTTEN_AFTER, Lock, Sharing};
+use super::maintenance;
 use super::marker::{marker, on_shared_disk};
 use super::statement::{self, Statement, What};
 use crate::i18n::Note;
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
-
-/// What is pending and has not appeared is forgotten after this time: no process takes as long between the two.
-const FORGOTTEN_AFTER: Duration = Duration::from_secs(24 * 3600);
+use std::time::SystemTime;
 
 /// A store that is open.
 #[derive(Debug)]
@@ -27,26 +26,31 @@ pub struct Store {
 }
 
 impl Store {
-    /// Opens a store to add to it. Results that the index lacks because a process was killed are taken up.
+    /// Opens a store to add to it. Results that the index lacks because a process was killed are taken up; an index that is missing, or
+    /// of an earlier version, is made anew, since the folders are what there is.
     ///
     /// # Errors
-    /// [`StoreError`]: no store, a missing, damaged or later index, a disk that cannot be written.
+    /// [`StoreError`]: no store, a damaged or later index, a disk that cannot be written.
     pub fn open(path: &Path) -> Result<Store, StoreError> {
         let layout = Layout::at(path);
         let marker = marker(&layout)?;
         let shared_disk = marker.shared_disk || lock::is_shared_disk(path);
-        let mut lock = lock::take(&layout.lock(), Sharing::Together)?;
-        let mut index = Index::open(&layout.index(), shared_disk)?;
-        if index.age()? != Age::Current {
-            drop((index, lock));
-            lock = lock::take(&layout.lock(), Sharing::Alone)?;
-            index = Index::open(&layout.index(), shared_disk)?;
-            // Another may have done it meanwhile.
-            if index.age()? != Age::Current {
-                index.migrate()?;
-            }
-        }
         let mut notes = vec![];
+        let mut lock = lock::take(&layout.lock(), Sharing::Together)?;
+        let index = loop {
+            match Index::open(&layout.index(), shared_disk) {
+                Ok(index) if index.age()? == Age::Current => break index,
+                Ok(_) | Err(StoreError::NoIndex(_)) => {
+                    // Who makes it anew must have the store alone; the own lock would be in the way.
+                    drop(lock);
+                    let alone = lock::take(&layout.lock(), Sharing::Alone)?;
+                    notes.extend(maintenance::make_current(&layout, shared_disk)?);
+                    drop(alone);
+                    lock = lock::take(&layout.lock(), Sharing::Together)?;
+                }
+                Err(e) => return Err(e),
+            }
+        };
         if index.journal == Journal::Rollback && !marker.shared_disk {
             notes.push(on_shared_disk(&layout));
         }
@@ -69,14 +73,30 @@ impl Store {
         marker(&layout)?;
         let log = layout.index().with_extension("sqlite-wal");
         let is_settled = fs::metadata(&log).map_or(true, |m| m.len() == 0);
-        let index = if is_settled {
-            Index::open_to_read(&layout.index())?
-        } else {
-            // What stands in the log cannot be had without writing: the folders tell it.
-            folders::index_in_memory(&layout)?
+        let opened = if is_settled { Index::open_to_read(&layout.index()).map(Some) } else { Ok(None) };
+        let index = match opened {
+            Ok(Some(index)) => index,
+            // What stands in the log cannot be had without writing, and no index can be made: the folders tell it.
+            Ok(None) | Err(StoreError::NoIndex(_) | StoreError::EarlierIndex { .. }) => {
+                folders::index_in_memory(&layout)?
+            }
+            Err(e) => return Err(e),
         };
         let notes = vec![Note::new("store.read_only").with("path", path.display().to_string())];
         Ok(Store { layout, index, shared_disk: false, read_only: true, notes, lock: None })
+    }
+
+    /// Opens a store to check it: an index that is missing is an error, not made anew in passing.
+    ///
+    /// # Errors
+    /// [`StoreError::NoIndex`], and as [`Store::open_to_read`].
+    pub fn open_to_verify(path: &Path) -> Result<Store, StoreError> {
+        let layout = Layout::at(path);
+        marker(&layout)?;
+        if layout.index().symlink_metadata().is_err() {
+            return Err(StoreError::NoIndex(layout.index()));
+        }
+        Store::open_to_read(path)
     }
 
     /// Where everything stands.
@@ -126,7 +146,7 @@ impl Store {
     /// What the index refuses, or a folder that cannot be read.
     pub fn places(&self, sha256: &str) -> Result<Vec<String>, StoreError> {
         let folder = self.layout.recordings().join(sha256);
-        let copies = names(&folder)?.into_iter().map(|n| folder.join(n).display().to_string());
+        let copies = self.layout.copies(sha256)?.into_iter().map(|n| folder.join(n).display().to_string());
         Ok(copies.chain(self.index.places(sha256)?).collect())
     }
 
@@ -142,16 +162,21 @@ impl Store {
         operator: &str,
         stated_at: String,
     ) -> Result<(), StoreError> {
+        // Two corrections that are stated at the same time could close a circle that neither sees.
+        let _turn = self.take_turn()?;
         let (superseded, by) = (self.result(superseded)?.address, self.result(by)?.address);
-        let mut next = Some(by.clone());
-        while let Some(address) = next {
-            if address == superseded {
-                return Err(StoreError::Circle { address });
-            }
-            next = self.result(&address)?.superseded.map(|c| c.by);
+        let corrections = self.index.corrections()?;
+        if leads_to(&corrections, &by, &superseded) {
+            return Err(StoreError::Circle { address: superseded });
         }
         let (reason, operator) = (reason.to_owned(), operator.to_owned());
         self.state(What::Correction { superseded, by, reason, operator }, stated_at)
+    }
+
+    /// Waits for the turn to decide something that another process must not decide meanwhile.
+    pub(super) fn take_turn(&self) -> Result<Lock, StoreError> {
+        self.writable()?;
+        lock::take(&self.layout.turn(), Sharing::Alone)
     }
 
     /// Writes a statement and its row.
@@ -216,6 +241,20 @@ impl Store {
         }
         Ok(())
     }
+}
+
+/// True where corrections lead from a result to another one, or where both are the same.
+pub(super) fn leads_to(corrections: &[(String, String)], from: &str, to: &str) -> bool {
+    let mut seen = BTreeSet::from([from]);
+    let mut open = vec![from];
+    while let Some(next) = open.pop() {
+        if next == to {
+            return true;
+        }
+        let by = corrections.iter().filter(|(superseded, _)| superseded == next).map(|(_, by)| by.as_str());
+        open.extend(by.filter(|by| seen.insert(by)));
+    }
+    false
 }
 
 /// Something that is about to appear in the store.

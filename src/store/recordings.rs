@@ -1,36 +1,32 @@
 //! Copies of recordings, the only part of a store that ever leaves it: recordings are large, and results do not need them.
 
 use super::entry::EntryRecording;
-use super::error::{StoreError, io};
+use super::error::StoreError;
 use super::index::Filter;
 use super::layout::{is_address, names};
 use super::opened::Store;
 use super::statement::What;
-use crate::output::StagedFile;
-use sha2::{Digest, Sha256};
+use crate::output::{ProvenCopy, TransferError, outside_stores, remove_abandoned};
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
-use std::fs::{self, File};
-use std::io::{Read, Write};
+use std::fs;
 use std::path::{Path, PathBuf};
-
-/// Bytes that are copied at a time.
-const BLOCK: usize = 1 << 20;
 
 impl Store {
     /// Copies the recordings of a result into the store; gives how many are new there.
     ///
     /// # Errors
-    /// [`StoreError::OtherRecording`] where a file is not the one that was evaluated, and what the disk refuses.
+    /// [`StoreError::OtherRecording`] where a file is not the one that was evaluated, [`StoreError::OtherCopy`] where the copy has been
+    /// changed, and what the disk refuses.
     pub fn keep_recordings(&mut self, address: &str) -> Result<usize, StoreError> {
         self.writable()?;
         let mut kept = 0;
         for recording in self.result(address)?.entry.recordings {
             let Some(target) = self.place_of_copy(&recording) else { continue };
-            if !target.exists() {
-                copy(Path::new(&recording.path), &target, &recording.sha256)?;
-                kept += 1;
-            }
+            // The user may have named it by a link.
+            let named = PathBuf::from(&recording.path);
+            let source = named.canonicalize().unwrap_or(named);
+            let copy = ProvenCopy::make(&source, &target, &recording.sha256)?;
+            kept += usize::from(copy.new);
         }
         Ok(kept)
     }
@@ -42,10 +38,11 @@ impl Store {
     }
 
     /// Moves the copies of recordings into another folder, but for those of results that were evaluated at a moment or later.
-    /// The new places are stated; a copy goes only when it is whole at its new place. Gives how many were moved.
+    /// The new places are stated; a copy goes only when it was read back whole at its new place. Gives how many were moved.
     ///
     /// # Errors
-    /// [`StoreError::OtherRecording`] where a copy has been changed, and what the disks refuse.
+    /// [`StoreError::InsideStore`] for a folder that lies in a store, [`StoreError::OtherRecording`] where a copy has been changed,
+    /// [`StoreError::OtherCopy`] where something else stands at its new place, and what the disks refuse.
     pub fn prune(&mut self, to: &Path, since: Option<&str>, stated_at: &str) -> Result<usize, StoreError> {
         self.writable()?;
         let stay: BTreeSet<String> = match since {
@@ -56,49 +53,36 @@ impl Store {
                 late.into_iter().flat_map(|a| a.entry.recordings).map(|r| r.sha256).collect()
             }
         };
+        // Said before anything is made or moved, also where there is nothing to move.
+        outside(&to.join("copy"), to)?;
         let mut moved = 0;
         for hash in
             names(&self.layout.recordings())?.into_iter().filter(|n| is_address(n) && !stay.contains(n))
         {
             let folder = self.layout.recordings().join(&hash);
-            for name in names(&folder)? {
-                let (from, target) = (folder.join(&name), to.join(&hash).join(&name));
-                if !target.exists() {
-                    copy(&from, &target, &hash)?;
-                }
-                let path = std::path::absolute(&target).unwrap_or(target).display().to_string();
+            remove_abandoned(&folder);
+            for name in self.layout.copies(&hash)? {
+                let target = to.join(&hash).join(&name);
+                // A link below the target could lead back.
+                outside(&target, to)?;
+                let copy = match ProvenCopy::make(&folder.join(&name), &target, &hash) {
+                    // Another has moved it meanwhile.
+                    Err(TransferError::NoSource(_)) => continue,
+                    made => made?,
+                };
+                let path = std::path::absolute(copy.target()).unwrap_or(target).display().to_string();
                 self.state(What::Place { sha256: hash.clone(), path }, stated_at.to_owned())?;
-                fs::remove_file(&from).map_err(io("store_error.move", &from))?;
+                copy.remove_source()?;
                 moved += 1;
             }
-            fs::remove_dir(&folder).map_err(io("store_error.move", &folder))?;
+            // Stays where another puts a copy into it.
+            let _ = fs::remove_dir(&folder);
         }
         Ok(moved)
     }
 }
 
-/// Copies a file whose hash is known; the copy appears whole or not at all.
-fn copy(from: &Path, to: &Path, sha256: &str) -> Result<(), StoreError> {
-    let mut source = File::open(from).map_err(io("store_error.unreadable", from))?;
-    let staged = StagedFile::begin(to, &[], false)?;
-    let mut target = staged.file()?;
-    let (mut hash, mut block) = (Sha256::new(), vec![0; BLOCK]);
-    loop {
-        let n = source.read(&mut block).map_err(io("store_error.unreadable", from))?;
-        if n == 0 {
-            break;
-        }
-        let part = block.get(..n).unwrap_or_default();
-        hash.update(part);
-        target.write_all(part).map_err(|e| staged.refused(e))?;
-    }
-    let found = hash.finalize().iter().fold(String::new(), |mut text, byte| {
-        let _ = write!(text, "{byte:02x}");
-        text
-    });
-    if found != sha256 {
-        return Err(StoreError::OtherRecording(from.to_owned()));
-    }
-    staged.publish()?;
-    Ok(())
+/// Refuses a place in a store, whatever links lead there.
+fn outside(place: &Path, to: &Path) -> Result<(), StoreError> {
+    outside_stores(place).map_err(|_| StoreError::InsideStore(to.to_owned()))
 }

@@ -70,7 +70,7 @@ fn file(layout: &Layout, hash: &str) -> PathBuf {
 /// Writes the file of a statement; it appears whole or not at all.
 pub(super) fn write(layout: &Layout, hash: &str, bytes: &[u8]) -> Result<(), StoreError> {
     let path = file(layout, hash);
-    let staged = StagedFile::begin(&path, &[], false)?;
+    let staged = StagedFile::within_store(&path)?;
     staged.file()?.write_all(bytes).map_err(io("output_error.write", &path))?;
     staged.publish()?;
     Ok(())

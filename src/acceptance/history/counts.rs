@@ -19,6 +19,7 @@ pub(super) fn counts(selection: &Selection<'_>) -> HistoryCounts {
         of_reference_units: count(&|t| t.is_reference()),
         superseded: count(&|t| t.attempt.superseded.is_some()),
         not_done: count(&|t| !t.is_done && t.attempt.superseded.is_none()),
+        incomplete: selection.incomplete().len(),
         without_serial: count(&|t| !t.is_reference() && t.attempt.entry.unit.serial.is_empty()),
     }
 }
@@ -28,9 +29,13 @@ fn share(count: usize, of: usize) -> Option<HistoryShare> {
     Some(HistoryShare { count, of, low, high })
 }
 
-/// First-pass and last-pass yield of every procedure.
+/// First-pass and last-pass yield of every procedure, over the units of which no attempt is missing.
 pub(super) fn yields(selection: &Selection<'_>) -> Vec<HistoryYield> {
-    let (first, last) = (selection.first_of_each(), selection.last_of_each());
+    let incomplete = selection.incomplete();
+    let (mut first, mut last) = (selection.first_of_each(), selection.last_of_each());
+    for tests in [&mut first, &mut last] {
+        tests.retain(|t| !incomplete.contains(&t.test()));
+    }
     let procedures: BTreeSet<&str> = first.iter().map(|t| t.attempt.entry.test.procedure.as_str()).collect();
     let of = |tests: &[Tested<'_>], procedure: &str| {
         let own = || tests.iter().filter(|t| t.attempt.entry.test.procedure == procedure);

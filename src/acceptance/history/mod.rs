@@ -67,6 +67,7 @@ fn notes(selection: &Selection<'_>, charts: &[HistoryChart]) -> Vec<Note> {
         ("history.note.not_done", counts.not_done),
         ("history.note.superseded", counts.superseded),
         ("history.note.without_serial", counts.without_serial),
+        ("history.note.incomplete", counts.incomplete),
     ] {
         if n > 0 {
             notes.push(Note::new(key).with("n", n));

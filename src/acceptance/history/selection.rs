@@ -34,7 +34,7 @@ impl Tested<'_> {
     }
 
     /// What tells tests of one unit by one procedure from others.
-    fn test(&self) -> (String, String) {
+    pub fn test(&self) -> (String, String) {
         (self.attempt.entry.unit.key(), self.attempt.entry.test.procedure.clone())
     }
 }
@@ -59,6 +59,11 @@ impl<'a> Selection<'a> {
     /// Results that count, of reference units.
     pub fn references(&self) -> impl Iterator<Item = Tested<'a>> {
         self.all().filter(|t| t.counts() && t.is_reference())
+    }
+
+    /// Tests of which the store lacks attempts that later ones name: which of them was the first, or failed, cannot be told.
+    pub fn incomplete(&self) -> BTreeSet<(String, String)> {
+        self.all().filter(|t| !t.attempt.missing.is_empty()).map(|t| t.test()).collect()
     }
 
     /// The first result that counts, of each product by each procedure, in the order of time.

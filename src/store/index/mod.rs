@@ -1,15 +1,17 @@
 //! The index of a store: a database that holds nothing which the folders do not.
 
+mod order;
 mod query;
 mod schema;
 mod write;
 
+pub(super) use query::StatementRow;
 pub use query::{Attempt, Correction, Counted, Filter};
 
 use super::error::{StoreError, io};
 use super::lock::PATIENCE;
 use rusqlite::{Connection, OpenFlags};
-use schema::{APPLICATION_ID, MIGRATIONS, VERSION};
+use schema::{APPLICATION_ID, TABLES, VERSION};
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -59,7 +61,7 @@ impl Index {
     /// Opens an index that cannot be written.
     ///
     /// # Errors
-    /// As [`Index::open`].
+    /// As [`Index::open`], and [`StoreError::EarlierIndex`].
     pub fn open_to_read(path: &Path) -> Result<Index, StoreError> {
         whole(path)?;
         let refused = |e: rusqlite::Error| StoreError::of_database(path, &e);
@@ -70,7 +72,7 @@ impl Index {
         let index = Index { path: path.to_owned(), db, journal: Journal::Rollback };
         match index.age()? {
             Age::Current => Ok(index),
-            Age::Earlier(_) => Err(StoreError::ReadOnly(path.to_owned())),
+            Age::Earlier(found) => Err(StoreError::EarlierIndex { path: path.to_owned(), found }),
         }
     }
 
@@ -83,7 +85,7 @@ impl Index {
         let db = Connection::open(path).map_err(refused)?;
         db.pragma_update(None, "application_id", APPLICATION_ID).map_err(refused)?;
         let mut index = Index { path: path.to_owned(), db, journal: Journal::Rollback };
-        index.migrate()?;
+        index.make_tables()?;
         index.journal = index.prepare(shared_disk)?;
         Ok(index)
     }
@@ -95,7 +97,7 @@ impl Index {
     pub fn in_memory(name: &Path) -> Result<Index, StoreError> {
         let db = Connection::open_in_memory().map_err(|e| StoreError::of_database(name, &e))?;
         let mut index = Index { path: name.to_owned(), db, journal: Journal::Rollback };
-        index.migrate()?;
+        index.make_tables()?;
         Ok(index)
     }
 
@@ -128,31 +130,32 @@ impl Index {
         }
     }
 
-    /// Brings the index to this version, after a copy of an earlier one was put beside it.
-    ///
-    /// # Errors
-    /// What the database refuses; the index is then as it was.
-    pub fn migrate(&mut self) -> Result<(), StoreError> {
-        let found: i64 = self
-            .db
-            .pragma_query_value(None, "user_version", |row| row.get(0))
-            .map_err(|e| self.refused(&e))?;
-        if found > 0 {
-            self.back_up(found)?;
-        }
-        let steps = MIGRATIONS.iter().skip(usize::try_from(found).unwrap_or(0));
+    /// Makes the tables of an empty database.
+    fn make_tables(&mut self) -> Result<(), StoreError> {
         let path = self.path.clone();
         let refused = |e: rusqlite::Error| StoreError::of_database(&path, &e);
         let change = self.db.transaction().map_err(refused)?;
-        for step in steps {
-            change.execute_batch(step).map_err(refused)?;
-        }
+        change.execute_batch(TABLES).map_err(refused)?;
         change.pragma_update(None, "user_version", VERSION).map_err(refused)?;
         change.commit().map_err(refused)
     }
 
-    /// A copy of the index beside it, by the version that it has.
-    fn back_up(&self, version: i64) -> Result<(), StoreError> {
+    /// Ends the use of an index that is to be replaced: its log goes into the file, so that it is not taken for that of another.
+    ///
+    /// # Errors
+    /// What the database refuses.
+    pub fn settle(self) -> Result<(), StoreError> {
+        let kept =
+            self.db.pragma_update_and_check(None, "journal_mode", "DELETE", |row| row.get::<_, String>(0));
+        kept.map_err(|e| self.refused(&e))?;
+        self.close()
+    }
+
+    /// Puts a copy of the index beside it, by the version that it has.
+    ///
+    /// # Errors
+    /// What the database or the disk refuses.
+    pub fn back_up(&self, version: i64) -> Result<(), StoreError> {
         let copy = self.path.with_extension(format!("sqlite.version-{version}"));
         if copy.exists() {
             fs::remove_file(&copy).map_err(io("output_error.write", &copy))?;
@@ -187,7 +190,7 @@ impl Index {
     pub fn check(&self) -> Result<(), StoreError> {
         let said: String = self
             .db
-            .pragma_query_value(None, "quick_check", |row| row.get(0))
+            .pragma_query_value(None, "integrity_check", |row| row.get(0))
             .map_err(|e| self.refused(&e))?;
         match said.as_str() {
             "ok" => Ok(()),

@@ -7,6 +7,7 @@ use crate::store::entry::{Entry, EntryMeasurand, EntryRecording, EntryTest, Entr
 use crate::store::error::StoreError;
 use rusqlite::types::Value;
 use rusqlite::{Row, params, params_from_iter};
+use std::collections::BTreeMap;
 
 /// Which results are asked for. What is `None` does not matter.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -41,10 +42,13 @@ pub struct Attempt {
     pub address: String,
     /// What the index has of it.
     pub entry: Entry,
-    /// Which test of the unit by the procedure it is, from 1; 0 for a unit without a serial number.
+    /// Which test of the unit by the procedure it is, from 1: as many as there are up to it, or as it states where some are missing;
+    /// 0 for a unit without a serial number.
     pub number: u64,
     /// What supersedes it; the latest where there are several.
     pub superseded: Option<Correction>,
+    /// Addresses of attempts that it names as earlier ones and that the store does not hold.
+    pub missing: Vec<String>,
 }
 
 /// A correction of a result.
@@ -60,17 +64,20 @@ pub struct Correction {
     pub stated_at: String,
 }
 
+/// What the index has of a statement: its hash, and its columns as text.
+pub(in super::super) type StatementRow = (String, Vec<String>);
+
 /// Columns of a result, in the order of [`result`].
 const RESULT: &str = "SELECT r.id, r.address, r.serial, r.model, r.lot, r.build_date, r.reference, r.attributes, r.procedure,
     r.revision, r.procedure_sha256, r.limits, r.limits_sha256, r.station, r.operator, r.evaluated_at, r.attempt, r.verdict,
     r.result_sha256,
     CASE WHEN r.serial_key = '' THEN 0 ELSE
-    (SELECT count(*) FROM result e WHERE e.serial_key = r.serial_key AND e.procedure = r.procedure
-     AND (e.evaluated_at, e.attempt, e.address) <= (r.evaluated_at, r.attempt, r.address)) END
+    max(r.attempt, (SELECT count(*) FROM result e WHERE e.serial_key = r.serial_key AND e.procedure = r.procedure
+     AND (e.placed_at, e.attempt, e.evaluated_at, e.address) <= (r.placed_at, r.attempt, r.evaluated_at, r.address))) END
     FROM result r";
 
-/// The order of results: by time, then as they state themselves, then by address.
-const ORDER: &str = " ORDER BY r.evaluated_at, r.attempt, r.address";
+/// The order of results: by time, but after those that they follow; then as they state themselves, then by address.
+const ORDER: &str = " ORDER BY r.placed_at, r.attempt, r.evaluated_at, r.address";
 
 impl Index {
     /// The results that a filter lets through, the earliest first.
@@ -112,12 +119,68 @@ impl Index {
         self.select(&query, vec![beginning.to_owned().into()]).map_err(|e| self.refused(&e))
     }
 
-    /// Addresses of all results, in ascending order.
+    /// The result at an address.
     ///
     /// # Errors
     /// What the database refuses.
-    pub fn addresses(&self) -> Result<Vec<String>, StoreError> {
-        self.texts("SELECT address FROM result ORDER BY address").map_err(|e| self.refused(&e))
+    pub fn at(&self, address: &str) -> Result<Option<Attempt>, StoreError> {
+        let found = self.select(&format!("{RESULT} WHERE r.address = ?1"), vec![address.to_owned().into()]);
+        Ok(found.map_err(|e| self.refused(&e))?.pop())
+    }
+
+    /// Every correction: the result that is superseded, and the one that counts in its place.
+    ///
+    /// # Errors
+    /// What the database refuses.
+    pub fn corrections(&self) -> Result<Vec<(String, String)>, StoreError> {
+        let read = || -> rusqlite::Result<Vec<(String, String)>> {
+            let mut query =
+                self.db.prepare_cached("SELECT superseded, by FROM correction ORDER BY statement")?;
+            query.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
+        };
+        read().map_err(|e| self.refused(&e))
+    }
+
+    /// Every statement, by its hash.
+    ///
+    /// # Errors
+    /// What the database refuses.
+    pub fn statements(&self) -> Result<Vec<StatementRow>, StoreError> {
+        let read = |query: &str, columns: usize| -> rusqlite::Result<Vec<StatementRow>> {
+            let mut query = self.db.prepare_cached(query)?;
+            let row = |row: &Row<'_>| {
+                Ok((row.get(0)?, (1..columns).map(|i| row.get(i)).collect::<Result<_, _>>()?))
+            };
+            query.query_map([], row)?.collect()
+        };
+        let corrections =
+            read("SELECT statement, superseded, by, reason, operator, stated_at FROM correction", 6);
+        let places = read("SELECT statement, sha256, path, stated_at FROM place", 4);
+        let mut all = corrections.map_err(|e| self.refused(&e))?;
+        all.extend(places.map_err(|e| self.refused(&e))?);
+        all.sort();
+        Ok(all)
+    }
+
+    /// What results are found and put in order by, of each address.
+    ///
+    /// # Errors
+    /// What the database refuses.
+    pub fn keys(&self) -> Result<BTreeMap<String, String>, StoreError> {
+        let read = || -> rusqlite::Result<BTreeMap<String, String>> {
+            let mut query = self.db.prepare("SELECT address, serial_key || ' ' || placed_at FROM result")?;
+            query.query_map([], |row| Ok((row.get(0)?, row.get(1)?)))?.collect()
+        };
+        read().map_err(|e| self.refused(&e))
+    }
+
+    /// The definitions of the tables, as the database holds them.
+    ///
+    /// # Errors
+    /// What the database refuses.
+    pub fn definitions(&self) -> Result<Vec<String>, StoreError> {
+        self.texts("SELECT type || ' ' || name || ' ' || coalesce(sql, '') FROM sqlite_master ORDER BY 1")
+            .map_err(|e| self.refused(&e))
     }
 
     /// Where a recording is: where it was evaluated, then where it was found later, the earliest first.
@@ -183,6 +246,19 @@ impl Index {
                 let bytes = row.get::<_, i64>(2)? as u64;
                 Ok(EntryRecording { path: row.get(0)?, sha256: row.get(1)?, bytes })
             })?
+            .collect::<rusqlite::Result<_>>()?;
+        entry.test.earlier = self
+            .db
+            .prepare_cached("SELECT address FROM earlier WHERE result = ?1 ORDER BY position")?
+            .query_map([id], |row| row.get(0))?
+            .collect::<rusqlite::Result<_>>()?;
+        attempt.missing = self
+            .db
+            .prepare_cached(
+                "SELECT address FROM earlier e WHERE result = ?1
+                 AND NOT EXISTS (SELECT 1 FROM result r WHERE r.address = e.address) ORDER BY position",
+            )?
+            .query_map([id], |row| row.get(0))?
             .collect::<rusqlite::Result<_>>()?;
         let correction = |row: &Row<'_>| {
             Ok(Correction {
@@ -254,6 +330,7 @@ fn result(row: &Row<'_>) -> rusqlite::Result<(i64, Attempt)> {
             operator: row.get(14)?,
             evaluated_at: row.get(15)?,
             attempt: row.get::<_, i64>(16)? as u64,
+            earlier: vec![],
         },
         verdict: verdict(&row.get::<_, String>(17)?),
         result_sha256: row.get(18)?,
@@ -262,7 +339,7 @@ fn result(row: &Row<'_>) -> rusqlite::Result<(i64, Attempt)> {
         recordings: vec![],
     };
     let number = row.get::<_, i64>(19)? as u64;
-    Ok((row.get(0)?, Attempt { address: row.get(1)?, entry, number, superseded: None }))
+    Ok((row.get(0)?, Attempt { address: row.get(1)?, entry, number, superseded: None, missing: vec![] }))
 }
 
 fn measurand(row: &Row<'_>) -> rusqlite::Result<EntryMeasurand> {

@@ -1,15 +1,14 @@
-//! The tables of the index, version after version.
+//! The tables of the index. An index of an earlier version is made anew from the folders, which hold all of it.
 
 /// Marks a database as the index of a store: `SAGN` in ASCII.
 pub(super) const APPLICATION_ID: i64 = 0x5341_474E;
 
-/// The steps from each version of the index to the next; an empty database has version 0.
-pub(super) const MIGRATIONS: &[&str] = &[VERSION_1];
+/// Version of the tables; an empty database has version 0.
+pub(super) const VERSION: i64 = 2;
 
-/// The latest version.
-pub(super) const VERSION: i64 = MIGRATIONS.len() as i64;
-
-const VERSION_1: &str = "
+/// The tables. `placed_at` is the moment by which attempts are put in order: that of the evaluation, but for an attempt whose
+/// clock stood before that of one that came before it.
+pub(super) const TABLES: &str = "
 CREATE TABLE result (
     id INTEGER PRIMARY KEY,
     address TEXT NOT NULL UNIQUE,
@@ -28,14 +27,15 @@ CREATE TABLE result (
     station TEXT NOT NULL,
     operator TEXT NOT NULL,
     evaluated_at TEXT NOT NULL,
+    placed_at TEXT NOT NULL,
     attempt INTEGER NOT NULL,
     verdict TEXT NOT NULL,
     result_sha256 TEXT NOT NULL
 );
-CREATE INDEX result_unit ON result (serial_key, procedure, evaluated_at, attempt, address);
-CREATE INDEX result_lot ON result (lot, evaluated_at);
-CREATE INDEX result_model ON result (model, procedure, evaluated_at);
-CREATE INDEX result_time ON result (evaluated_at, attempt, address);
+CREATE INDEX result_unit ON result (serial_key, procedure, placed_at, attempt, evaluated_at, address);
+CREATE INDEX result_lot ON result (lot, placed_at);
+CREATE INDEX result_model ON result (model, procedure, placed_at);
+CREATE INDEX result_time ON result (placed_at, attempt, evaluated_at, address);
 
 CREATE TABLE measurand (
     result INTEGER NOT NULL REFERENCES result (id) ON DELETE CASCADE,
@@ -73,6 +73,13 @@ CREATE TABLE recording (
     PRIMARY KEY (result, position)
 ) WITHOUT ROWID;
 CREATE INDEX recording_hash ON recording (sha256);
+
+CREATE TABLE earlier (
+    result INTEGER NOT NULL REFERENCES result (id) ON DELETE CASCADE,
+    position INTEGER NOT NULL,
+    address TEXT NOT NULL,
+    PRIMARY KEY (result, position)
+) WITHOUT ROWID;
 
 CREATE TABLE correction (
     statement TEXT PRIMARY KEY,

@@ -1,6 +1,7 @@
 //! Rows of results and statements.
 
 use super::Index;
+use super::order::put_in_order;
 use crate::store::entry::Entry;
 use crate::store::error::StoreError;
 use crate::store::statement::{Statement, What};
@@ -12,7 +13,13 @@ impl Index {
     /// # Errors
     /// What the database refuses.
     pub fn add(&mut self, address: &str, entry: &Entry) -> Result<bool, StoreError> {
-        self.in_one(|db| insert(db, address, entry))
+        self.in_one(|db| {
+            let new = insert(db, address, entry)?;
+            if new {
+                put_in_order(db, Some((&entry.unit.key(), &entry.test.procedure)))?;
+            }
+            Ok(new)
+        })
     }
 
     /// Adds what is stated under the hash of a statement.
@@ -43,6 +50,7 @@ impl Index {
         for (hash, statement) in statements {
             state(&change, hash, statement).map_err(refused)?;
         }
+        put_in_order(&change, None).map_err(refused)?;
         change.commit().map_err(refused)?;
         Ok(count)
     }
@@ -65,9 +73,9 @@ fn insert(db: &Connection, address: &str, entry: &Entry) -> rusqlite::Result<boo
     let new = db
         .prepare_cached(
             "INSERT OR IGNORE INTO result (address, serial, serial_key, model, lot, build_date, reference, attributes,
-             procedure, revision, procedure_sha256, limits, limits_sha256, station, operator, evaluated_at, attempt,
+             procedure, revision, procedure_sha256, limits, limits_sha256, station, operator, evaluated_at, placed_at, attempt,
              verdict, result_sha256)
-             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?17, ?18, ?19)",
+             VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?9, ?10, ?11, ?12, ?13, ?14, ?15, ?16, ?16, ?17, ?18, ?19)",
         )?
         .execute(params![
             address,
@@ -123,6 +131,10 @@ fn insert(db: &Connection, address: &str, entry: &Entry) -> rusqlite::Result<boo
     let mut recordings = db.prepare_cached("INSERT INTO recording VALUES (?1, ?2, ?3, ?4, ?5)")?;
     for (position, r) in entry.recordings.iter().enumerate() {
         recordings.execute(params![id, position as i64, r.path, r.sha256, r.bytes as i64])?;
+    }
+    let mut earlier = db.prepare_cached("INSERT INTO earlier VALUES (?1, ?2, ?3)")?;
+    for (position, before) in test.earlier.iter().enumerate() {
+        earlier.execute(params![id, position as i64, before])?;
     }
     Ok(true)
 }
