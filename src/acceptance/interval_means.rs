@@ -66,7 +66,7 @@ pub(super) fn complete(record: &mut RunRecord, means: Vec<IntervalMeanRecord>) -
 }
 
 /// The same as CSV.
-fn csv(records: &[IntervalMeanRecord]) -> String {
+pub(super) fn csv(records: &[IntervalMeanRecord]) -> String {
     let mut out = String::from(
         "channel,number,name,from_s,to_s,row,level,evidence,level_unit,axis,without,temperature_degC,mean_deg_h,\
          standard_uncertainty_deg_h,degrees_of_freedom,low_deg_h,high_deg_h\n",

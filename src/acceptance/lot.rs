@@ -3,22 +3,32 @@
 use crate::estimate::Verdict;
 use crate::ingest::lot::Member;
 use crate::record::{
-    LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, ProcedureRecord, Program, RunRecord, Session,
-    VerdictCounts,
+    LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, ProcedureRecord, Program, RunRecord, SerialSource,
+    Session, VerdictCounts,
 };
 
 /// What a lot has of one of its units.
 pub fn unit(member: &Member, record: &RunRecord) -> LotUnit {
+    of_record(record, member.serial_from, member.recording.display().to_string(), member.folder.clone())
+}
+
+/// What a lot has of the record of a unit whose recording was named so, in a folder of its own.
+pub fn of_record(
+    record: &RunRecord,
+    serial_from: SerialSource,
+    recording: String,
+    folder: String,
+) -> LotUnit {
     LotUnit {
         unit_under_test: record.unit_under_test.clone(),
-        serial_from: member.serial_from,
-        recording: member.recording.display().to_string(),
+        serial_from,
+        recording,
         files: record
             .recording
             .iter()
             .map(|f| LotFile { path: f.path.clone(), sha256: f.sha256.clone() })
             .collect(),
-        folder: member.folder.clone(),
+        folder,
         verdict: record.verdict,
         summary: record.summary.clone(),
         conditions: record.conditions.iter().map(LotCondition::of).collect(),

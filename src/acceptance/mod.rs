@@ -34,6 +34,7 @@ mod reading;
 mod request;
 pub mod siblings;
 mod sinks;
+pub mod tables;
 mod test_kind;
 pub mod verdict;
 

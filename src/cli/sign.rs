@@ -1,44 +1,19 @@
-//! `sagnac sign` and `sagnac approve`: a signature on a folder of results.
+//! `sagnac sign`, and `sagnac approve` for one of its roles: a signature on a folder of results.
 
+use super::options::renderer;
 use super::{exit, place};
 use crate::estimate::Verdict;
 use crate::i18n::{Lang, Note};
-use crate::output::Kind;
 use crate::record::{self, RunRecord};
 use crate::signing::{self, Role, SIGNATURES_FOLDER, SignOff, Waived};
-use crate::verify::{Finding, Folder, hashes, stated_hashes};
+use crate::verify::{Finding, Folder, contents, required, run_of, stated_hashes};
 use chrono::{SecondsFormat, Utc};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
+/// What is signed, in which role and by which key.
 #[derive(Debug, Args)]
 pub struct SignArgs {
-    #[command(flatten)]
-    what: KeyArgs,
-    /// What the signer did: made the test, checked the result, decided on the unit
-    #[arg(long, value_name = "ROLE", default_value = "tested")]
-    role: RoleArg,
-}
-
-#[derive(Debug, Args)]
-pub struct ApproveArgs {
-    #[command(flatten)]
-    what: KeyArgs,
-    /// What the signer did: made the test, checked the result, decided on the unit
-    #[arg(long, value_name = "ROLE", default_value = "approved")]
-    role: RoleArg,
-    /// Row that is let pass in spite of its verdict: the id of its measurand, with @CHANNEL where there are several; several by
-    /// repeating the option, each with its reason
-    #[arg(long, value_name = "ROW", requires = "reason")]
-    waive: Vec<String>,
-    /// Reason of a waiver
-    #[arg(long, value_name = "TEXT", requires = "waive")]
-    reason: Vec<String>,
-}
-
-/// What is signed and by which key.
-#[derive(Debug, Args)]
-struct KeyArgs {
     /// Folder of a result, or its record
     #[arg(value_name = "DIR")]
     folder: PathBuf,
@@ -48,6 +23,19 @@ struct KeyArgs {
     /// Name of the signer
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
+    /// What the signer did: made the test, checked the result, decided on the unit [default: tested; of `approve`: approved]
+    #[arg(long, value_name = "ROLE")]
+    role: Option<RoleArg>,
+    /// Row that is let pass in spite of its verdict: the id of its measurand, with @CHANNEL where there are several; several by
+    /// repeating the option, each with its reason
+    #[arg(long, value_name = "ROW", requires = "reason")]
+    waive: Vec<String>,
+    /// Reason of a waiver
+    #[arg(long, value_name = "TEXT", requires = "waive")]
+    reason: Vec<String>,
+    /// Folder of the templates that the pages were made with
+    #[arg(long, value_name = "DIR")]
+    templates: Option<PathBuf>,
 }
 
 /// What a signer did.
@@ -68,42 +56,45 @@ impl From<RoleArg> for Role {
     }
 }
 
+/// Signs a folder.
 pub fn sign(args: &SignArgs, lang: Lang) -> Result<u8, String> {
-    put(&args.what, args.role.into(), vec![], false, lang)
+    put(args, args.role.unwrap_or(RoleArg::Tested).into(), false, lang)
 }
 
-pub fn approve(args: &ApproveArgs, lang: Lang) -> Result<u8, String> {
-    if args.waive.len() != args.reason.len() {
-        return Err(place::error(&"signing.reasons".into(), lang));
-    }
-    let waivers = args.waive.iter().zip(&args.reason);
-    let waivers = waivers.map(|(row, reason)| Waived { row: row.clone(), reason: reason.clone() }).collect();
-    put(&args.what, args.role.into(), waivers, true, lang)
+/// Signs a folder on which another signature stands already.
+pub fn approve(args: &SignArgs, lang: Lang) -> Result<u8, String> {
+    put(args, args.role.unwrap_or(RoleArg::Approved).into(), true, lang)
 }
 
-/// Signs a folder that is as it was written; `follows` where another signature must stand there already.
-fn put(args: &KeyArgs, role: Role, waivers: Vec<Waived>, follows: bool, lang: Lang) -> Result<u8, String> {
+/// Signs a folder that is what its record gives; `follows` where another signature must stand there already. No key is used before all
+/// of it was checked.
+fn put(args: &SignArgs, role: Role, follows: bool, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
+    let waivers = waivers(args).map_err(say)?;
     let folder = Folder::at(&args.folder).map_err(say)?;
-    let wrong: Vec<Finding> =
-        hashes(&folder, SIGNATURES_FOLDER).into_iter().filter(Finding::differs).collect();
-    if let Some(Finding::Differs(note)) = wrong.first() {
-        return Err(say(Note::new("signing.changed").with("why", note.clone())));
+    let _held = signing::hold(&folder.path);
+    for finding in contents(&folder, &renderer(args.templates.as_deref(), lang)?) {
+        let key = match finding {
+            Finding::Differs(_) => "signing.changed",
+            Finding::Undone(_) => "signing.unchecked",
+            Finding::Agrees(_) | Finding::Unchecked(_) => continue,
+        };
+        return Err(say(Note::new(key).with("why", finding.note().clone())));
     }
     let files = signing::files_of(&folder.path, stated_hashes(&folder.path).into_keys());
     let links = signing::chain(&folder.path, &files);
     if let Some(link) = links.iter().find(|l| !l.broken.is_empty()) {
         return Err(say(Note::new("signing.broken_chain").with("name", link.name.as_str())));
     }
+    let strays = signing::strays(&folder.path);
+    if let Some(stray) = strays.iter().find(|stray| !signing::is_leftover(stray, links.len())) {
+        let why = Note::new("verify.added").with("name", stray.as_str());
+        return Err(say(Note::new("signing.changed").with("why", why)));
+    }
     if follows && links.is_empty() {
         return Err(say("signing.nothing_to_approve".into()));
     }
-    let run: Option<RunRecord> = match folder.kind {
-        Kind::Result => {
-            Some(record::read::open(&folder.record_file()).map_err(|e| say(e.note(&folder.record_file())))?)
-        }
-        _ => None,
-    };
+    let run = run_of(&folder);
     for waived in &waivers {
         may_be_waived(run.as_ref(), &waived.row).map_err(say)?;
     }
@@ -117,6 +108,7 @@ fn put(args: &KeyArgs, role: Role, waivers: Vec<Waived>, follows: bool, lang: La
         serial: run.as_ref().and_then(|r| r.unit_under_test.serial.clone()),
         procedure_sha256: procedure.map(|p| p.sha256.clone()),
         limits_sha256: procedure.and_then(|p| Some(p.limits.as_ref()?.sha256.clone())),
+        required: required(&folder, &links).into_iter().collect(),
         previous: None,
         waivers,
     };
@@ -124,6 +116,18 @@ fn put(args: &KeyArgs, role: Role, waivers: Vec<Waived>, follows: bool, lang: La
     let written = folder.path.join(SIGNATURES_FOLDER).join(name);
     place::print(&format!("{}\n", place::shown(&written)));
     Ok(exit::PASS)
+}
+
+/// The rows that are to be let pass, each with its reason.
+fn waivers(args: &SignArgs) -> Result<Vec<Waived>, Note> {
+    if args.waive.len() != args.reason.len() {
+        return Err("signing.reasons".into());
+    }
+    let each = |(row, reason): (&String, &String)| match reason.trim() {
+        "" => Err(Note::new("signing.empty_reason").with("row", row.as_str())),
+        reason => Ok(Waived { row: row.clone(), reason: reason.to_owned() }),
+    };
+    args.waive.iter().zip(&args.reason).map(each).collect()
 }
 
 /// Refuses to waive what is no row of the result, or a row that passed.

@@ -2,7 +2,7 @@
 
 use super::{inputs, place};
 use crate::i18n::{Lang, Note};
-use crate::output::{OutputError, StagedFolder, StagedPart};
+use crate::output::{Kind, LIMITS_FILE, OutputError, PROCEDURE_FILE, StagedFolder, StagedPart};
 use crate::report::export::{Dcc, EXPORTERS, Exporter, FURTHER, export};
 use crate::report::pdf::{MAKES_PDF, PdfPages};
 use crate::report::{Document, Renderer, ReportError, Results};
@@ -111,6 +111,12 @@ impl Writer {
         for (name, contents) in &files {
             if !whole || name != record_file {
                 target.write(&format!("{below}{name}"), contents).map_err(|e| self.refused(&e))?;
+            }
+        }
+        // What the test was made by stays with its results in every form: it tells which signatures are asked for.
+        for (name, text) in document.tables.iter().filter(|(name, _)| !files.contains_key(name)) {
+            if matches!(name.as_str(), PROCEDURE_FILE | LIMITS_FILE) && document.kind() == Kind::Result {
+                target.write(&format!("{below}{name}"), text.as_bytes()).map_err(|e| self.refused(&e))?;
             }
         }
         // The hash on the pages of a part is that of its record; where no record is written, there is none to name.

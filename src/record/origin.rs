@@ -43,6 +43,9 @@ pub struct ProcedureRecord {
     pub path: String,
     /// SHA-256 of the file.
     pub sha256: String,
+    /// The roles whose signatures it asks for: `tested`, `reviewed`, `approved`; absent in earlier results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub signatures: Option<Vec<String>>,
     /// The limits file, when one was given.
     pub limits: Option<LimitsFile>,
 }

@@ -28,6 +28,7 @@ pub mod unit;
 pub mod view;
 
 pub use document::Document;
+pub use figure_file::FIGURES_FILE;
 pub use render::{Renderer, ReportError, render_html, render_markdown};
 pub use results::{ALTERNATIVES_FILE, ExplanationResults, JointResults, Results, RunResults, StoredResults};
 

@@ -2,7 +2,7 @@
 
 use super::number;
 use super::prose::{self, prose};
-use super::signatures::{Signature, SignatureView};
+use super::signatures::{Signature, SignatureView, waived};
 use super::translator::Translator;
 use super::view::View;
 use crate::figure::Figure;
@@ -245,6 +245,7 @@ impl Renderer {
         });
         let signatures: Vec<SignatureView> = self.signatures.iter().map(|s| s.view(lang)).collect();
         env.add_global("signatures", Value::from(Serde(&signatures)));
+        env.add_global("waived", Value::from(Serde(&waived(&self.signatures, lang))));
         let words = Translator { lang };
         env.add_function("t", move |key: String, args: Kwargs| -> Result<String, minijinja::Error> {
             let mut given: Vec<(String, String)> = vec![];

@@ -203,6 +203,8 @@ pub struct StoredResults {
     pub results: Results,
     /// What they were made from, as the result lists it.
     pub inputs: BTreeMap<String, String>,
+    /// The files of the folder, as the result lists them.
+    pub files: Vec<String>,
     /// What is not there any more, or was never kept: the page is made without it.
     pub missing: Vec<Note>,
 }
@@ -250,7 +252,7 @@ impl StoredResults {
             }
             _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),
         };
-        Ok(StoredResults { results, inputs: listing.inputs, missing: from.missing })
+        Ok(StoredResults { results, inputs: listing.inputs, files: from.files, missing: from.missing })
     }
 }
 

@@ -2,7 +2,8 @@
 
 use super::number::date_time;
 use super::translator::Translator;
-use crate::i18n::Lang;
+use crate::i18n::{Arg, Lang, Localize, Note};
+use crate::measurand;
 use crate::signing::{Link, Role};
 use serde::{Deserialize, Serialize};
 use std::path::Path;
@@ -36,10 +37,27 @@ pub struct WaivedRow {
     pub reason: String,
 }
 
+/// A row that a signature which holds lets pass, as a page marks it.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct WaivedView {
+    /// Id of the measurand.
+    pub id: String,
+    /// Channel; empty where the quantity has but one.
+    pub channel: String,
+    /// Name of the quantity.
+    pub row: String,
+    /// Who decided: the name, or else the key.
+    pub by: String,
+    /// Why.
+    pub reason: String,
+}
+
 /// The same in the words of a page.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct SignatureView {
-    /// What the signer did.
+    /// What the signer did: the id of the role.
+    pub role_id: &'static str,
+    /// What the signer did, in words.
     pub role: String,
     /// Name of the signer.
     pub name: String,
@@ -52,7 +70,25 @@ pub struct SignatureView {
     /// Whether it holds.
     pub status_word: String,
     /// Rows that it lets pass.
-    pub waived: Vec<WaivedRow>,
+    pub waived: Vec<WaivedView>,
+}
+
+/// The name of a row as a waiver states it: the id of its measurand, with `@channel` where there are several.
+pub fn row_name(row: &str) -> Arg {
+    let (id, channel) = row.split_once('@').map_or((row, None), |(id, channel)| (id, Some(channel)));
+    let name = match measurand::find(id) {
+        Some(_) => Arg::key("measurand", id),
+        None => Arg::from(id),
+    };
+    match channel {
+        Some(channel) => Note::new("signer.row").with("row", name).with("channel", channel).into(),
+        None => name,
+    }
+}
+
+/// The rows that signatures let pass which hold.
+pub(super) fn waived(signatures: &[Signature], lang: Lang) -> Vec<WaivedView> {
+    signatures.iter().filter(|s| s.holds).flat_map(|s| s.waived_view(lang)).collect()
 }
 
 /// The signatures that the pages of a folder show, where they are those of another.
@@ -86,13 +122,29 @@ impl Signature {
         let words = Translator { lang };
         let (status, key) = if self.holds { ("ok", "signer.holds") } else { ("invalid", "signer.broken") };
         SignatureView {
+            role_id: self.role.id(),
             role: words.name("signer", self.role.id()),
             name: self.name.clone().unwrap_or_default(),
             at: date_time(&self.signed_at),
             key: self.key.clone().unwrap_or_default(),
             status,
             status_word: words.t(key),
-            waived: self.waived.clone(),
+            waived: self.waived_view(lang),
         }
+    }
+
+    fn waived_view(&self, lang: Lang) -> Vec<WaivedView> {
+        let by = self.name.clone().or_else(|| self.key.clone()).unwrap_or_default();
+        let each = |w: &WaivedRow| {
+            let (id, channel) = w.row.split_once('@').unwrap_or((&w.row, ""));
+            WaivedView {
+                id: id.to_owned(),
+                channel: channel.to_owned(),
+                row: Note::new("signer.quantity").with("row", row_name(&w.row)).say(lang),
+                by: by.clone(),
+                reason: w.reason.clone(),
+            }
+        };
+        self.waived.iter().map(each).collect()
     }
 }

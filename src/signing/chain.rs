@@ -4,16 +4,23 @@ use super::key::{self, Invalid, KeyError};
 use super::role::Role;
 use super::statement::{Previous, SIGN_OFF, STATEMENT, SignOff, Statement, Subject};
 use crate::i18n::{Note, io_reason};
-use crate::output::{CHECKSUMS_FILE, StagedFile, sha256};
-use std::collections::BTreeMap;
-use std::fs;
+use crate::output::{
+    CHECKSUMS_FILE, Found, SIGNATURES_FOLDER, StagedFile, found_below, is_partial, read_below, sha256,
+    sha256_below,
+};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::Write;
 use std::path::Path;
-
-/// Folder of the signatures in a folder of results.
-pub const SIGNATURES_FOLDER: &str = "signatures";
 
 /// Ending of the file of a signature, behind the name of its statement.
 const SIGNATURE: &str = ".sig";
+
+/// Ending of the file of a statement.
+const STATEMENT_ENDING: &str = ".json";
+
+/// Largest statement or signature that is read, bytes.
+const MAX_BYTES: u64 = 64 << 20;
 
 /// One statement with its signature.
 #[derive(Debug, Clone)]
@@ -64,21 +71,15 @@ impl Link {
 /// they are, by their names.
 pub fn chain(folder: &Path, files: &BTreeMap<String, String>) -> Vec<Link> {
     let at = folder.join(SIGNATURES_FOLDER);
-    let mut names: Vec<String> = fs::read_dir(&at)
-        .into_iter()
-        .flatten()
-        .flatten()
-        .map(|e| e.file_name().to_string_lossy().into_owned())
-        .filter(|name| name.ends_with(".json"))
-        .collect();
-    names.sort();
+    let (statements, _) = contents(folder);
     let mut links: Vec<Link> = vec![];
-    for name in names {
-        let bytes = fs::read(at.join(&name)).unwrap_or_default();
+    for name in statements {
+        let bytes = read_below(&at, &name, MAX_BYTES).unwrap_or_default();
         let mut broken = vec![];
         let statement = statement(&bytes);
-        let key = match fs::read_to_string(at.join(format!("{name}{SIGNATURE}"))) {
-            Ok(signature) => match key::verify(&bytes, &signature) {
+        let signature = read_below(&at, &format!("{name}{SIGNATURE}"), MAX_BYTES).ok();
+        let key = match signature.and_then(|bytes| String::from_utf8(bytes).ok()) {
+            Some(signature) => match key::verify(&bytes, &signature) {
                 Ok(key) => Some(key),
                 Err(why) => {
                     broken.push(match why {
@@ -88,7 +89,7 @@ pub fn chain(folder: &Path, files: &BTreeMap<String, String>) -> Vec<Link> {
                     None
                 }
             },
-            Err(_) => {
+            None => {
                 broken.push(Broken::Unsigned);
                 None
             }
@@ -109,6 +110,44 @@ pub fn chain(folder: &Path, files: &BTreeMap<String, String>) -> Vec<Link> {
     links
 }
 
+/// What the folder of signatures holds: the names of statements in their order, and everything that is neither a statement nor the
+/// signature of one.
+fn contents(folder: &Path) -> (Vec<String>, Vec<String>) {
+    let found = found_below(&folder.join(SIGNATURES_FOLDER)).unwrap_or_default();
+    let is_statement = |(name, kind): &&(String, Found)| {
+        *kind == Found::File && name.ends_with(STATEMENT_ENDING) && !name.contains('/')
+    };
+    let statements: Vec<String> = found.iter().filter(is_statement).map(|(name, _)| name.clone()).collect();
+    let own: BTreeSet<String> =
+        statements.iter().flat_map(|name| [name.clone(), format!("{name}{SIGNATURE}")]).collect();
+    let others = found.into_iter().filter(|(name, kind)| *kind != Found::File || !own.contains(name));
+    // What a killed process was writing goes with the next signature.
+    let others = others.filter(|(name, kind)| *kind != Found::File || !is_partial(name));
+    (statements, others.map(|(name, _)| name).collect())
+}
+
+/// The files of the signatures of a folder, by their names in the folder of signatures; a signature comes before its statement, as
+/// it is written.
+pub fn files(folder: &Path) -> Vec<String> {
+    let (statements, _) = contents(folder);
+    statements.into_iter().flat_map(|name| [format!("{name}{SIGNATURE}"), name]).collect()
+}
+
+/// What stands among the signatures of a folder and is none, by its name in the folder.
+pub fn strays(folder: &Path) -> Vec<String> {
+    contents(folder).1.into_iter().map(|name| format!("{SIGNATURES_FOLDER}/{name}")).collect()
+}
+
+/// True for a signature without its statement, which a process that is killed between the two leaves behind.
+pub fn is_leftover(stray: &str, statements: usize) -> bool {
+    let beginning = format!("{SIGNATURES_FOLDER}/{:02}-", statements + 1);
+    let ending = format!("{STATEMENT_ENDING}{SIGNATURE}");
+    stray
+        .strip_prefix(&beginning)
+        .and_then(|rest| rest.strip_suffix(&ending))
+        .is_some_and(|role| Role::of(role).is_some())
+}
+
 fn statement(bytes: &[u8]) -> Option<Statement> {
     let statement: Statement = serde_json::from_slice(bytes).ok()?;
     let known = statement.statement_type == STATEMENT && statement.predicate_type == SIGN_OFF;
@@ -125,8 +164,15 @@ fn differing(statement: &Statement, files: &BTreeMap<String, String>) -> Vec<Bro
     changed.chain(unsaid.map(|name| Broken::Unsaid(name.clone()))).collect()
 }
 
-/// Signs the files of a folder; gives the name of the statement. `about` says what is signed, without the statement before it,
-/// which is filled in.
+/// Holds the folder for one who signs it, so that two do not take the same place in the chain. Where the file system has no locks,
+/// nothing is held.
+pub fn hold(folder: &Path) -> Option<File> {
+    let file = File::open(folder).ok()?;
+    file.lock().ok().map(|()| file)
+}
+
+/// Signs the files of a folder that is held; gives the name of the statement. `about` says what is signed, without the statement
+/// before it, which is filled in.
 ///
 /// # Errors
 /// A note where the key or the disk refuses.
@@ -138,7 +184,7 @@ pub fn sign(
 ) -> Result<String, Note> {
     let links = chain(folder, files);
     let previous = links.last().map(|l| Previous { name: l.name.clone(), sha256: l.sha256.clone() });
-    let name = format!("{:02}-{}.json", links.len() + 1, about.role.id());
+    let name = format!("{:02}-{}{STATEMENT_ENDING}", links.len() + 1, about.role.id());
     let subject = files.iter().map(|(name, hash)| Subject {
         name: name.clone(),
         digest: BTreeMap::from([("sha256".to_owned(), hash.clone())]),
@@ -166,21 +212,26 @@ pub fn sign(
         let note = Note::new("output_error.create_folder").with("path", at.display().to_string());
         note.with("reason", io_reason(&e))
     })?;
+    // What a killed process left of a signature at this place in the chain was never one.
+    for stray in strays(folder).iter().filter(|stray| is_leftover(stray, links.len())) {
+        let _ = fs::remove_file(folder.join(stray));
+    }
     // The statement comes last: a signature without one is none.
     for (name, bytes) in [(format!("{name}{SIGNATURE}"), signature.into_bytes()), (name.clone(), bytes)] {
-        let staged = StagedFile::begin(&at.join(&name), &[], false).map_err(|e| e.note())?;
-        let written = std::io::Write::write_all(&mut staged.file().map_err(|e| e.note())?, &bytes);
+        let staged = StagedFile::within_store(&at.join(&name)).map_err(|e| e.note())?;
+        let written = staged.file().map_err(|e| e.note())?.write_all(&bytes);
         written.map_err(|e| staged.refused(e).note())?;
         staged.publish().map_err(|e| e.note())?;
     }
     Ok(name)
 }
 
-/// The hashes of the files of a folder as they are, by the names that it states, that of the list among them.
+/// The hashes of the files of a folder as they are, by the names that it states, that of the list among them. What is no ordinary
+/// file inside the folder has none.
 pub fn files_of(folder: &Path, stated: impl Iterator<Item = String>) -> BTreeMap<String, String> {
     stated
         .chain(std::iter::once(CHECKSUMS_FILE.to_owned()))
-        .filter_map(|name| Some((sha256(&fs::read(folder.join(&name)).ok()?), name)))
+        .filter_map(|name| Some((sha256_below(folder, &name).ok()?, name)))
         .map(|(hash, name)| (name, hash))
         .collect()
 }

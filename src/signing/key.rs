@@ -1,12 +1,16 @@
 //! Keys and signatures in the forms of OpenSSH, so that `ssh-keygen -Y verify` checks them too.
 
 use ssh_key::{Algorithm, HashAlg, LineEnding, PrivateKey, PublicKey, SshSig};
-use std::io::Write;
+use std::fs::File;
+use std::io::{Read, Write};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// What the signatures are for, as `ssh-keygen -n` takes it: a signature for something else is none here.
 pub const NAMESPACE: &str = "sagnac";
+
+/// Largest file of a key that is read, bytes.
+const MAX_KEY_BYTES: u64 = 1 << 20;
 
 /// Why something could not be signed.
 #[derive(Debug, thiserror::Error)]
@@ -29,7 +33,9 @@ pub enum KeyError {
 /// [`KeyError`] for what is no key of kind Ed25519, or where the agent refuses.
 pub fn sign(key: &Path, message: &[u8]) -> Result<String, KeyError> {
     let unreadable = |e: &dyn std::fmt::Display| KeyError::Unreadable(e.to_string());
-    let text = std::fs::read_to_string(key).map_err(|e| unreadable(&e))?;
+    let mut text = String::new();
+    let file = File::open(key).map_err(|e| unreadable(&e))?;
+    file.take(MAX_KEY_BYTES).read_to_string(&mut text).map_err(|e| unreadable(&e))?;
     if let Ok(public) = PublicKey::from_openssh(text.trim()) {
         ed25519(&public.algorithm())?;
         return through_agent(key, message);

@@ -5,12 +5,14 @@
 
 mod chain;
 mod key;
+mod pattern;
 mod role;
 mod signers;
 mod statement;
 
-pub use chain::{Broken, Link, SIGNATURES_FOLDER, chain, files_of, sign};
+pub use crate::output::SIGNATURES_FOLDER;
+pub use chain::{Broken, Link, chain, files, files_of, hold, is_leftover, sign, strays};
 pub use key::NAMESPACE;
 pub use role::Role;
-pub use signers::Signers;
+pub use signers::{BadLine, ListError, Refusal, Signers, Standing, moment};
 pub use statement::{Previous, SignOff, Statement, Subject, Waived};

@@ -56,6 +56,9 @@ pub struct SignOff {
     pub procedure_sha256: Option<String>,
     /// See `procedure_sha256`.
     pub limits_sha256: Option<String>,
+    /// The roles whose signatures the procedure asks for, so that this is a part of what is signed.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub required: Vec<Role>,
     /// The statement before this one.
     pub previous: Option<Previous>,
     /// Rows that the signer lets pass in spite of their verdict: a record beside the verdict, never a part of it.

@@ -14,7 +14,7 @@ use std::path::Path;
 /// Typesets a PDF anew from what is attached to it and compares byte by byte. `scratch` is an empty folder for the attached files.
 pub fn pdf(bytes: &[u8], scratch: &Path) -> Vec<Finding> {
     if !MAKES_PDF {
-        return vec![Finding::Unchecked("pdf.none".into())];
+        return vec![Finding::Undone("pdf.none".into())];
     }
     let (language, files) = match attached(bytes) {
         Ok(found) => found,
@@ -27,7 +27,7 @@ pub fn pdf(bytes: &[u8], scratch: &Path) -> Vec<Finding> {
         let written =
             path.parent().map(fs::create_dir_all).transpose().and_then(|_| fs::write(&path, contents));
         if written.is_err() {
-            return vec![Finding::Unchecked("verify.no_scratch".into())];
+            return vec![Finding::Undone("verify.no_scratch".into())];
         }
     }
     let record = Kind::ALL.iter().find_map(|k| files.get(k.record_file()));
@@ -37,7 +37,7 @@ pub fn pdf(bytes: &[u8], scratch: &Path) -> Vec<Finding> {
     let run: Option<RunRecord> = record::read::open(&scratch.join(Kind::Result.record_file())).ok();
     // The figures of phases stand in folders of their own, which no document has with it.
     if run.as_ref().is_some_and(|r| !r.phases.is_empty()) {
-        return vec![Finding::Unchecked("verify.pdf_parts".into())];
+        return vec![Finding::Undone("verify.pdf_parts".into())];
     }
     let lang = Lang::from_code(&language).unwrap_or_default();
     let renderer = Renderer::new().with_signatures(shown(scratch));

@@ -366,6 +366,7 @@ impl Loaded<Procedure> {
             author: self.value.author.clone(),
             path: self.path.clone(),
             sha256: self.sha256.clone(),
+            signatures: Some(self.value.report.signatures.iter().map(|role| role.id().to_owned()).collect()),
             limits: limits.map(|file| file.record()),
         }
     }

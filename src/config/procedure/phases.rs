@@ -140,6 +140,7 @@ fn read(
                 author: local("author"),
                 path: path.to_owned(),
                 sha256,
+                signatures: None,
                 limits: None,
             },
             family: unit.and_then(|u| u.local_text("family")),

@@ -4,6 +4,8 @@ mod evidence;
 mod facts;
 mod steps;
 
+pub(in crate::acceptance) use steps::csv as table_steps;
+
 use crate::acceptance::condition::table::{judge_and_log, judge_scale};
 use crate::acceptance::condition::thermometer::judge_scale_of_temperature;
 use crate::acceptance::figures;

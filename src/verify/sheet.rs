@@ -1,0 +1,70 @@
+//! A data sheet against the results that it is of, where these are at hand.
+
+use super::Finding;
+use super::folder::Folder;
+use crate::acceptance::datasheet::{TestedUnit, datasheet, select};
+use crate::i18n::Note;
+use crate::lot::tolerance::Promise;
+use crate::output::sha256_of_file;
+use crate::record::{DATASHEET_FORMAT, DataSheet, SheetQuantity, read};
+use std::path::Path;
+
+/// Makes a data sheet anew from its results and compares the numbers. Results that are not where they were are named.
+pub(super) fn sheet(folder: &Folder) -> Vec<Finding> {
+    let path = folder.record_file();
+    let stated: DataSheet = match read::bytes(&path).and_then(|b| read::of_format(&b, DATASHEET_FORMAT)) {
+        Ok(stated) => stated,
+        Err(e) => return vec![Finding::Differs(e.note(&path))],
+    };
+    let mut units = vec![];
+    for result in &stated.results {
+        let path = Path::new(&result.path);
+        // A file with another content is another result, not this one changed.
+        let same = sha256_of_file(path).as_ref() == Some(&result.sha256);
+        match TestedUnit::read(path).ok().filter(|_| same) {
+            Some(unit) => units.push(unit),
+            None => {
+                let note = Note::new("verify.no_result_of_sheet").with("path", result.path.as_str());
+                return vec![Finding::Unchecked(note)];
+            }
+        }
+    }
+    let bounds = stated.quantities.iter().flat_map(|q| &q.bounds).next();
+    let promise = bounds.map(|b| Promise { proportion: b.proportion, confidence: b.confidence });
+    let (Some(promise), Ok(selected)) = (promise, select(units)) else {
+        return vec![Finding::Unchecked("verify.sheet_without_bounds".into())];
+    };
+    let made = datasheet(selected, promise, stated.made_at.clone());
+    let mut differing: Vec<&str> = stated
+        .quantities
+        .iter()
+        .filter(|own| !made.quantities.iter().any(|other| is_same(own, other)))
+        .map(|q| q.id.as_str())
+        .collect();
+    let whole = stated.units == made.units
+        && stated.lots == made.lots
+        && stated.model == made.model
+        && stated.procedure == made.procedure
+        && stated.conditions == made.conditions
+        && stated.curves == made.curves
+        && stated.temperature_curves == made.temperature_curves
+        && stated.results == made.results;
+    differing.extend((!whole).then_some("units, conditions, curves"));
+    match differing.as_slice() {
+        [] => vec![Finding::Agrees(Note::new("verify.sheet").with("n", made.units))],
+        names => vec![Finding::Differs(Note::new("verify.sheet_differs").with("names", names.join(", ")))],
+    }
+}
+
+/// True for the same quantity with the same numbers; names and footnotes are those of a sheet file, which may also choose another unit.
+fn is_same(stated: &SheetQuantity, made: &SheetQuantity) -> bool {
+    let key = |q: &SheetQuantity| (q.id.clone(), q.channel.clone(), q.phase.clone());
+    if key(stated) != key(made) {
+        return false;
+    }
+    if stated.unit != made.unit {
+        return stated.units == made.units && stated.values.len() == made.values.len();
+    }
+    let unnamed = SheetQuantity { name: None, footnote: None, notes: vec![], ..stated.clone() };
+    unnamed == SheetQuantity { notes: vec![], ..made.clone() }
+}
