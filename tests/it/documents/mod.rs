@@ -2,8 +2,10 @@
 
 mod changes;
 mod exports;
+pub mod forged;
 mod pdf;
-mod signing;
+mod signers;
+pub mod signing;
 
 use crate::support::shared::tested_once;
 use crate::support::{sagnac, sagnac_with, sample};

@@ -2,13 +2,15 @@
 
 use crate::documents::{tested, verified};
 use crate::support::quick::Quick;
-use crate::support::{Said, altered, sagnac};
+use crate::support::{Said, altered, names, sagnac};
+use sagnac::i18n::{Lang, Localize, Note};
 use ssh_key::{LineEnding, PrivateKey};
 use std::fs;
 use std::path::Path;
+use tempfile::TempDir;
 
 /// Writes a key made from a seed, and its public part beside it.
-fn key(dir: &Path, name: &str, seed: u8) {
+pub fn key(dir: &Path, name: &str, seed: u8) {
     let key = PrivateKey::from(ssh_key::private::Ed25519Keypair::from_seed(&[seed; 32]));
     key.write_openssh_file(&dir.join(name), LineEnding::LF).unwrap();
     fs::write(dir.join(format!("{name}.pub")), key.public_key().to_openssh().unwrap()).unwrap();
@@ -18,16 +20,21 @@ fn put(dir: &Path, verb: &str, key: &str, more: &[&str]) -> Said {
     sagnac(dir, &[&[verb, "r", "--key", key], more].concat())
 }
 
+/// A folder with the result `r` of a unit whose procedure asks for two signatures by two keys.
+fn demanding() -> TempDir {
+    let dir = tempfile::tempdir().unwrap();
+    let quick = Quick::new("pass");
+    let both = [("[report]\n", "[report]\nsignatures = [\"tested\", \"approved\"]\n")];
+    let procedure = altered(dir.path(), "p.toml", &quick.procedure, &both);
+    let run = Quick { procedure, ..quick };
+    assert_eq!(run.run(dir.path(), &["--out", "r"]).code, 0);
+    dir
+}
+
 #[test]
 fn two_keys_sign_one_after_the_other() {
-    let dir = tempfile::tempdir().unwrap();
+    let dir = demanding();
     let at = dir.path();
-    let quick = Quick::new("pass");
-    // The procedure asks for two signatures by two keys.
-    let both = [("[report]\n", "[report]\nsignatures = [\"tested\", \"approved\"]\n")];
-    let procedure = altered(at, "p.toml", &quick.procedure, &both);
-    let run = Quick { procedure, ..quick };
-    assert_eq!(run.run(at, &["--out", "r"]).code, 0);
     key(at, "anna", 1);
     key(at, "lead", 2);
     let (code, said) = verified(at, &["r"]);
@@ -139,15 +146,122 @@ fn a_row_is_waived_beside_its_verdict() {
     }
     let said = put(at, "approve", "lead", &["--waive", &failed]);
     assert_eq!(said.code, 2, "a waiver without a reason: {said:?}");
-    let said = put(at, "approve", "lead", &["--waive", &failed, "--reason", "deviation permit 17"]);
+    for empty in ["", "  "] {
+        let said = put(at, "sign", "lead", &["--role", "approved", "--waive", &failed, "--reason", empty]);
+        assert!(said.code == 2 && said.err.contains("reason of the waiver is empty"), "{said:?}");
+    }
+    let said = put(
+        at,
+        "sign",
+        "lead",
+        &["--role", "approved", "--waive", &failed, "--reason", "deviation permit 17"],
+    );
     assert_eq!(said.code, 0, "{said:?}");
     let (code, said) = verified(at, &["r"]);
     assert_eq!(code, 0, "{said}");
-    assert!(said.contains(&format!("lets {failed} pass: deviation permit 17")), "{said}");
+    let name = Note::new(format!("measurand.{failed}")).say(Lang::En);
+    assert!(said.contains(&format!("lets {name} pass: deviation permit 17")), "{said}");
     assert!(said.contains("numbers of the record: fail"), "{said}");
-    sagnac(at, &["report", "r", "--out", "anew", "--format", "md"]);
+    assert!(said.contains(&format!("The verdict is fail; waived in spite of it: {name}")), "{said}");
+    // Marked where the verdict stands, and in its row; the verdict itself stays.
+    sagnac(at, &["report", "r", "--out", "anew", "--format", "md,html"]);
     let page = fs::read_to_string(at.join("anew/report.md")).unwrap();
-    assert!(page.contains("deviation permit 17") && page.contains("FAIL"), "{page}");
+    let heading = page.lines().find(|l| l.contains("FAIL")).unwrap();
+    assert!(heading.contains(&format!("waived: {name}")), "{heading}");
+    assert!(page.contains("deviation permit 17"), "{page}");
+    let row = page.lines().find(|l| l.starts_with("| ") && l.contains("fail (waived)")).unwrap();
+    assert!(row.contains(&name), "{row}");
+    // A line that a signature fills is not left blank for another.
+    assert!(!page.contains("| Tested by |") && page.contains("| Reviewed by |"), "{page}");
+    let page = fs::read_to_string(at.join("anew/report.html")).unwrap();
+    assert!(page.contains(&format!("<span class=\"waived\">waived: {name}")), "{name}");
+    let unsigned = fs::read_to_string(at.join("r/report.md")).unwrap();
+    assert!(unsigned.contains("| Tested by |") && !unsigned.contains("waived:"), "{unsigned}");
+}
+
+#[test]
+fn what_a_killed_sign_leaves_is_named_and_replaced() {
+    let dir = tested("pass");
+    let at = dir.path();
+    key(at, "anna", 1);
+    let signatures = at.join("r/signatures");
+    fs::create_dir(&signatures).unwrap();
+    assert_eq!(verified(at, &["r"]).0, 0, "an empty folder is all that was made");
+    fs::write(signatures.join("01-tested.json.sig"), "half").unwrap();
+    fs::write(signatures.join(".01-tested.json.partial-00000000-abcdef"), "half").unwrap();
+    let (code, said) = verified(at, &["r"]);
+    assert!(code == 1 && said.contains("a signature without its statement"), "{said}");
+    let said = put(at, "sign", "anna", &[]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert_eq!(verified(at, &["r"]).0, 0);
+    // One that was to be of another role goes too.
+    fs::write(signatures.join("02-approved.json.sig"), "half").unwrap();
+    assert_eq!(put(at, "sign", "anna", &["--role", "reviewed"]).code, 0);
+    let all = names(&signatures);
+    assert!(!all.contains(&"02-approved.json.sig".to_owned()), "{all:?}");
+    assert_eq!(verified(at, &["r"]).0, 0);
+}
+
+#[test]
+fn what_does_not_belong_among_signatures_is_named() {
+    let dir = tested("pass");
+    let at = dir.path();
+    key(at, "anna", 1);
+    put(at, "sign", "anna", &[]);
+    let signatures = at.join("r/signatures");
+    for (name, made) in [("notes.txt", false), ("deep/notes.txt", true), ("07-tested.json.sig", false)] {
+        if made {
+            fs::create_dir(signatures.join("deep")).unwrap();
+        }
+        fs::write(signatures.join(name), "x").unwrap();
+        let (code, said) = verified(at, &["r"]);
+        assert!(code == 1 && said.contains(name), "{name}: {said}");
+        let refused = put(at, "approve", "anna", &[]);
+        assert!(refused.code == 2 && refused.err.contains(name), "{name}: {refused:?}");
+        fs::remove_file(signatures.join(name)).unwrap();
+        let _ = fs::remove_dir(signatures.join("deep"));
+    }
+    assert_eq!(verified(at, &["r"]).0, 0);
+}
+
+#[test]
+fn what_demands_signatures_does_not_go_with_a_file() {
+    let dir = demanding();
+    let at = dir.path();
+    // The copy of the procedure is left out, and the lists are written anew.
+    crate::documents::forged::forget(&at.join("r"), "procedure.toml");
+    let (code, said) = verified(at, &["r"]);
+    assert!(
+        code == 1 && said.contains("not there: tested") && said.contains("procedure.toml: missing"),
+        "{said}"
+    );
+
+    let dir = demanding();
+    let at = dir.path();
+    key(at, "anna", 1);
+    assert_eq!(put(at, "sign", "anna", &[]).code, 0);
+    let statement = fs::read_to_string(at.join("r/signatures/01-tested.json")).unwrap();
+    let statement: serde_json::Value = serde_json::from_str(&statement).unwrap();
+    assert_eq!(statement["predicate"]["required"], serde_json::json!(["tested", "approved"]));
+
+    let dir = tested("pass");
+    let at = dir.path();
+    fs::write(at.join("signers"), "").unwrap();
+    let (code, said) = verified(at, &["r", "--signers", "signers"]);
+    assert!(code == 1 && said.contains("Nothing in the folder is signed"), "{said}");
+}
+
+#[test]
+fn no_key_is_used_on_what_the_record_does_not_give() {
+    let dir = tested("fail");
+    let at = dir.path();
+    key(at, "anna", 1);
+    crate::documents::forged::rewrite(&at.join("r"), "result.json", |text| {
+        text.replace("\"verdict\": \"fail\"", "\"verdict\": \"pass\"")
+    });
+    let said = put(at, "sign", "anna", &[]);
+    assert!(said.code == 2 && said.err.contains("not signed"), "{said:?}");
+    assert!(!at.join("r/signatures").exists());
 }
 
 #[test]

@@ -1,9 +1,12 @@
 //! The verb `store` and runs that are kept, as a user has them.
 
+mod attempts;
 mod damage;
 mod exchange;
 mod history;
 mod kept;
+mod kills;
+mod lossless;
 mod scale;
 mod writers;
 
