@@ -250,7 +250,8 @@ pub struct MeasurandRecord {
 }
 
 /// A check that contradicts what was fitted.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct ObjectionRecord {
     /// Id of the check, for example `allan_curve`.
     pub check: String,

@@ -56,6 +56,9 @@ mod tests {
         assert_eq!(Coefficient::found(1.0, None).relative, 0.0);
         assert_eq!(Coefficient::at_most(6.0), Coefficient { at_most: 6.0, ..Coefficient::default() });
         assert_eq!(Coefficient::at_most(f64::INFINITY).at_most, 0.0);
-        assert_eq!((prior_of_zero(0.0, 6.0), prior_of_zero(0.5, 6.0), prior_of_zero(0.0, 0.0)), (1.0, 0.5, 0.0));
+        assert_eq!(
+            (prior_of_zero(0.0, 6.0), prior_of_zero(0.5, 6.0), prior_of_zero(0.0, 0.0)),
+            (1.0, 0.5, 0.0)
+        );
     }
 }

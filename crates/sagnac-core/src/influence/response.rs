@@ -10,6 +10,7 @@ use super::cut::{Cut, span_s};
 use super::gls;
 use super::intervals::Intervals;
 use crate::estimate::{Spread, normal_quantile};
+use crate::numeric::order::{SortByNumber, SortNumbers};
 use crate::numeric::reml::{Combination, Fit};
 use crate::rate_table::blocks::Blocks;
 use nalgebra::{DMatrix, DVector};
@@ -147,7 +148,7 @@ impl Courses<'_> {
     /// Looks for a response beside the columns of the drive.
     pub fn find(&self, x: &DMatrix<f64>) -> Option<Response> {
         let mut lengths: Vec<f64> = self.cut.rows.length_s.clone();
-        lengths.sort_by(f64::total_cmp);
+        lengths.sort_ascending();
         let low = *lengths.get(lengths.len() / 2)?;
         let high = LONGEST * self.changes.lengths().fold(0.0, f64::max);
         let count = ((high / low).ln() / RATIOS.0.ln()).ceil().max(1.0) as i32;
@@ -174,7 +175,7 @@ impl Courses<'_> {
         tried.extend(
             (-steps..=steps).filter(|i| *i != 0).filter_map(|i| self.tried(x, middle * RATIOS.1.powi(i))),
         );
-        tried.sort_by(|a, b| b.twice_log_likelihood.total_cmp(&a.twice_log_likelihood));
+        tried.sort_descending_by(|a| a.twice_log_likelihood);
         let top = tried.first()?.twice_log_likelihood;
         tried.retain(|t| top - t.twice_log_likelihood <= IN_QUESTION);
         Some(tried)

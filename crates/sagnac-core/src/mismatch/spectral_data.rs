@@ -10,6 +10,7 @@ use crate::effect::{Drivers, ModeBin, Model, Nuisance};
 use crate::noise::data::NoiseType;
 use crate::noise::model::{Bin, Spectral, bin_ratio, claimed_unit_density};
 use crate::numeric::cosine::dct2;
+use crate::numeric::order::SortNumbers;
 use crate::recording::sensor;
 use std::sync::Arc;
 

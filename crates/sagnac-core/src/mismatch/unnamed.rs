@@ -62,7 +62,7 @@ struct Unnamed {
 }
 
 fn of_departures(mut departed: Vec<&Departure>, problem: &Problem, options: &Options) -> Option<Unnamed> {
-    departed.sort_by(|a, b| a.ln_p.total_cmp(&b.ln_p));
+    departed.sort_ascending_by(|a| a.ln_p);
     departed.sort_by_key(|d| d.narrows());
     let worst = departed.first()?;
     let mut places: Vec<PlaceRecord> = vec![];

@@ -11,6 +11,7 @@
 //!   that noise does not move.
 
 use crate::estimate::chi_square_tail;
+use crate::numeric::order::SortNumbers;
 
 /// Share of the range of a quantity from which its steps are coarse. Finer ones are smaller than what a fit resolves.
 const MIN_STEP_SHARE: f64 = 0.005;
@@ -41,7 +42,7 @@ pub fn coarse_step(values: &[f64]) -> Option<f64> {
     let (low, high) = finite().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), v| (l.min(v), h.max(v)));
     // Values that stay are readings; those that do not may be means over a change.
     let mut levels: Vec<f64> = pairs().filter(|(a, b)| a == b).map(|(a, _)| *a).collect();
-    levels.sort_by(f64::total_cmp);
+    levels.sort_ascending();
     levels.dedup();
     let gaps = levels.iter().zip(levels.iter().skip(1)).map(|(a, b)| b - a);
     let step = gaps.reduce(f64::min).filter(|step| *step > MIN_STEP_SHARE * (high - low))?;
