@@ -2,7 +2,7 @@
 
 use super::objections;
 use crate::support::{measurand, procedure, result, sagnac, shipped};
-use sagnac_studies::noise_source::NoiseSource;
+use sagnac_studies::bench::noise_source::NoiseSource;
 use std::fmt::Write as _;
 use std::path::Path;
 
