@@ -1,9 +1,9 @@
 //! Tables of a run as far as they follow from its record, so that what was written can be checked without the recording.
 
 use super::interval_means;
-use super::kinds::table_steps;
 use crate::noise::family::Estimator;
-use crate::record::{DeviationRecord, RunRecord};
+use crate::output::quoted;
+use crate::record::{DeviationRecord, RunRecord, TableStepRecord};
 use std::collections::BTreeMap;
 
 /// Whether a table is the one of its record.
@@ -34,6 +34,34 @@ pub fn follows(name: &str, text: &str, record: &RunRecord) -> Follows {
             None => Follows::Unknown,
         },
     }
+}
+
+/// The steps of a test on a rate table as CSV.
+pub(super) fn table_steps(records: &[TableStepRecord]) -> String {
+    let mut out = String::from(
+        "channel,from_s,to_s,row,rate_deg_h,turns,temperature_degC,approach,cycle,output_deg_h,residual_deg_h,\
+         standard_uncertainty_deg_h,residual_ppm\n",
+    );
+    for r in records {
+        let temperature = r.temperature_deg_c.map_or_else(String::new, |t| t.to_string());
+        out.push_str(&format!(
+            "{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
+            quoted(&r.channel),
+            r.from_s,
+            r.to_s,
+            r.row,
+            r.rate_deg_h,
+            r.turns,
+            temperature,
+            r.approach,
+            r.cycle,
+            r.output_deg_h,
+            r.residual_deg_h,
+            r.standard_uncertainty_deg_h,
+            r.residual_ppm
+        ));
+    }
+    out
 }
 
 /// Whether a table of the Allan family has the points that a record states.

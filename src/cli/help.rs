@@ -157,7 +157,7 @@ pub fn refuse(error: &Error, lang: Lang) -> ExitCode {
     } else {
         super::place::eprint_diagnostic(&complaint(error, lang));
     }
-    ExitCode::from(super::stdout::settled(
+    ExitCode::from(super::place::settled(
         if asked_for { super::exit::PASS } else { super::exit::ERROR },
         lang,
     ))

@@ -258,5 +258,5 @@ pub fn main() -> ExitCode {
         place::eprint_diagnostic(&message);
         exit::ERROR
     });
-    ExitCode::from(stdout::settled(code, lang))
+    ExitCode::from(place::settled(code, lang))
 }

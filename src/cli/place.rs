@@ -1,7 +1,7 @@
 //! Where results go, and how text reaches the user.
 
-use super::stdout;
-use crate::i18n::{Lang, Localize, Note, visible, visible_lines};
+use super::{exit, stdout};
+use crate::i18n::{Lang, Localize, Note, io_reason, visible, visible_lines};
 use chrono::{DateTime, Utc};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -15,6 +15,14 @@ pub fn print(text: &str) {
 /// Writes to standard error.
 pub fn eprint_diagnostic(text: &str) {
     let _ = std::io::stderr().lock().write_all(visible_lines(text).as_bytes());
+}
+
+/// The exit code of a command that would end with `code`: where a part of its output could not be written, it did not succeed.
+pub fn settled(code: u8, lang: Lang) -> u8 {
+    let Some(failure) = stdout::failure() else { return code };
+    let note = Note::new("system.stdout").with("reason", io_reason(&failure));
+    eprint_diagnostic(&error(&note, lang));
+    exit::ERROR
 }
 
 /// A path for the terminal, on one line.

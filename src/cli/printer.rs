@@ -7,7 +7,7 @@ use super::stdout;
 use crate::i18n::{Lang, Localize, Note};
 use crate::output::Kind;
 use crate::report::terminal::Terminal;
-use anstream::{AutoStream, ColorChoice};
+use anstream::ColorChoice;
 use std::path::Path;
 
 /// Width where standard output is no terminal and `COLUMNS` is not set.
@@ -81,15 +81,10 @@ impl Printer {
     }
 }
 
-/// The choice of colours: `NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`, `TERM`, and whether standard output is a terminal.
-pub fn choice() -> ColorChoice {
-    AutoStream::choice(&std::io::stdout())
-}
-
 /// What standard output is.
 pub fn terminal() -> Terminal {
     let columns = || std::env::var("COLUMNS").ok()?.parse::<usize>().ok();
     let real = || terminal_size::terminal_size_of(std::io::stdout()).map(|(width, _)| usize::from(width.0));
     let width = columns().or_else(real).unwrap_or(DEFAULT_WIDTH).max(LEAST_WIDTH);
-    Terminal { width, colour: choice() != ColorChoice::Never }
+    Terminal { width, colour: stdout::choice() != ColorChoice::Never }
 }

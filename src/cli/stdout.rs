@@ -1,10 +1,7 @@
 //! Standard output. Every write and every flush is checked: what did not reach a disk that is full was not said, and the command
 //! did not succeed. A reader that went away (`| head`) is no error.
 
-use super::printer::choice;
-use super::{exit, place};
-use crate::i18n::{Lang, Note, io_reason};
-use anstream::AutoStream;
+use anstream::{AutoStream, ColorChoice};
 use std::io::{self, ErrorKind, Write};
 use std::sync::{Mutex, PoisonError};
 
@@ -32,16 +29,13 @@ pub fn check(written: io::Result<()>) {
     }
 }
 
-/// The exit code of a command that would end with `code`: where a part of what it said could not be written, it did not
-/// succeed.
-pub fn settled(code: u8, lang: Lang) -> u8 {
+/// The first failure of this process, everything that waits written out; `None` where all was written.
+pub fn failure() -> Option<io::Error> {
     check(io::stdout().lock().flush());
-    match FAILED.lock().unwrap_or_else(PoisonError::into_inner).take() {
-        Some(error) => {
-            let note = Note::new("system.stdout").with("reason", io_reason(&error));
-            place::eprint_diagnostic(&place::error(&note, lang));
-            exit::ERROR
-        }
-        None => code,
-    }
+    FAILED.lock().unwrap_or_else(PoisonError::into_inner).take()
+}
+
+/// The choice of colours: `NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`, `TERM`, and whether standard output is a terminal.
+pub fn choice() -> ColorChoice {
+    AutoStream::choice(&io::stdout())
 }

@@ -1,5 +1,6 @@
 //! The index made anew.
 
+use super::database::{database_files, remove_database};
 use super::error::{StoreError, io};
 use super::finding::Finding;
 use super::folders::{Filled, fill};
@@ -10,7 +11,7 @@ use super::marker::marker;
 use crate::i18n::Note;
 use crate::output::sync_folder;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// What an index was made from.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,27 +71,4 @@ fn make_anew(layout: &Layout, shared_disk: bool) -> Result<Filled, StoreError> {
     fs::rename(&new, &place).map_err(io("output_error.put_in_place", &place))?;
     sync_folder(layout.root())?;
     Ok(filled)
-}
-
-/// A database and the files that it keeps beside it.
-pub(super) fn database_files(path: &Path) -> Vec<PathBuf> {
-    let with = |ending: &str| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(ending);
-        PathBuf::from(name)
-    };
-    ["", "-wal", "-shm", "-journal"].map(with).to_vec()
-}
-
-/// Removes a database, and what it keeps beside it after that.
-pub(super) fn remove_database(path: &Path) -> Result<(), StoreError> {
-    for file in database_files(path) {
-        match fs::remove_file(&file) {
-            Err(e) if e.kind() != std::io::ErrorKind::NotFound => {
-                return Err(io("output_error.write", path)(e));
-            }
-            _ => {}
-        }
-    }
-    Ok(())
 }

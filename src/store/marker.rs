@@ -1,10 +1,10 @@
 //! What says that a folder is a store.
 
+use super::database::{database_files, remove_database};
 use super::error::{StoreError, io};
 use super::index::{Index, Journal};
 use super::layout::{Layout, STORE_FORMAT, names};
 use super::lock;
-use super::maintenance::{database_files, remove_database};
 use crate::i18n::Note;
 use crate::output::{StagedFile, is_partial};
 use crate::record::read;

@@ -7,6 +7,7 @@
 mod add;
 pub mod address;
 mod attempt;
+mod database;
 mod entry;
 mod error;
 mod export;

@@ -1,8 +1,9 @@
 //! The figures of a result against those that its recording gives when the test is run anew, in a process of its own.
 
-use super::folder::Folder;
+use super::finding::Finding;
+use super::folder::{Folder, run_of};
 use super::pages::languages;
-use super::{Finding, parts, run_of};
+use super::parts;
 use crate::i18n::Note;
 use crate::output::{
     Kind, LIMITS_FILE, PROCEDURE_FILE, found_below, read_below, sha256_below, sha256_of_file,

@@ -1,12 +1,12 @@
 //! The files of a folder against the hashes that it states, and the texts that a test was made by against those in its record.
 
-use super::Finding;
+use super::finding::Finding;
 use crate::i18n::{Note, io_reason};
 use crate::output::{
     CHECKSUMS_FILE, Found, Kind, LIMITS_FILE, NotRead, PROCEDURE_FILE, found_below, read_below,
     read_checksums, sha256, sha256_below,
 };
-use crate::record::read::MAX_BYTES;
+use crate::record::read::{self, MAX_BYTES};
 use crate::record::{ProcedureRecord, RunKind, RunRecord};
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -172,4 +172,12 @@ fn copies_of(folder: &Path, below: &str, procedure: &ProcedureRecord) -> Vec<Fin
         }
     };
     std::iter::once((PROCEDURE_FILE, &procedure.sha256)).chain(limits).filter_map(each).collect()
+}
+
+/// The record of a run or an analysis that a folder holds.
+pub fn run_of(folder: &Folder) -> Option<RunRecord> {
+    match folder.kind {
+        Kind::Result => read::open(&folder.record_file()).ok(),
+        _ => None,
+    }
 }

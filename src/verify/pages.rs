@@ -1,6 +1,6 @@
 //! The pages, drawings and tables of a folder against what its record gives when they are made anew.
 
-use super::Finding;
+use super::finding::Finding;
 use super::folder::Folder;
 use crate::acceptance::tables::{Follows, follows};
 use crate::i18n::{Lang, Note};

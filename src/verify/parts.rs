@@ -1,8 +1,10 @@
 //! The parts of a whole: the units of a lot and the phases of a test. Each is checked as a result on its own, and the whole against what
 //! their records say.
 
+use super::finding::Finding;
+use super::folder::{Folder, run_of};
 use super::pages::FROM_RECORDING;
-use super::{Finding, Folder, contents, run_of, verdict};
+use super::verdict::verdict;
 use crate::acceptance::lot::of_record;
 use crate::i18n::Note;
 use crate::output::{Kind, is_plain};
@@ -10,14 +12,13 @@ use crate::record::{
     ConditionRecord, LOT_FORMAT, LotRecord, LotUnit, MeasurandRecord, PhaseRecord, RunRecord, VerdictCounts,
     read,
 };
-use crate::report::Renderer;
 use std::path::Path;
 
 /// Says that the units have files which only their recordings give.
 const UNITS_FROM_RECORDINGS: &str = "verify.units_from_recordings";
 
-/// Checks every unit, and the index of the lot against them.
-pub(super) fn units(folder: &Folder, renderer: &Renderer) -> Vec<Finding> {
+/// Checks every unit by `contents`, and the index of the lot against them.
+pub(super) fn units(folder: &Folder, contents: &dyn Fn(&Folder) -> Vec<Finding>) -> Vec<Finding> {
     let lot = match record(folder) {
         Ok(lot) => lot,
         Err(note) => return vec![Finding::Differs(note)],
@@ -32,7 +33,7 @@ pub(super) fn units(folder: &Folder, renderer: &Renderer) -> Vec<Finding> {
             findings.push(Finding::Differs(Note::new("verify.no_unit").with("name", unit.folder.as_str())));
             continue;
         };
-        let mut of_unit = contents(&at, renderer);
+        let mut of_unit = contents(&at);
         let all = of_unit.len();
         of_unit.retain(|f| f.note().id != FROM_RECORDING);
         from_recording |= of_unit.len() < all;

@@ -1,6 +1,6 @@
 //! A PDF on its own against the record that is attached to it.
 
-use super::Finding;
+use super::finding::Finding;
 use super::verdict::verdict;
 use crate::i18n::{Lang, Note};
 use crate::output::{Kind, is_plain};

@@ -1,6 +1,6 @@
 //! A data sheet against the results that it is of, where these are at hand.
 
-use super::Finding;
+use super::finding::Finding;
 use super::folder::Folder;
 use crate::acceptance::datasheet::{TestedUnit, datasheet, select};
 use crate::i18n::Note;

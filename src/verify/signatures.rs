@@ -1,7 +1,8 @@
 //! The signatures of a folder: whether each holds, by whom it is, and whether those that are asked for are there.
 
-use super::folder::{Folder, stated_hashes};
-use super::{Finding, parts, run_of};
+use super::finding::Finding;
+use super::folder::{Folder, run_of, stated_hashes};
+use super::parts;
 use crate::config::procedure::load;
 use crate::i18n::{Arg, Note};
 use crate::output::{Kind, PROCEDURE_FILE};

@@ -1,6 +1,6 @@
 //! The verdict of a result, decided anew from the numbers of its record.
 
-use super::Finding;
+use super::finding::Finding;
 use crate::acceptance::verdict::whole;
 use crate::estimate::{Rule, Verdict};
 use crate::i18n::Note;

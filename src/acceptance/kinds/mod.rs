@@ -8,8 +8,6 @@ mod rate_table;
 mod repeatability;
 mod temperature;
 
-pub(super) use rate_table::table_steps;
-
 use super::pipeline::Test;
 use super::request::Request;
 use super::test_kind::TestKind;

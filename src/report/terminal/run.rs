@@ -19,7 +19,7 @@ pub fn run(view: &View, lang: Lang, terminal: Terminal) -> String {
             out += &terminal.indented(reasons(view));
         }
         out += &quantities(view, words, terminal);
-        if !settled {
+        if !settled && !reasons(view).is_empty() {
             out += &section("terminal.reasons", words, terminal);
             out += &terminal.indented(reasons(view));
         }

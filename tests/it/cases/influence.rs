@@ -14,7 +14,7 @@ fn a_response_that_goes_on_is_no_value_and_no_pass() {
     assert_eq!(said.code, 3, "{}", said.out);
     let row = measurand(&found, "supply_sensitivity");
     assert!(is_right(row, 1.0) && row["verdict"] == "indeterminate", "{row}");
-    assert!(said.out.contains("esponse") && said.out.contains("time constant"), "{}", said.out);
+    assert!(said.out.contains("Still responding") && said.out.contains("time constant"), "{}", said.out);
 }
 
 /// A supply test on the schedule of the case: steps of 0.25 V that arrive with a time constant, white noise and a drift.

@@ -6,6 +6,7 @@
 //! what to do. The evaluation of every measurand puts the findings on its estimates as objections, and an estimate with an
 //! objection neither passes nor fails; so no command states what another refuses. A new check is one file and one line.
 
+mod affected;
 mod allan_curve;
 mod copied_run;
 mod long_process;
@@ -17,6 +18,9 @@ mod step;
 pub mod temperature;
 mod warm_up;
 mod white_floor;
+
+#[cfg(test)]
+pub(crate) use affected::{NOISE, SLOW_NOISE};
 
 use crate::estimate::{Estimate, Finding, Objection};
 use crate::evidence::{ComparisonEvidence, GyroEvidence};
@@ -30,31 +34,6 @@ pub struct Check<F> {
     /// The examination.
     pub examine: F,
 }
-
-/// Measurands of slow noise at rest.
-pub(crate) const SLOW_NOISE: [&str; 4] =
-    ["bias_instability", "rate_random_walk", "rate_random_walk_readout", "rate_ramp"];
-
-/// Every measurand of a gyro at rest that follows from the noise of the record.
-pub(crate) const NOISE: [&str; 17] = [
-    "angle_random_walk",
-    "angle_random_walk_white",
-    "angle_random_walk_readout",
-    "bias_instability",
-    "bias_instability_minimum",
-    "bias_instability_minimum_scaled",
-    "rate_random_walk",
-    "rate_random_walk_readout",
-    "rate_ramp",
-    "rate_ramp_readout",
-    "quantization",
-    "quantization_readout",
-    "russian_drift_100s",
-    "russian_drift_100s_3sigma",
-    "russian_sigma_10s",
-    "russian_arw_10s",
-    "russian_drift_100s_predicted",
-];
 
 /// Examination of a gyro at rest, over temperature, or from switching on.
 pub type OfGyro = fn(&GyroEvidence) -> Vec<Finding>;

@@ -3,7 +3,7 @@
 //! Rounding of angle increments carries its remainder on, and means lose nothing. Rounding of a rate forgets it: unless noise moves
 //! the rate by about half a step from sample to sample, the noise that is left is that of the steps.
 
-use super::NOISE;
+use super::affected::NOISE;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
 use crate::message::Note;

@@ -1,7 +1,7 @@
 //! Whether the record departs from the fitted model by more than chance and more than is harmless, at frequencies or averaging
 //! times that a term was read from.
 
-use super::SLOW_NOISE;
+use super::affected::SLOW_NOISE;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
 use crate::message::{Arg, Note};
@@ -38,7 +38,10 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
         let highest_hz = gyro.identification.highest_hz.unwrap_or(nyquist_hz);
         let (low, high) = if by_frequency { (from, to.min(nyquist_hz)) } else { (from, to) };
         let middle = (low * high).sqrt();
-        let beyond = if by_frequency { low >= highest_hz } else { high < 1.0 / highest_hz };
+        // A deviation at an averaging time has power of higher frequencies in it: it speaks of a model up to a frequency
+        // only where it departs at longer times alone.
+        let restricted = gyro.identification.highest_hz.is_some();
+        let beyond = if by_frequency { low >= highest_hz } else { restricted && low < 1.0 / highest_hz };
         let tau_s = if by_frequency { 1.0 / middle } else { middle };
         if beyond || !middle.is_finite() || middle <= 0.0 {
             continue;

@@ -5,7 +5,7 @@
 //! by chance only. A filter leaves less power at the lowest frequencies than any noise of a gyro has. Either
 //! way random walk and flicker look smaller than they are.
 
-use super::{NOISE, SLOW_NOISE};
+use super::affected::{NOISE, SLOW_NOISE};
 use crate::estimate::{Finding, Holds, normal_probability};
 use crate::evidence::{Course, GyroEvidence};
 use crate::message::{Arg, Note};

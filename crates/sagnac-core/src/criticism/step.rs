@@ -1,6 +1,6 @@
 //! Whether a single step of the level explains what was taken for slow noise: its spectrum is that of a random walk.
 
-use super::SLOW_NOISE;
+use super::affected::SLOW_NOISE;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
 use crate::message::{Arg, Note};

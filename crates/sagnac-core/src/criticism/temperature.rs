@@ -3,7 +3,7 @@
 //! A model of noise takes what follows a temperature for slow noise. Means over a few dozen parts of the recording and a
 //! parabola over temperature know nothing of that model.
 
-use super::NOISE;
+use super::affected::NOISE;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::{GyroEvidence, Pair};
 use crate::message::{Arg, Note};

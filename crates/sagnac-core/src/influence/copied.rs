@@ -15,6 +15,8 @@ const MIN_CORRELATION: f64 = 0.5;
 const MIN_EVIDENCE: f64 = 40.0;
 /// Correlation of a run with itself some blocks later from which it repeats itself, and another run may look the same.
 const REPEATS_ITSELF: f64 = 0.3;
+/// Squared correlation times changes from which chance at one of those shifts is none.
+const MIN_EVIDENCE_OF_ITSELF: f64 = 20.0;
 /// Shifts at which that is looked for: neighbouring changes share a value, and filters reach some values further.
 const SHIFTS_OF_ITSELF: std::ops::Range<usize> = 20..200;
 
@@ -109,8 +111,11 @@ fn correlation(a: &[f64], b: &[f64]) -> Option<f64> {
 
 /// True for a run with a line or a pattern of rounding.
 fn repeats_itself(run: &[f64]) -> bool {
-    let later = |shift: usize| run.get(shift..).and_then(|later| correlation(run, later));
-    SHIFTS_OF_ITSELF.filter_map(later).any(|r| r.abs() >= REPEATS_ITSELF)
+    let repeats = |shift: usize| {
+        let Some(r) = run.get(shift..).and_then(|later| correlation(run, later)) else { return false };
+        r.abs() >= REPEATS_ITSELF && r * r * (run.len() - shift) as f64 >= MIN_EVIDENCE_OF_ITSELF
+    };
+    SHIFTS_OF_ITSELF.into_iter().any(repeats)
 }
 
 #[cfg(test)]
@@ -143,6 +148,14 @@ mod tests {
             let copied = found(&[second.clone(), first.clone(), copy]).unwrap();
             assert_eq!((copied.runs, copied.backwards), ((1, 2), backwards));
             assert_eq!(copied.correlation < 0.0, negative, "{copied:?}");
+        }
+    }
+
+    #[test]
+    fn short_runs_do_not_repeat_themselves_by_chance() {
+        for seed in 0..40 {
+            let run: Vec<f64> = noise(seed)[..300].to_vec();
+            assert!(found(&[run.clone(), run]).is_some(), "{seed}");
         }
     }
 

@@ -4,12 +4,11 @@ mod evidence;
 mod facts;
 mod steps;
 
-pub(in crate::acceptance) use steps::csv as table_steps;
-
 use crate::acceptance::condition::table::{judge_and_log, judge_scale};
 use crate::acceptance::condition::thermometer::judge_scale_of_temperature;
 use crate::acceptance::figures;
 use crate::acceptance::request::{Request, Table};
+use crate::acceptance::tables;
 use crate::acceptance::test_kind::{Evidence, Progress, Reading, Run, TestKind, TestOption};
 use crate::config::procedure::Procedure;
 use crate::config::procedure::model::MeasurandSpec;
@@ -148,7 +147,7 @@ impl Evidence for StepEvidence {
     fn complete(&self, _: &Reading<'_>, record: &mut RunRecord) -> Vec<Table> {
         let of = |c: &TableChannel| Some(steps::records(&self.run, c.line.as_ref()?, c.gyro));
         record.table_steps = self.channels.iter().filter_map(of).flatten().collect();
-        vec![("table_steps.csv".to_owned(), steps::csv(&record.table_steps))]
+        vec![("table_steps.csv".to_owned(), tables::table_steps(&record.table_steps))]
     }
 }
 

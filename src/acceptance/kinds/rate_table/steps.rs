@@ -1,6 +1,5 @@
 //! The steps of a test on a rate table as records and as a table.
 
-use crate::output::quoted;
 use crate::rate_table::TableRun;
 use crate::rate_table::scale_factor::ScaleFactor;
 use crate::record::TableStepRecord;
@@ -30,32 +29,4 @@ pub fn records(run: &TableRun, channel: &ScaleFactor, gyro: usize) -> Vec<TableS
             })
         })
         .collect()
-}
-
-/// The same as CSV.
-pub fn csv(records: &[TableStepRecord]) -> String {
-    let mut out = String::from(
-        "channel,from_s,to_s,row,rate_deg_h,turns,temperature_degC,approach,cycle,output_deg_h,residual_deg_h,\
-         standard_uncertainty_deg_h,residual_ppm\n",
-    );
-    for r in records {
-        let temperature = r.temperature_deg_c.map_or_else(String::new, |t| t.to_string());
-        out.push_str(&format!(
-            "{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-            quoted(&r.channel),
-            r.from_s,
-            r.to_s,
-            r.row,
-            r.rate_deg_h,
-            r.turns,
-            temperature,
-            r.approach,
-            r.cycle,
-            r.output_deg_h,
-            r.residual_deg_h,
-            r.standard_uncertainty_deg_h,
-            r.residual_ppm
-        ));
-    }
-    out
 }
