@@ -83,6 +83,14 @@ pub(super) struct RestFacts<'e> {
     pub schedule: Option<&'e Schedule>,
 }
 
+impl RestFacts<'_> {
+    /// Gyro channels in stretches of a recording. An analysis judges none.
+    pub fn of_gyros(reading: &Reading<'_>, gyros: &[GyroFact]) -> RestFacts<'static> {
+        let gyros = if reading.request.is_run() { gyros.to_vec() } else { vec![] };
+        RestFacts { gyros, ..RestFacts::default() }
+    }
+}
+
 /// What may keep a recording from being evaluated.
 pub(super) type Run<T> = Result<T, RunError>;
 

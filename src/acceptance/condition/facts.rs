@@ -4,6 +4,7 @@ use super::checks::CheckLog;
 use super::stability_track::{StabilityFacts, StabilityKey};
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::i18n::{Lang, Localize, Note};
+use crate::noise::tails::TailShape;
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::recording::integrity::Integrity;
 use crate::temperature::findings::Schedule;
@@ -90,33 +91,18 @@ pub struct GyroFact {
     pub longest_stretch_s: f64,
     /// Angle random walk that was identified, deg/sqrt(h).
     pub angle_random_walk: Option<f64>,
+    /// Upper end of the 95 % interval of the angle random walk, deg/sqrt(h).
+    pub angle_random_walk_high: Option<f64>,
     /// Step of the output, deg/h, where the values lie on a lattice.
     pub quantization_step_deg_h: Option<f64>,
-    /// How far the bias moves over temperature or while it warms up, deg/h, in a test of that.
+    /// How far the bias moves over temperature, while it warms up, from run to run or between intervals, deg/h, in a test of that.
     pub moves_deg_h: Option<f64>,
     /// The largest step of the mean that noise does not explain.
     pub bias_step: Option<BiasStep>,
     /// A change of the noise between parts of the record.
     pub noise_change: Option<NoiseChange>,
-    /// How the values are spread about the means of short blocks, where they are white enough to tell.
+    /// How the values are spread about their local mean, where they are white enough to tell.
     pub tails: Option<TailShape>,
-}
-
-/// How values are spread.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct TailShape {
-    /// Values.
-    pub samples: u64,
-    /// Fourth moment over the squared variance, less 3.
-    pub excess_kurtosis: f64,
-    /// How much shorter lines and rounding make the tails: the same, positive.
-    pub explained: f64,
-    /// Standard deviations beyond which values are counted.
-    pub sigma: f64,
-    /// Values beyond.
-    pub beyond: u64,
-    /// How many of them normal noise has.
-    pub expected_beyond: f64,
 }
 
 /// A step of the mean.

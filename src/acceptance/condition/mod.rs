@@ -30,7 +30,7 @@ mod unit_slip;
 mod units;
 mod warm_up;
 
-pub use facts::{BiasStep, ColumnFact, Condition, Facts, GyroFact, NoiseChange, TailShape, WarmUpFact};
+pub use facts::{BiasStep, ColumnFact, Condition, Facts, GyroFact, NoiseChange, WarmUpFact};
 
 use crate::record::ConditionRecord;
 

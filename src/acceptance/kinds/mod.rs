@@ -6,6 +6,7 @@ mod influence;
 mod positions;
 mod rate_table;
 mod repeatability;
+mod stretch_facts;
 mod temperature;
 
 use super::pipeline::Test;

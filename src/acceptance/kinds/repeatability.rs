@@ -1,8 +1,10 @@
 //! A series of switching off and on: the bias of every run, and how it scatters.
 
+use super::stretch_facts::{RestMean, Stretches, range};
+use crate::acceptance::condition::GyroFact;
 use crate::acceptance::condition::influence::{RunFacts, judge_runs};
 use crate::acceptance::request::{Request, Table};
-use crate::acceptance::test_kind::{Evidence, Progress, Reading, Run, TestKind, TestOption};
+use crate::acceptance::test_kind::{Evidence, Progress, Reading, RestFacts, Run, TestKind, TestOption};
 use crate::acceptance::{figures, interval_means};
 use crate::config::procedure::Procedure;
 use crate::config::procedure::model::MeasurandSpec;
@@ -25,6 +27,8 @@ pub struct RunEvidence {
     test: RepeatabilityTest,
     series: runs::Runs,
     channels: Vec<Repeatability>,
+    /// The channels at rest in the runs.
+    rest: Vec<GyroFact>,
 }
 
 impl TestKind for Repeated {
@@ -59,10 +63,13 @@ impl TestKind for Repeated {
         let series = runs::find(&blocks, &self.test, &reading.file_spans());
         let site = reading.procedure().site.as_ref();
         let earth = |channel: &str| site.map_or(0.0, |site| site.earth_rate_along(channel).value);
-        let channels = (0..blocks.gyros.len())
+        let channels: Vec<Repeatability> = (0..blocks.gyros.len())
             .filter_map(|g| repeatability::evaluate(&blocks, &series, g, earth(&blocks.gyros[g])))
             .collect();
-        Ok(RunEvidence { test: self.test, series, channels })
+        let runs = Stretches { blocks: &blocks, spans: series.list.iter().map(|r| r.blocks).collect() };
+        let fact = |c: &Repeatability| runs.fact(reading, &c.channel, Some(&rest_mean(c, earth(&c.channel))));
+        let rest = channels.iter().filter_map(fact).collect();
+        Ok(RunEvidence { test: self.test, series, channels, rest })
     }
 }
 
@@ -81,6 +88,10 @@ impl Evidence for RunEvidence {
         })]
     }
 
+    fn rest_facts(&self, reading: &Reading<'_>) -> RestFacts<'_> {
+        RestFacts::of_gyros(reading, &self.rest)
+    }
+
     fn estimates(&self, _: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate> {
         self.channels.iter().flat_map(|c| spec.measurand.evaluate_runs(c)).collect()
     }
@@ -97,5 +108,16 @@ impl Evidence for RunEvidence {
 
     fn complete(&self, _: &Reading<'_>, record: &mut RunRecord) -> Vec<Table> {
         interval_means::complete(record, self.channels.iter().flat_map(interval_means::of_runs).collect())
+    }
+}
+
+/// Mean output of all runs, the Earth rate that was taken out put back.
+fn rest_mean(c: &Repeatability, earth_deg_h: f64) -> RestMean {
+    let noise = c.runs.iter().map(|r| r.bias.standard.powi(2)).sum::<f64>();
+    let count = c.runs.len().max(1) as f64;
+    RestMean {
+        mean_deg_h: c.mean + earth_deg_h,
+        uncertainty_deg_h: (c.plain.powi(2) / count + noise / (count * count)).sqrt(),
+        range_deg_h: range(c.runs.iter().map(|r| r.bias.value)),
     }
 }

@@ -7,11 +7,13 @@ use crate::acceptance::request::Request;
 use crate::acceptance::test_kind::{Progress, Reading, Run, TestKind, TestOption};
 use crate::config::procedure::Procedure;
 use crate::measurand::GyroEvidence;
+use crate::noise::tails::Deviations;
 use crate::recording::{Channel, Role, SampleBlock, Sink};
-use crate::temperature::findings::{Findings, Schedule, findings, schedule};
+use crate::temperature::findings::{Analysis, Findings, Schedule, findings, schedule};
 use crate::temperature::start::start;
 use crate::temperature::track::{Means, Track};
 use crate::temperature::{TemperatureTest, WarmUpTest, warm_up};
+use std::collections::BTreeMap;
 
 /// A test over temperature, of the warm-up, or of both.
 pub struct OverTemperature {
@@ -75,8 +77,10 @@ impl TestKind for OverTemperature {
         _: Progress<'_>,
     ) -> Run<RestEvidence> {
         let mut gyros = at_rest::evidence(reading, digests)?;
-        let schedule = means.track.finish().and_then(|m| self.examine(reading, &mut gyros, &means.slots, &m));
-        Ok(RestEvidence { gyros, schedule })
+        let (slots, means) = (means.slots, means.track.finish());
+        let schedule = means.as_ref().and_then(|m| self.examine(reading, &mut gyros, &slots, m));
+        let from_lines = means.map_or_else(BTreeMap::new, |m| from_lines(&gyros, reading, &slots, &m));
+        Ok(RestEvidence { gyros, from_lines, schedule })
     }
 }
 
@@ -115,4 +119,45 @@ impl OverTemperature {
         }
         found
     }
+}
+
+/// Longest part of the residual of a model of the course whose values are set against one line, samples.
+const BLOCK_OF_RESIDUAL: usize = 256;
+/// The same of a course without a model, which bends.
+const BLOCK_OF_COURSE: usize = 64;
+
+/// Deviations of the samples of every gyro channel from its course. Sampled so fast that a block mean has several samples, the
+/// bias hardly moves within the blocks of a test at rest, and their spread is known from those.
+fn from_lines(
+    gyros: &[GyroEvidence],
+    reading: &Reading<'_>,
+    slots: &[usize],
+    means: &Means,
+) -> BTreeMap<String, Deviations> {
+    let of = |gyro: &GyroEvidence| {
+        let slot = reading.channels.iter().position(|c| c.id == gyro.channel)?;
+        let samples = means.values.get(slots.iter().position(|s| *s == slot)?)?;
+        let analysis = gyro.over_temperature.as_ref().and_then(|f| f.analysis.as_ref());
+        let (values, longest) = match analysis {
+            Some(analysis) => (residual(samples, means, analysis), BLOCK_OF_RESIDUAL),
+            None => (samples.clone(), BLOCK_OF_COURSE),
+        };
+        let stretches = values.split(|v| !v.is_finite());
+        Some((gyro.channel.clone(), Deviations::from_lines(stretches, longest)?))
+    };
+    if means.samples > 1 { BTreeMap::new() } else { gyros.iter().filter_map(of).collect() }
+}
+
+/// Samples less the model of the bias, which is straight from the middle of a block to that of the next.
+fn residual(samples: &[f64], means: &Means, analysis: &Analysis) -> Vec<f64> {
+    let (course, modelled) = (&analysis.course, &analysis.modelled);
+    let last = modelled.len().saturating_sub(1);
+    let model = |time_s: f64| {
+        let place = ((time_s - course.first_s) / course.block_s - 0.5).clamp(0.0, last as f64);
+        let (at, share) = ((place as usize).min(last), place.fract());
+        let of = |i: usize| modelled.get(i.min(last)).copied().unwrap_or(f64::NAN);
+        of(at) + share * (of(at + 1) - of(at))
+    };
+    let time_s = |i: usize| means.first_s + (i as f64 + 0.5) * means.block_s;
+    samples.iter().enumerate().map(|(i, v)| v - model(time_s(i))).collect()
 }

@@ -5,13 +5,14 @@ use crate::support::tested::tested;
 use sagnac::acceptance::condition::checks::CheckLog;
 use sagnac::acceptance::condition::stability_track::{Extreme, StabilityFacts, StabilityKey};
 use sagnac::acceptance::condition::{
-    BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, TailShape, WarmUpFact, judge_all,
+    BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, WarmUpFact, judge_all,
 };
 use sagnac::config::procedure::model::{Allowance, EarthRate, FaultBudget, MeasurandSpec, SupplyCondition};
 use sagnac::config::procedure::{EffectiveLimits, effective, load, load_limits};
 use sagnac::i18n::{Lang, Localize, lookup};
 use sagnac::measurand::{MEASURANDS, Test};
 use sagnac::noise::model::TERMS;
+use sagnac::noise::tails::TailShape;
 use sagnac::record::RunRecord;
 use sagnac::recording::integrity::Integrity;
 use sagnac::temperature::SegmentKind;

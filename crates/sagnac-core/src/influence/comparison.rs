@@ -62,6 +62,8 @@ pub struct Comparison {
     pub shifts: Vec<Shift>,
     /// The intervals.
     pub intervals: Vec<IntervalMean>,
+    /// Mean output without the influence, in the middle of those intervals, deg/h.
+    pub without: Combination,
     /// Probability of levels so far off the line if it is one; `None` with one level an axis.
     pub line: Option<f64>,
     /// True when a drift proportional to time was taken out.
@@ -177,13 +179,15 @@ pub fn evaluate(
         following(what, &own)
     };
     let others = beside.others.iter().filter_map(|(at, what)| course(cut.beside.get(*at)?, what)).collect();
+    let (intervals, without) = means(blocks, found, &states, &cut, drift.then_some(&time))?;
     Some(Comparison {
         channel: blocks.gyros.get(gyro)?.clone(),
         axes: used.iter().map(|a| found.axes[*a].clone()).collect(),
         per_unit,
         line: off_line(&each, first, &drives),
         shifts,
-        intervals: means(blocks, found, &states, &cut, drift.then_some(&time))?,
+        intervals,
+        without,
         drift,
         scatter,
         response,
@@ -292,14 +296,14 @@ fn solve(cut: &Cut, states: &States, x: &DMatrix<f64>) -> Option<(Fit, bool)> {
     }
 }
 
-/// Mean of every interval against the mean of those without the influence, the drift taken out.
+/// Mean of every interval against the mean of those without the influence, the drift taken out; and that mean itself.
 fn means(
     blocks: &Blocks,
     found: &Intervals,
     states: &States,
     cut: &Cut,
     time: Option<&DVector<f64>>,
-) -> Option<Vec<IntervalMean>> {
+) -> Option<(Vec<IntervalMean>, Combination)> {
     let (n, count) = (cut.rows.len(), found.list.len());
     // Time within an interval belongs to the noise here: the drift is taken from the means of those without.
     let x = DMatrix::from_fn(n, count, |i, j| f64::from(cut.of[i] == j));
@@ -338,7 +342,8 @@ fn means(
             temperature: middle(k, &|i| cut.temperature[i]),
         }
     });
-    Some(list.collect())
+    let without = fit.combine(&DVector::from_fn(count, |j, _| if states.is_off(j) { 1.0 / m } else { 0.0 }));
+    Some((list.collect(), without))
 }
 
 /// Probability that levels on a line through zero are so far from one, with the noise of the fit.

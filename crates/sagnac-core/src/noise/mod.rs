@@ -17,7 +17,7 @@
 //! Models and their closed forms: [`model`] (N, B, K, R, Q), [`composite`] (every term), [`data`] (kinds of noise, points
 //! and series). Uncertainty of deviations: [`edf`], [`intervals`], [`ruling`], [`stretches`]. What a record can show before it is made:
 //! [`expected`], [`identifiable`], [`null_ratio`]. Other quantities: [`russian`], [`prediction`], [`static_bias`],
-//! [`autocorrelation`]. Fitness of the record: [`motion`], [`coarse`]. Records with known noise: [`simulate`].
+//! [`autocorrelation`]. Fitness of the record: [`motion`], [`coarse`], [`tails`]. Records with known noise: [`simulate`].
 
 pub mod allan;
 pub mod autocorrelation;
@@ -54,6 +54,7 @@ pub mod spectral_record;
 pub mod static_bias;
 pub mod stretches;
 mod strided;
+pub mod tails;
 pub mod tau_grid;
 pub mod welch;
 pub mod whole;

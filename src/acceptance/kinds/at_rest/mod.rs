@@ -23,12 +23,14 @@ use crate::estimate::{Estimate, Verdict};
 use crate::figure::Figure;
 use crate::i18n::Note;
 use crate::measurand::GyroEvidence;
+use crate::noise::tails::Deviations;
 use crate::noise::tau_grid::TauGrid;
 use crate::record::RunRecord;
 use crate::recording::Channel;
 use crate::temperature::compensation::Compensation;
 use crate::temperature::findings::Schedule;
 use crate::temperature::start::Start;
+use std::collections::BTreeMap;
 
 /// A gyro at rest.
 pub struct AtRest;
@@ -52,7 +54,7 @@ impl TestKind for AtRest {
     }
 
     fn evaluate(self, reading: &Reading<'_>, collected: RateDigests, _: Progress<'_>) -> Run<RestEvidence> {
-        Ok(RestEvidence { gyros: evidence(reading, collected)?, schedule: None })
+        Ok(RestEvidence { gyros: evidence(reading, collected)?, from_lines: BTreeMap::new(), schedule: None })
     }
 }
 
@@ -77,6 +79,8 @@ pub fn options(request: &Request<'_>) -> Vec<TestOption> {
 pub struct RestEvidence {
     /// The gyro channels.
     pub gyros: Vec<GyroEvidence>,
+    /// Deviations of the samples from straight lines through short blocks, by channel, where the bias follows a course.
+    pub from_lines: BTreeMap<String, Deviations>,
     /// The schedule of a test over temperature.
     pub schedule: Option<Schedule>,
 }
@@ -95,7 +99,7 @@ impl Evidence for RestEvidence {
 
     fn rest_facts(&self, reading: &Reading<'_>) -> RestFacts<'_> {
         let (warm_up, gyros) = match reading.request.is_run() {
-            true => facts::of_gyros(reading, &self.gyros, self.is_constant()),
+            true => facts::of_gyros(reading, &self.gyros, &self.from_lines, self.is_constant()),
             false => (vec![], vec![]),
         };
         RestFacts { warm_up, gyros, schedule: self.schedule.as_ref() }

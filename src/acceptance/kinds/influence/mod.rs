@@ -3,9 +3,11 @@
 mod acted;
 mod noise;
 
+use super::stretch_facts::{RestMean, Stretches, range};
+use crate::acceptance::condition::GyroFact;
 use crate::acceptance::condition::influence::{Acted, ComparedFacts, judge_compared};
 use crate::acceptance::request::{Request, Table};
-use crate::acceptance::test_kind::{Evidence, Progress, Reading, Run, TestKind, TestOption};
+use crate::acceptance::test_kind::{Evidence, Progress, Reading, RestFacts, Run, TestKind, TestOption};
 use crate::acceptance::{figures, interval_means};
 use crate::config::procedure::Procedure;
 use crate::config::procedure::model::MeasurandSpec;
@@ -32,6 +34,8 @@ pub struct InfluenceEvidence {
     test: ComparisonTest,
     series: Intervals,
     channels: Vec<Comparison>,
+    /// The channels at rest without the influence.
+    rest: Vec<GyroFact>,
     /// Whether the influence acted as stated.
     acted: Acted,
     /// How the angle random walk changed, where that is asked for.
@@ -83,15 +87,19 @@ impl TestKind for UnderInfluence {
             reading.channels.iter().filter(|c| self.is_level(c)).map(|c| c.id.clone()).collect();
         let series = intervals::find(&blocks, test, &axes, &reading.file_spans());
         let context = context(&reading.channels, test, axes.len());
-        let channels = (0..blocks.gyros.len())
+        let channels: Vec<Comparison> = (0..blocks.gyros.len())
             .filter_map(|g| comparison::evaluate(&blocks, &series, test, &context, g))
             .collect();
+        let off = series.list.iter().filter(|i| series.is_off(i)).map(|i| i.blocks);
+        let without = Stretches { blocks: &blocks, spans: off.collect() };
+        let rest =
+            channels.iter().filter_map(|c| without.fact(reading, &c.channel, Some(&rest_mean(c)))).collect();
         let acted = acted::find(reading, test, &blocks, &series, &axes, progress)?;
         let noise = match reading.procedure().measures(ANGLE_RANDOM_WALK_SHIFT.id, None) {
             true => noise::find(reading, &blocks, &series, progress)?,
             false => BTreeMap::new(),
         };
-        Ok(InfluenceEvidence { test: self.test, series, channels, acted, noise })
+        Ok(InfluenceEvidence { test: self.test, series, channels, rest, acted, noise })
     }
 }
 
@@ -123,6 +131,10 @@ impl Evidence for InfluenceEvidence {
         })
     }
 
+    fn rest_facts(&self, reading: &Reading<'_>) -> RestFacts<'_> {
+        RestFacts::of_gyros(reading, &self.rest)
+    }
+
     fn estimates(&self, _: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate> {
         let of = |c: &Comparison| {
             let noise = self.noise.get(&c.channel).map_or(&[][..], Vec::as_slice);
@@ -152,6 +164,15 @@ impl UnderInfluence {
     /// True for a channel that tells the level of the influence.
     fn is_level(&self, channel: &Channel) -> bool {
         channel.role == self.test.influence.role()
+    }
+}
+
+/// Mean output without the influence.
+fn rest_mean(c: &Comparison) -> RestMean {
+    RestMean {
+        mean_deg_h: c.without.value,
+        uncertainty_deg_h: c.without.standard,
+        range_deg_h: range(c.intervals.iter().filter(|i| i.off).map(|i| i.mean.value)),
     }
 }
 
