@@ -7,10 +7,12 @@
 //! mistake explains is a bias: it fails by its limit.
 //!
 //! Where no bound of the bias is known, a mean of another size than the Earth rate which one of the usual exchanges of
-//! unit (deg/h, deg/s, rad/s) brings to within an eighth of it is taken for that exchange. Over temperature and while a unit
-//! warms up its bias is also seen to move, and one that moves little is thought to be little: three times the movement stands
-//! for the bound, and a mean that a reversed sign or an Earth rate taken out before explains is taken for that. Where the bias
-//! moves too much for this, the record says that the mean was not judged.
+//! unit (deg/h, deg/s, rad/s) brings to within an eighth of it is taken for that exchange. Over temperature, while a unit warms
+//! up, from run to run and between intervals without an influence its bias is also seen to move, and one that moves little is
+//! thought to be little: three times the movement stands for the bound. Where that is a fifth of the Earth rate or less, a mean
+//! that a reversed sign or an Earth rate taken out before explains, to within the bound or an eighth of the Earth rate, is taken
+//! for that. Where the bias moves more and the mean is not within an eighth of the Earth rate, the record says that it was not
+//! judged.
 
 use super::facts::{Condition, Facts, GyroFact, id_of, record};
 use super::plausibility::{
@@ -19,16 +21,20 @@ use super::plausibility::{
 };
 use super::stability_track::StabilityKey;
 use super::unit_slip::{self, UnitSlip};
-use crate::i18n::Note;
+use crate::i18n::{Arg, Note};
 use crate::measurand;
 use crate::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct EarthRate;
 
+/// Ratio of output to Earth rate from which a gain explains it: below, it is a bias.
+const MIN_GAIN_RATIO: f64 = 1.25;
+/// Ratio beyond which a gain is a mistake of another kind.
+const MAX_GAIN_RATIO: f64 = 5.0;
 /// Least Earth rate along the axis by which a unit is recognised where nothing is known of the bias, deg/h.
 const MIN_EARTH_RATE_DEG_H: f64 = 1.0;
-/// Share of the Earth rate within which an exchange of unit brings the mean then.
+/// Share of the Earth rate within which a mistake of unit or sign brings the mean then.
 const EXCHANGE_TOLERANCE: f64 = 0.125;
 impl Condition for EarthRate {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
@@ -62,7 +68,8 @@ fn why_not(gyro: &GyroFact, facts: &Facts<'_>) -> Option<&'static str> {
         return Some("check_list.no_site");
     }
     if largest_plausible_bias(gyro, facts).is_none() {
-        return Some("check_list.no_bias_bound");
+        let moves = gyro.earth_deg_h.and_then(|(earth, _)| movement(gyro, earth, facts));
+        return moves.is_none_or(|(_, small)| !small).then_some("check_list.no_bias_bound");
     }
     mean_shows_earth_rate(gyro, facts).is_none().then_some("check_list.small_earth_rate")
 }
@@ -111,9 +118,9 @@ fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Cond
     Some(comparison(gyro, earth, (ConditionStatus::Invalid, "earth_rate.mistake", found), required, facts))
 }
 
-/// A reversed sign, or an Earth rate taken out before, shown by how little the bias moves in a test over temperature or of the
-/// warm-up.
-fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+/// Bound of the bias by how far it moves, deg/h, and whether it is small enough beside the Earth rate to tell a mistake.
+/// `None` where no movement was seen, and where the Earth rate is not expected in the mean or too small.
+fn movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<(f64, bool)> {
     let moves = gyro.moves_deg_h?;
     let ids = [measurand::BIAS_OVER_TEMPERATURE_PEAK_TO_PEAK.id, measurand::TURN_ON_TRANSIENT.id];
     let limits = ids.iter().filter_map(|id| facts.limits.limit(id, &gyro.channel)?.limit.largest_magnitude());
@@ -121,13 +128,24 @@ fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Conditi
     if earth_rate_is_kept(facts) || earth.abs() < MIN_EARTH_RATE_DEG_H {
         return None;
     }
+    let u = 3.0 * gyro.mean_uncertainty_deg_h;
+    Some((bound, earth.abs() >= MIN_EARTH_TO_BIAS * (bound + u)))
+}
+
+/// A reversed sign, or an Earth rate taken out before, shown by how little the bias moves in a test over temperature, of the
+/// warm-up, in runs or in intervals.
+fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
+    let (bound, small) = movement(gyro, earth, facts)?;
     let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
     let u = 3.0 * gyro.mean_uncertainty_deg_h;
-    if earth.abs() < MIN_EARTH_TO_BIAS * (bound + u) {
+    let tolerance = EXCHANGE_TOLERANCE * earth.abs();
+    if !small {
         let status = (ConditionStatus::Remark, "earth_rate.not_judged", vec![]);
-        return Some(comparison(gyro, earth, status, required, facts));
+        let shown = (gyro.mean_deg_h - earth).abs() <= tolerance;
+        return (!shown).then(|| comparison(gyro, earth, status, required, facts));
     }
-    let near = |value: f64| (gyro.mean_deg_h - value).abs() <= bound + u;
+    let slack = bound.max(tolerance) + u;
+    let near = |value: f64| (gyro.mean_deg_h - value).abs() <= slack;
     let found = if near(-earth) {
         Note::new("earth_rate.sign")
     } else if near(0.0) {
@@ -162,10 +180,27 @@ fn explain(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec<No
         found.extend(scaled.into_iter().filter(fits).map(|m| m.note));
     }
     found.extend(other_axis(gyro, earth, bound, facts));
+    if found.is_empty() {
+        found.extend(gain(gyro, earth, facts));
+    }
     if found.is_empty() && mean.abs() <= bound + 3.0 * u {
         found.push(Note::new("earth_rate.taken_out"));
     }
     found
+}
+
+/// A gain: the output is the same multiple of the Earth rate as its noise is of the typical noise. A bias changes no noise.
+fn gain(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Note> {
+    let ratio = gyro.mean_deg_h / earth;
+    let known = 3.0 * gyro.mean_uncertainty_deg_h <= 0.1 * gyro.mean_deg_h.abs();
+    let size = ratio.max(1.0 / ratio);
+    if !known || !(MIN_GAIN_RATIO..=MAX_GAIN_RATIO).contains(&size) {
+        return None;
+    }
+    let noise = gyro.angle_random_walk? / facts.limits.expected(measurand::ANGLE_RANDOM_WALK.id)?;
+    let together = (noise / ratio).ln().abs() <= MIN_GAIN_RATIO.ln();
+    let figures = |v: f64| Arg::figures(v, 2);
+    together.then(|| Note::new("earth_rate.gain").with("ratio", figures(ratio)).with("noise", figures(noise)))
 }
 
 /// The temperature where the rate should be, and the rate where the temperature should be.
@@ -212,7 +247,7 @@ fn other_axis(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec
             elevation_deg: exact(elevation),
         });
         if rate.value.abs() <= EARTH_RATE_DEG_H && is(rate.value) {
-            found.push(Note::new("earth_rate.axis").with("direction", crate::i18n::Arg::Key(key.to_owned())));
+            found.push(Note::new("earth_rate.axis").with("direction", Arg::Key(key.to_owned())));
         }
     }
     found
