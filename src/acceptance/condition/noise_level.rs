@@ -5,6 +5,10 @@
 //! a twentieth of the record is more than twenty times the typical N, and too low when the greatest is less than a
 //! twentieth of it. Twenty: above it lies the smallest mistake of the clock, √1000 = 32 for ms taken as s; below it lie
 //! units of one family, which differ by a factor of three at most.
+//!
+//! Within that factor noise above the typical one is for the limit to judge, and noise below it passes every limit: a gain that
+//! is too low, a filter or a mean over samples makes it as well as a good unit. Where even the upper end of the interval of N
+//! is less than four fifths of the typical one, the record says so.
 
 use super::facts::{Condition, Facts, GyroFact, id_of, record};
 use super::plausibility::{NOISE_RATIO_LIMIT, mean_shows_earth_rate, white_noise_range};
@@ -18,6 +22,9 @@ pub(super) struct NoiseLevel;
 
 /// Factor within which a mistake explains the ratio.
 const SLIP_FACTOR: f64 = 3.0;
+
+/// Share of the typical noise that the upper end of the interval of N must reach.
+const MIN_SHARE_OF_TYPICAL: f64 = 0.8;
 
 impl Condition for NoiseLevel {
     fn judge(&self, facts: &Facts<'_>) -> Vec<ConditionRecord> {
@@ -45,8 +52,10 @@ fn of_gyro(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<Condition
         1.0
     };
     let far = ratio != 1.0;
+    let below = gyro.angle_random_walk_high.filter(|n| !far && *n < MIN_SHARE_OF_TYPICAL * typical);
     let why = if far { unit_slip::either(explain(gyro, ratio, facts)) } else { None };
     let (status, key) = match (far, why.is_some()) {
+        (false, _) if below.is_some() => (ConditionStatus::Remark, "noise_level.below"),
         (false, _) => (ConditionStatus::Ok, "noise_level.usual"),
         (true, true) => (ConditionStatus::Invalid, "noise_level.mistake"),
         (true, false) => (ConditionStatus::Invalid, "noise_level.far"),
@@ -56,6 +65,11 @@ fn of_gyro(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<Condition
         .with("low", low)
         .with("high", high)
         .with("typical", typical);
+    if let Some(upper) = below {
+        note = note
+            .with("upper", Arg::figures(upper, 3))
+            .with("percent", Arg::figures(100.0 * upper / typical, 2));
+    }
     if let Some(why) = why {
         note = note.with("why", why);
     }
