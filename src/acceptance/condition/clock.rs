@@ -53,13 +53,17 @@ impl Condition for Clock {
     }
 }
 
-/// The round rate that a rate is near and does not meet. Round are rates and intervals of two digits, and powers of two
-/// times powers of ten.
+/// First digits of rates and intervals that people set.
+const USUAL_DIGITS: [f64; 6] = [1.0, 2.0, 4.0, 5.0, 8.0, 10.0];
+
+/// The round rate that a rate is near and does not meet. Round are rates of two digits, intervals of two digits that are not
+/// near a usual one, and powers of two times powers of ten: clocks of sensors make rates such as 95 Hz, and nobody sets 21 s.
 fn round_near(rate_hz: f64) -> Option<f64> {
     let two_digits = |v: f64| {
         let scale = 10f64.powf(v.log10().floor() - 1.0);
         (v / scale).round() * scale
     };
+    let interval_s = two_digits(1.0 / rate_hz);
     let powers = |v: f64| {
         (0..=14).map(move |k| {
             let two = 2f64.powi(k);
@@ -67,14 +71,27 @@ fn round_near(rate_hz: f64) -> Option<f64> {
         })
     };
     let met = |round: f64| (rate_hz / round - 1.0).abs() <= RATE_TOLERANCE;
-    if met(two_digits(rate_hz)) || met(1.0 / two_digits(1.0 / rate_hz)) || powers(rate_hz).any(met) {
+    if met(two_digits(rate_hz)) || is_set(interval_s) && met(1.0 / interval_s) || powers(rate_hz).any(met) {
         return None;
     }
-    // What people set: 1, 2, 4, 5, 8 and 10 times a power of ten.
-    let scale = 10f64.powf(rate_hz.log10().floor());
-    let usual = [1.0, 2.0, 4.0, 5.0, 8.0, 10.0].map(|d| d * scale);
+    // What people set: 1, 2, 4, 5, 8 and 10 times a power of ten, in Hz and where samples are slow in s.
+    let usual = |v: f64| USUAL_DIGITS.map(|d| d * 10f64.powf(v.log10().floor()));
+    let intervals = usual(1.0 / rate_hz).into_iter().filter(|s| *s >= 1.0).map(|s| 1.0 / s);
     let off = |r: &f64| (rate_hz / r - 1.0).abs();
-    usual.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|r| off(r) <= RATE_SLIP_TOLERANCE)
+    usual(rate_hz)
+        .into_iter()
+        .chain(intervals)
+        .min_by(|a, b| off(a).total_cmp(&off(b)))
+        .filter(|r| off(r) <= RATE_SLIP_TOLERANCE)
+}
+
+/// Whether an interval of two digits may have been set: it is a usual one or near none. 48 and 96 are parts of binary rates.
+fn is_set(interval_s: f64) -> bool {
+    let digits = interval_s / 10f64.powf(interval_s.log10().floor());
+    let off = |usual: &f64| (digits / usual - 1.0).abs();
+    let nearest = USUAL_DIGITS.iter().map(off).fold(f64::INFINITY, f64::min);
+    let binary = [4.8, 9.6].iter().any(|b| off(b) < RATE_TOLERANCE);
+    binary || nearest < RATE_TOLERANCE || nearest > RATE_SLIP_TOLERANCE
 }
 
 #[cfg(test)]
@@ -83,10 +100,22 @@ mod tests {
 
     #[test]
     fn a_clock_that_is_off_is_told_from_a_rate_that_was_set() {
-        for set in [0.1, 1.0, 100.0, 64.0, 102.4, 1000.0, 250.0, 12.5, 1.0 / 15.0, 8000.0] {
+        for set in
+            [0.1, 1.0, 100.0, 64.0, 102.4, 1000.0, 250.0, 12.5, 1.0 / 15.0, 8000.0, 95.0, 0.05, 1.0 / 30.0]
+        {
             assert_eq!(round_near(set), None, "{set}");
         }
-        for (measured, meant) in [(0.1 / 1.04, 0.1), (1.0 / 1.04, 1.0), (962.4, 1000.0), (103.9, 100.0)] {
+        // 21 s and 19 s are 20 s by a clock that is 5 % off.
+        let off = [
+            (0.1 / 1.04, 0.1),
+            (1.0 / 1.04, 1.0),
+            (962.4, 1000.0),
+            (103.9, 100.0),
+            (1.0 / 21.0, 0.05),
+            (1.0 / 19.0, 0.05),
+            (1.0 / 4.2, 0.25),
+        ];
+        for (measured, meant) in off {
             assert!((round_near(measured).unwrap() / meant - 1.0).abs() < 1e-12, "{measured}");
         }
     }
