@@ -2,6 +2,7 @@
 
 use super::build_record::build_record;
 use super::condition::checks::CheckLog;
+use super::condition::thermometer::Thermometer;
 use super::condition::{ColumnFact, Facts, judge_all};
 use super::missing_rows;
 use super::reading::{self, tidy};
@@ -12,8 +13,8 @@ use super::verdict;
 use crate::config::procedure::limits::gyro_of;
 use crate::ingest::Plan;
 use crate::record::{ConditionRecord, ConditionStatus, MeasurandRecord, Window};
-use crate::recording::Channel;
 use crate::recording::window::Windowed;
+use crate::recording::{Channel, Role};
 
 /// A test of any kind, ready to run.
 pub(super) trait Test {
@@ -92,6 +93,7 @@ fn judge(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<ConditionRecord>
     // Without a procedure the unit comes from the name of the column, or from a user who knows better.
     let (columns, stated_serials) =
         if request.is_run() { (columns(reading), request.source.stated_serials()) } else { (vec![], vec![]) };
+    let thermometers = thermometers(reading);
     conditions.extend(judge_all(&Facts {
         procedure: request.procedure,
         integrity: &reading.report.integrity,
@@ -105,6 +107,7 @@ fn judge(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<ConditionRecord>
         warm_up: &rest.warm_up,
         gyros: &rest.gyros,
         limits: request.limits,
+        thermometers: &thermometers,
         columns: &columns,
         duration_s: reading.report.duration_s,
         stated_serials: &stated_serials,
@@ -146,6 +149,16 @@ fn measure(reading: &Reading<'_>, evidence: &dyn Evidence, missing: &'static str
 fn longest_gap_s(window: &Window) -> f64 {
     let gaps = window.excluded.iter().filter(|s| s.reason == "gap");
     gaps.map(|s| s.to_s - s.from_s).fold(0.0, f64::max)
+}
+
+/// The thermometers whose readings no stated temperature or course tells, each with its mean.
+fn thermometers(reading: &Reading<'_>) -> Vec<Thermometer> {
+    let own = reading.channels.iter().filter(|c| c.role == Role::Temperature);
+    own.filter_map(|channel| {
+        let read = reading.report.channels.iter().find(|c| c.id == channel.id)?;
+        Thermometer::unstated(reading.procedure(), &channel.id, read.values.mean)
+    })
+    .collect()
 }
 
 /// The columns that the channels were read from.

@@ -2,6 +2,7 @@
 
 use super::checks::CheckLog;
 use super::stability_track::{StabilityFacts, StabilityKey};
+use super::thermometer::Thermometer;
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::i18n::{Lang, Localize, Note};
 use crate::noise::tails::TailShape;
@@ -39,6 +40,8 @@ pub struct Facts<'a> {
     pub gyros: &'a [GyroFact],
     /// Limits and typical values that hold.
     pub limits: &'a EffectiveLimits,
+    /// Thermometers whose readings no stated temperature or course tells.
+    pub thermometers: &'a [Thermometer],
     /// Columns that the channels are read from.
     pub columns: &'a [ColumnFact],
     /// Length of the recording by its stamps, s.

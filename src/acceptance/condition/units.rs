@@ -2,6 +2,7 @@
 
 use super::facts::{Condition, Facts, record};
 use super::stability_track::StabilityKey;
+use super::thermometer::judge_scale_of_temperature;
 use crate::config::procedure::model::TemperatureCondition;
 use crate::i18n::{Arg, Note};
 use crate::record::{ConditionRecord, ConditionStatus};
@@ -15,10 +16,14 @@ impl Condition for Units {
         let mut records: Vec<ConditionRecord> =
             facts.procedure.channels.iter().filter_map(|c| named(c, facts)).collect();
         let temperatures = facts.procedure.conditions.temperatures.iter().enumerate();
-        if facts.procedure.conditions.temperatures.is_empty() {
+        if facts.procedure.conditions.temperatures.is_empty() && facts.thermometers.is_empty() {
             facts.checks.not_made("temperature_unit", None, "check_list.no_nominal_temperature");
         }
         records.extend(temperatures.filter_map(|(position, c)| by_value(position, c, facts)));
+        for thermometer in facts.thermometers {
+            facts.checks.made("temperature_unit", Some(&thermometer.channel), "units");
+            records.extend(judge_scale_of_temperature(thermometer));
+        }
         records
     }
 }

@@ -205,6 +205,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         warm_up: &warm_up,
         gyros: &[gyro],
         limits: &limits,
+        thermometers: &[],
         columns: &columns,
         duration_s: 1e9,
         stated_serials: &["SN-2"],

@@ -1,15 +1,12 @@
 //! What the conditions of a rate table are judged by.
 
 use crate::acceptance::condition::table::{ChannelFact, Settling, TableFacts};
-use crate::acceptance::condition::thermometer::Thermometer;
 use crate::acceptance::request::Request;
-use crate::config::procedure::Procedure;
 use crate::measurand;
 use crate::rate_table::inner_axis::InnerAxis;
 use crate::rate_table::scale_factor::ScaleFactor;
 use crate::rate_table::settling::Unsettled;
 use crate::rate_table::{Setup, TableRun, stamps};
-use crate::recording::Role;
 
 /// What was found of the table and of how every channel follows it. `lines` are the gyro channels by position, each with its
 /// line; `about_outer`: the table turns about its other axis.
@@ -108,22 +105,5 @@ fn channel_fact(
             .limits
             .limit(measurand::SCALE_FACTOR_BIAS.id, id)
             .and_then(|l| l.limit.largest_magnitude()),
-    })
-}
-
-/// The thermometer of the test, where the procedure states no temperature that its readings are judged by.
-pub fn thermometer(procedure: &Procedure, setup: &Setup, run: &TableRun) -> Option<Thermometer> {
-    let is_it = |id: &str| setup.temperature.as_ref().is_none_or(|t| t == id);
-    let spec =
-        procedure.channels.iter().find(|c| c.channel.role == Role::Temperature && is_it(&c.channel.id))?;
-    let id = &spec.channel.id;
-    let readings = run.blocks.list.iter().map(|b| b.temperature).filter(|t| t.is_finite());
-    let (sum, n) = readings.fold((0.0, 0.0), |(s, n), t| (s + t, n + 1.0));
-    let stated = procedure.conditions.temperatures.iter().any(|c| c.channel == *id);
-    (n > 0.0 && !stated).then(|| Thermometer {
-        channel: id.clone(),
-        unit: spec.unit_in_file.clone(),
-        mean_deg_c: sum / n,
-        counts: procedure.measures(measurand::SCALE_FACTOR_TEMPERATURE_SENSITIVITY.id, None),
     })
 }

@@ -5,7 +5,6 @@ mod facts;
 mod steps;
 
 use crate::acceptance::condition::table::{judge_and_log, judge_scale};
-use crate::acceptance::condition::thermometer::judge_scale_of_temperature;
 use crate::acceptance::figures;
 use crate::acceptance::request::{Request, Table};
 use crate::acceptance::tables;
@@ -104,10 +103,6 @@ impl Evidence for StepEvidence {
             conditions.retain(|c| c.id != "table_reached");
         }
         conditions.extend(self.lines().filter_map(|c| judge_scale(&c.channel, c.factor)));
-        if let Some(thermometer) = facts::thermometer(procedure, &self.setup, &self.run) {
-            reading.checks.made("temperature_unit", Some(&thermometer.channel), "units");
-            conditions.extend(judge_scale_of_temperature(&thermometer));
-        }
         conditions
     }
 
