@@ -19,6 +19,8 @@ pub struct EarthFact {
     pub factor: f64,
     /// Standard uncertainty of it.
     pub standard: f64,
+    /// True where a limit judges the scale factor of the channel.
+    pub limited: bool,
     /// Bias, deg/h.
     pub bias: f64,
     /// Latitude, where all axes are vertical: what the factor says of it.
@@ -28,6 +30,11 @@ pub struct EarthFact {
     /// Channel that shows the Earth's rotation between these positions in place of this one, and its factor.
     pub turned_instead: Option<(String, f64)>,
 }
+
+/// Departure of the factor from 1 that a scale factor may have: beyond, a unit, a direction or the latitude is wrong.
+const MAX_FACTOR_ERROR: f64 = 0.02;
+/// The same where no limit judges the scale factor: gyros that show the Earth rate so well are calibrated more nearly.
+const MAX_UNJUDGED_ERROR: f64 = 0.005;
 
 /// Judges whether all stretches of a procedure were found.
 pub fn judge_stretches(stated: usize, missing: usize) -> ConditionRecord {
@@ -63,26 +70,37 @@ pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
                 .with("factor", shown),
         );
     }
-    if (fact.factor - 1.0).abs() <= allowed.max(0.02) {
+    let error = (fact.factor - 1.0).abs();
+    let unjudged = !fact.limited && error > allowed.max(MAX_UNJUDGED_ERROR);
+    if unjudged && error <= MAX_FACTOR_ERROR {
+        return invalid(
+            Note::new("known.gain")
+                .with("factor", shown)
+                .with("uncertainty", Arg::figures(fact.standard, 2))
+                .with("allowed", Arg::Stated(1e6 * MAX_UNJUDGED_ERROR)),
+        );
+    }
+    if error <= allowed.max(MAX_FACTOR_ERROR) {
         let key = if fact.standard > 0.25 { "known.earth_weak" } else { "known.earth_seen" };
         let note = Note::new(key).with("factor", shown).with("uncertainty", Arg::figures(fact.standard, 2));
         return record(id, ConditionStatus::Ok, &observed, required, note);
     }
-    if (fact.factor + 1.0).abs() <= allowed.max(0.02) {
+    if (fact.factor + 1.0).abs() <= allowed.max(MAX_FACTOR_ERROR) {
         return invalid(Note::new("known.reversed").with("factor", shown));
     }
     // A factor that is not known to a tenth says nothing of units, nor of a latitude.
     let known = allowed <= 0.1 * fact.factor.abs();
     let units = || unit_slip::rate_factors(&fact.unit).into_iter().filter(|_| known);
     let off = |m: &UnitSlip| (m.factor * fact.factor - 1.0).abs();
-    let usual = units().any(|m| m.usual && off(&m) <= 0.02);
-    if fact.factor.abs() <= allowed.max(0.02) && !usual {
+    let usual = units().any(|m| m.usual && off(&m) <= MAX_FACTOR_ERROR);
+    if fact.factor.abs() <= allowed.max(MAX_FACTOR_ERROR) && !usual {
         return invalid(Note::new("known.not_turned").with("factor", shown));
     }
-    let mistake = units().filter(|m| off(m) <= (allowed / fact.factor.abs()).max(0.02)).min_by(|a, b| {
-        let off = |m: &UnitSlip| (m.factor * fact.factor).ln().abs();
-        off(a).total_cmp(&off(b))
-    });
+    let mistake =
+        units().filter(|m| off(m) <= (allowed / fact.factor.abs()).max(MAX_FACTOR_ERROR)).min_by(|a, b| {
+            let off = |m: &UnitSlip| (m.factor * fact.factor).ln().abs();
+            off(a).total_cmp(&off(b))
+        });
     if let Some(mistake) = mistake {
         let note =
             Note::new("on_table.mistaken").with("factor", shown).with("mistake", Arg::from(mistake.note));
@@ -97,5 +115,36 @@ pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
                 .with("fits", Arg::figures(sine.asin().to_degrees(), 3)),
         ),
         None => invalid(Note::new("known.off").with("factor", shown)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_gain_that_nothing_judges_is_named_where_it_is_known() {
+        let judged = |factor: f64, standard: f64, limited: bool| {
+            let fact = EarthFact {
+                channel: "rate".to_owned(),
+                several: false,
+                unit: "deg/h".to_owned(),
+                factor,
+                standard,
+                limited,
+                bias: 0.1,
+                latitude_deg: Some(56.0),
+                software: vec![],
+                turned_instead: None,
+            };
+            judge_earth(&fact).message.map(|m| m.id.to_string()).unwrap_or_default()
+        };
+        assert_eq!(judged(1.01, 3e-4, false), "known.gain");
+        assert_eq!(judged(0.99, 3e-4, false), "known.gain");
+        // A limit judges it; the noise may make it; a calibrated gyro has it.
+        assert_eq!(judged(1.01, 3e-4, true), "known.earth_seen");
+        assert_eq!(judged(1.01, 3e-3, false), "known.earth_seen");
+        assert_eq!(judged(1.004, 3e-4, false), "known.earth_seen");
+        assert_eq!(judged(1.03, 3e-4, true), "known.latitude");
     }
 }

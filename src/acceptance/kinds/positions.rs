@@ -1,17 +1,19 @@
 //! Positions against the Earth's rotation, and turns by known angles.
 
 use super::rate_table::table_options;
+use super::stretch_facts::Stretches;
+use crate::acceptance::condition::GyroFact;
 use crate::acceptance::condition::positions::{EarthFact, judge_earth, judge_stretches};
 use crate::acceptance::condition::table::judge_scale;
 use crate::acceptance::figures;
 use crate::acceptance::request::Request;
-use crate::acceptance::test_kind::{Evidence, Progress, Reading, Run, TestKind, TestOption};
+use crate::acceptance::test_kind::{Evidence, Progress, Reading, RestFacts, Run, TestKind, TestOption};
 use crate::config::procedure::Procedure;
 use crate::config::procedure::model::MeasurandSpec;
 use crate::estimate::Estimate;
 use crate::figure::Figure;
 use crate::ingest::Pauses;
-use crate::measurand::KnownInputEvidence;
+use crate::measurand::{KnownInputEvidence, SCALE_FACTOR_ERROR};
 use crate::noise::static_bias::{Orientation, Uncertain, earth_rate};
 use crate::rate_table::blocks::{Blocks, Collector};
 use crate::rate_table::known::{self, Positions};
@@ -30,6 +32,8 @@ pub struct PositionEvidence {
     setup: Setup,
     positions: Vec<Positions>,
     turns: Option<Turns>,
+    /// The channels at rest in the positions.
+    rest: Vec<GyroFact>,
     /// Stated stretches that the recording lacks.
     missing: usize,
 }
@@ -37,7 +41,7 @@ pub struct PositionEvidence {
 impl TestKind for InPositions {
     type Collector = Collector;
     type Evidence = PositionEvidence;
-    const CHECKS: &'static [&'static str] = &["earth_in_positions"];
+    const CHECKS: &'static [&'static str] = &["earth_in_positions", "noise_level", "distribution"];
     const MISSING: &'static str = "unshown.few_positions";
 
     fn of(procedure: &Procedure) -> Option<InPositions> {
@@ -85,13 +89,17 @@ impl TestKind for InPositions {
         found.dedup();
         let missing = stated.len() - found.len();
         let turns = turns::turns(blocks, stated, &stretches);
-        Ok(PositionEvidence { setup: self.setup, positions, turns, missing })
+        let rests = |k: usize| stated.get(k).is_some_and(|k| !matches!(k.input, Input::Turn { .. }));
+        let spans = stretches.iter().filter(|s| rests(s.known)).map(|s| s.blocks).collect();
+        let at_rest = Stretches { blocks, spans };
+        let rest = positions.iter().filter_map(|p| at_rest.fact(reading, &p.channel, None)).collect();
+        Ok(PositionEvidence { setup: self.setup, positions, turns, rest, missing })
     }
 }
 
 impl Evidence for PositionEvidence {
     fn conditions(&self, reading: &Reading<'_>) -> Vec<ConditionRecord> {
-        let PositionEvidence { setup, positions, turns, missing } = self;
+        let PositionEvidence { setup, positions, turns, missing, .. } = self;
         if positions.is_empty() {
             reading.checks.not_made("earth_in_positions", None, "check_list.no_positions");
         }
@@ -99,7 +107,7 @@ impl Evidence for PositionEvidence {
             reading.checks.made("earth_in_positions", Some(&p.channel), "known_earth");
         }
         let mut conditions = vec![judge_stretches(setup.known.len(), *missing)];
-        let facts = positions.iter().map(|p| self.earth_fact(p, reading.procedure(), positions.len() > 1));
+        let facts = positions.iter().map(|p| self.earth_fact(p, reading.request, positions.len() > 1));
         conditions.extend(facts.map(|fact| judge_earth(&fact)));
         // Along the axis or across; a factor that noise alone may make says nothing.
         let of_turns = turns.iter().flat_map(|t| &t.table).map(|t| (&t.output, t.factor));
@@ -117,6 +125,10 @@ impl Evidence for PositionEvidence {
         conditions
     }
 
+    fn rest_facts(&self, reading: &Reading<'_>) -> RestFacts<'_> {
+        RestFacts::of_gyros(reading, &self.rest)
+    }
+
     fn estimates(&self, _: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate> {
         let (positions, turns) = (&self.positions, self.turns.as_ref());
         spec.measurand.evaluate_known_input(&KnownInputEvidence { positions, turns })
@@ -132,7 +144,8 @@ impl Evidence for PositionEvidence {
 
 impl PositionEvidence {
     /// What a channel makes of the Earth's rotation.
-    fn earth_fact(&self, p: &Positions, procedure: &Procedure, several: bool) -> EarthFact {
+    fn earth_fact(&self, p: &Positions, request: &Request<'_>, several: bool) -> EarthFact {
+        let procedure = request.procedure;
         let vertical = self.setup.known.iter().all(|k| match k.input {
             Input::Position { elevation, .. } => (elevation.0.abs() - 90.0).abs() < 1e-6,
             _ => true,
@@ -143,6 +156,7 @@ impl PositionEvidence {
             unit: procedure.channel(&p.channel).map_or_else(String::new, |c| c.unit_in_file.clone()),
             factor: p.factor.value,
             standard: p.factor.standard,
+            limited: request.limits.limit(SCALE_FACTOR_ERROR.id, &p.channel).is_some(),
             bias: p.bias.value,
             latitude_deg: procedure.site.as_ref().map(|s| s.latitude_deg).filter(|_| vertical),
             turned_instead: p.turned_instead.clone(),
