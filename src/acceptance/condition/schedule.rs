@@ -85,7 +85,7 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
         [("min_deg_c", low), ("max_deg_c", high), ("heating", up as f64), ("cooling", down as f64)];
     let too_few = up < test.ramps_each_way || down < test.ramps_each_way;
     let complete = !missed_low && !missed_high && !too_few;
-    let (status, note) = if let Some(key) = other_scale((low, high), test) {
+    let (status, note) = if let Some(key) = other_scale((low, high), test).or_else(|| reversed(run, test)) {
         (ConditionStatus::Invalid, Note::new(key).with("low", c(low)).with("high", c(high)))
     } else if complete {
         (ConditionStatus::Ok, Note::new("schedule.ends").with("low", c(low)).with("high", c(high)))
@@ -144,9 +144,41 @@ fn other_scale((low, high): (f64, f64), test: &TemperatureTest) -> Option<&'stat
         Some("schedule.kelvin")
     } else if fits(&|t| (t - 32.0) / 1.8) {
         Some("schedule.fahrenheit")
+    } else if (-high - test.low_deg_c).abs() <= slack && (-low - test.high_deg_c).abs() <= slack {
+        Some("schedule.reversed")
     } else {
         None
     }
+}
+
+/// Correlation of the temperature with its command from which it runs the other way.
+const REVERSED_CORRELATION: f64 = -0.5;
+
+/// A course that runs against the shape of the schedule: every stated ramp the other way, or the temperature against its
+/// command. Where both ends have the same size, nothing but the shape tells the sign.
+fn reversed(run: &Run, test: &TemperatureTest) -> Option<&'static str> {
+    let against = |s: &Segment| match s.kind {
+        SegmentKind::Heating => s.rate_deg_c_h < -s.rate_uncertainty_deg_c_h,
+        SegmentKind::Cooling => s.rate_deg_c_h > s.rate_uncertainty_deg_c_h,
+        SegmentKind::Soak | SegmentKind::Dwell => false,
+    };
+    let mut ramps = run.segments.iter().filter(|s| s.kind.is_ramp()).peekable();
+    let stated = !test.segments.is_empty() && ramps.peek().is_some() && ramps.all(against);
+    let commanded = || {
+        let command = run.command.as_ref()?;
+        let pairs: Vec<(f64, f64)> = run.temperature.iter().zip(command).map(|(t, c)| (t.1, c.1)).collect();
+        Some(correlation(&pairs) < REVERSED_CORRELATION)
+    };
+    (stated || commanded() == Some(true)).then_some("schedule.reversed_course")
+}
+
+/// Correlation of pairs; no number where one side is constant.
+fn correlation(pairs: &[(f64, f64)]) -> f64 {
+    let n = pairs.len() as f64;
+    let (a, b) = pairs.iter().fold((0.0, 0.0), |(a, b), p| (a + p.0 / n, b + p.1 / n));
+    let sum = |of: &dyn Fn(&(f64, f64)) -> f64| pairs.iter().map(of).sum::<f64>();
+    let product = sum(&|p| (p.0 - a) * (p.1 - b));
+    product / (sum(&|p| (p.0 - a).powi(2)) * sum(&|p| (p.1 - b).powi(2))).sqrt()
 }
 
 fn overshoot(run: &Run, test: &TemperatureTest, allowed: f64) -> ConditionRecord {
@@ -318,6 +350,41 @@ mod tests {
         // Steps on one way are no turn.
         let steps = run(&[(-40.0, 0.0, true), (0.0, 60.0, true), (60.0, -40.0, true)]);
         assert_eq!(turned_back(&steps, &asked()).count(), 0);
+    }
+
+    #[test]
+    fn a_temperature_with_the_wrong_sign_runs_against_the_schedule() {
+        use crate::temperature::StatedSegment;
+        let ways = [(-50.0, 50.0, true), (50.0, -50.0, true)];
+        let up_and_down = run(&ways);
+        let mut down_and_up = run(&ways.map(|(from, to, rests)| (-from, -to, rests)));
+        let symmetric = TemperatureTest { low_deg_c: -50.0, high_deg_c: 50.0, ..asked() };
+        // Without a shape nothing tells the sign.
+        assert_eq!(reversed(&down_and_up, &symmetric), None);
+        let segments = up_and_down.segments.iter();
+        let stated =
+            segments.map(|s| StatedSegment { kind: s.kind, from_s: s.from_s, to_s: s.to_s }).collect();
+        let stated = TemperatureTest { segments: stated, ..symmetric.clone() };
+        // Segments are of the stated kind, with the rates that were recorded.
+        for (found, asked) in down_and_up.segments.iter_mut().zip(&stated.segments) {
+            found.kind = asked.kind;
+        }
+        assert_eq!(reversed(&down_and_up, &stated), Some("schedule.reversed_course"));
+        assert_eq!(reversed(&up_and_down, &stated), None);
+        let course: Vec<(f64, f64)> = (0..100).map(|i| (f64::from(i), (0.1 * f64::from(i)).sin())).collect();
+        let behind: Vec<(f64, f64)> =
+            (0..100).map(|i| (f64::from(i), (0.1 * f64::from(i) - 0.5).sin())).collect();
+        let commanded = |sign: f64| Run {
+            temperature: behind.iter().map(|p| (p.0, sign * p.1)).collect(),
+            command: Some(course.clone()),
+            ..run(&ways)
+        };
+        assert_eq!(reversed(&commanded(1.0), &symmetric), None);
+        assert_eq!(reversed(&commanded(-1.0), &symmetric), Some("schedule.reversed_course"));
+        // Ends that differ in size tell it by themselves.
+        assert_eq!(other_scale((-60.0, 40.0), &asked()), Some("schedule.reversed"));
+        assert_eq!(other_scale((-40.0, 60.0), &asked()), None);
+        assert_eq!(other_scale((-50.0, 50.0), &symmetric), None);
     }
 
     #[test]
