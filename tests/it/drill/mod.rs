@@ -7,6 +7,7 @@
 
 mod corruptions;
 mod expected;
+mod other_kinds;
 mod recording;
 mod run;
 
@@ -20,6 +21,9 @@ use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 type Result = std::result::Result<RunRecord, String>;
+
+/// What no recording reveals: the end of the document.
+const NOT_REVEALED: &str = include_str!("not_revealed.md");
 
 /// The samples, in the order of every table.
 const SAMPLES: [&str; 4] = ["pass", "fail", "indeterminate", "faults"];
@@ -182,6 +186,15 @@ fn drill(wanted: &(dyn Fn(usize, usize) -> bool + Sync)) {
     }
 }
 
+#[test]
+fn the_document_says_what_no_recording_reveals() {
+    let document = std::fs::read_to_string(crate::support::shipped("docs/drill.md")).unwrap();
+    assert!(document.ends_with(NOT_REVEALED));
+    let errors = || NOT_REVEALED.lines().filter(|l| l.starts_with("| ")).skip(1);
+    assert!(errors().count() >= 25);
+    assert!(errors().all(|l| l.split(" | ").count() == 2), "an error has something that reveals it");
+}
+
 /// The table of the document.
 fn table(said: &[String]) -> String {
     let unchanged = said.iter().filter(|s| *s == "unchanged").count();
@@ -202,5 +215,5 @@ fn table(said: &[String]) -> String {
         let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|").replace('\n', " ")).collect();
         let _ = writeln!(out, "| {} | {} |", what.replace('_', " "), cells.join(" | "));
     }
-    out
+    out + NOT_REVEALED
 }
