@@ -21,6 +21,8 @@ pub struct EarthFact {
     pub standard: f64,
     /// True where a limit judges the scale factor of the channel.
     pub limited: bool,
+    /// True where a limit judges anything of the channel: only then can a wrong gain pass.
+    pub judged: bool,
     /// Bias, deg/h.
     pub bias: f64,
     /// Latitude, where all axes are vertical: what the factor says of it.
@@ -73,12 +75,12 @@ pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
     let error = (fact.factor - 1.0).abs();
     let unjudged = !fact.limited && error > allowed.max(MAX_UNJUDGED_ERROR);
     if unjudged && error <= MAX_FACTOR_ERROR {
-        return invalid(
-            Note::new("known.gain")
-                .with("factor", shown)
-                .with("uncertainty", Arg::figures(fact.standard, 2))
-                .with("allowed", Arg::Stated(1e6 * MAX_UNJUDGED_ERROR)),
-        );
+        let status = if fact.judged { ConditionStatus::Invalid } else { ConditionStatus::Remark };
+        let note = Note::new("known.gain")
+            .with("factor", shown)
+            .with("uncertainty", Arg::figures(fact.standard, 2))
+            .with("allowed", Arg::Stated(1e6 * MAX_UNJUDGED_ERROR));
+        return record(id, status, &observed, required, note);
     }
     if error <= allowed.max(MAX_FACTOR_ERROR) {
         let key = if fact.standard > 0.25 { "known.earth_weak" } else { "known.earth_seen" };
@@ -132,6 +134,7 @@ mod tests {
                 factor,
                 standard,
                 limited,
+                judged: true,
                 bias: 0.1,
                 latitude_deg: Some(56.0),
                 software: vec![],

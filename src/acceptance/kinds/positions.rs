@@ -146,6 +146,7 @@ impl PositionEvidence {
     /// What a channel makes of the Earth's rotation.
     fn earth_fact(&self, p: &Positions, request: &Request<'_>, several: bool) -> EarthFact {
         let procedure = request.procedure;
+        let limited = |id: &str| request.limits.limit(id, &p.channel).is_some();
         let vertical = self.setup.known.iter().all(|k| match k.input {
             Input::Position { elevation, .. } => (elevation.0.abs() - 90.0).abs() < 1e-6,
             _ => true,
@@ -156,7 +157,8 @@ impl PositionEvidence {
             unit: procedure.channel(&p.channel).map_or_else(String::new, |c| c.unit_in_file.clone()),
             factor: p.factor.value,
             standard: p.factor.standard,
-            limited: request.limits.limit(SCALE_FACTOR_ERROR.id, &p.channel).is_some(),
+            limited: limited(SCALE_FACTOR_ERROR.id),
+            judged: procedure.measurands.iter().any(|m| limited(m.measurand.id)),
             bias: p.bias.value,
             latitude_deg: procedure.site.as_ref().map(|s| s.latitude_deg).filter(|_| vertical),
             turned_instead: p.turned_instead.clone(),

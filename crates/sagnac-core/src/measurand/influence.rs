@@ -170,6 +170,7 @@ mod tests {
             per_unit: vec![combination(-2.0, 0.03), combination(0.5, 0.04)],
             shifts: vec![shift("x", 2.0, -4.0), shift("y", 1.0, 0.5)],
             intervals: vec![interval(true), interval(false), interval(true), interval(false), interval(true)],
+            without: combination(12.0, 0.01),
             line: None,
             drift: true,
             scatter: false,
