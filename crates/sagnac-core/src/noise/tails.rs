@@ -280,8 +280,8 @@ mod tests {
 
     #[test]
     fn a_line_is_no_clipping() {
-        for (share, frequency) in [(0.15, 0.11), (0.15, 0.31), (0.7, 0.11), (0.7, 0.23)] {
-            let size = (2.0 * share / (1.0 - share) as f64).sqrt();
+        for (share, frequency) in [(0.15f64, 0.11), (0.15, 0.31), (0.7, 0.11), (0.7, 0.23)] {
+            let size = (2.0 * share / (1.0 - share)).sqrt();
             let noise = on_a_course(11, 40_000, |v| v);
             let line = |i: usize| size * (std::f64::consts::TAU * frequency * i as f64).sin();
             let values: Vec<f64> = noise.iter().enumerate().map(|(i, v)| v + line(i)).collect();
