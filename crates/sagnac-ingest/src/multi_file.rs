@@ -2,7 +2,7 @@
 
 use super::byte_stream::digest;
 use super::error::{IngestError, IngestErrorKind};
-use super::source::{PartFacts, ReadSeveral, SeveralFiles, Source, open_with};
+use super::source::{NoNumbers, PartFacts, ReadSeveral, SeveralFiles, Source, open_with};
 use super::{Column, FileFacts, OnBlock, Opened, ReadOptions};
 use crate::column_inference::{infer, stem};
 use sagnac_core::message::Note;
@@ -197,6 +197,7 @@ impl ReadSeveral for Parts {
     fn read(
         &self,
         wanted: &[usize],
+        no_numbers: NoNumbers,
         on_block: &mut OnBlock<'_>,
         on_part: &mut dyn FnMut(usize, PartFacts),
     ) -> Result<Option<FileFacts>, IngestError> {
@@ -205,16 +206,21 @@ impl ReadSeveral for Parts {
             let places: Vec<(usize, Affine)> =
                 wanted.iter().filter_map(|w| part.columns.get(*w).copied()).collect();
             let own: Vec<usize> = places.iter().map(|(place, _)| *place).collect();
-            let facts = part.source.read(&own, &mut |block| {
-                block.part = index;
-                block.first_row += rows_before;
-                block.faults.iter_mut().for_each(|f| f.row += rows_before);
-                for (column, (_, conversion)) in block.columns.iter_mut().zip(&places) {
-                    conversion.apply_all(column);
-                }
-                block.bytes_done += bytes_before;
-                on_block(block)
-            })?;
+            let facts = part.source.read_with(
+                &own,
+                no_numbers,
+                &mut |block| {
+                    block.part = index;
+                    block.first_row += rows_before;
+                    block.faults.iter_mut().for_each(|f| f.row += rows_before);
+                    for (column, (_, conversion)) in block.columns.iter_mut().zip(&places) {
+                        conversion.apply_all(column);
+                    }
+                    block.bytes_done += bytes_before;
+                    on_block(block)
+                },
+                &mut |_, _| {},
+            )?;
             let Some(facts) = facts else { return Ok(None) };
             if let Some(stated) =
                 part.stated_sha256.as_ref().filter(|s| !s.eq_ignore_ascii_case(&facts.sha256))

@@ -22,23 +22,24 @@ impl NumericCheck {
         NumericCheck { rows: 0, bad: vec![0; slots], first: vec![None; slots], done: false }
     }
 
-    /// The first bad field of a column of which more than half of the first rows are no numbers.
-    pub(super) fn judge(&mut self, block: &Block) -> Option<FieldFault> {
+    /// The first bad field of each column of which more than half of the first rows are no numbers.
+    pub(super) fn judge(&mut self, block: &Block) -> Vec<FieldFault> {
         if self.done {
-            return None;
+            return vec![];
         }
         let left = JUDGED_ROWS - self.rows;
         let rows = block.rows() as u64;
         let last_row = block.first_row + left.min(rows);
+        let mut listed = vec![0u64; self.bad.len()];
         for fault in block.faults.iter().filter(|f| f.kind == FieldFaultKind::Unparsable) {
             if let Some(first) = self.first.get_mut(fault.slot) {
                 first.get_or_insert_with(|| fault.clone());
             }
+            if let Some(listed) = listed.get_mut(fault.slot).filter(|_| fault.row < last_row) {
+                *listed += 1;
+            }
         }
-        for (slot, bad) in self.bad.iter_mut().enumerate() {
-            let located =
-                |f: &&FieldFault| f.slot == slot && f.kind == FieldFaultKind::Unparsable && f.row < last_row;
-            let listed = block.faults.iter().filter(located).count() as u64;
+        for (slot, (bad, listed)) in self.bad.iter_mut().zip(listed).enumerate() {
             // Only the first faults of a block are located; when the list is full the rest is taken in proportion.
             let all = block.unparsable.get(slot).copied().unwrap_or(0);
             *bad += if all <= crate::block::LOCATED_PER_BLOCK {
@@ -49,20 +50,21 @@ impl NumericCheck {
         }
         self.rows += left.min(rows);
         if self.rows < JUDGED_ROWS {
-            return None;
+            return vec![];
         }
         self.verdict()
     }
 
     /// The same for a file that ended before.
-    pub(super) fn judge_at_end(&mut self) -> Option<FieldFault> {
-        if self.done { None } else { self.verdict() }
+    pub(super) fn judge_at_end(&mut self) -> Vec<FieldFault> {
+        if self.done { vec![] } else { self.verdict() }
     }
 
-    fn verdict(&mut self) -> Option<FieldFault> {
+    fn verdict(&mut self) -> Vec<FieldFault> {
         self.done = true;
-        let slot = self.bad.iter().position(|&bad| bad * 2 > self.rows)?;
-        self.first.get(slot).cloned().flatten()
+        let rows = self.rows;
+        let refused = self.bad.iter().zip(&self.first).filter(|(bad, _)| **bad * 2 > rows);
+        refused.filter_map(|(_, first)| first.clone()).collect()
     }
 }
 

@@ -7,10 +7,12 @@ use super::format_detection::format_of;
 use super::guarded::guarded;
 use super::in_memory::MemoryColumn;
 use super::metadata::serial_numbers;
+use super::requested_columns::{NumericCheck, not_numeric, repeat_columns, restore_columns};
 use super::similar_column::similar;
-use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, in_memory, requested_columns};
+use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, in_memory};
 use sagnac_core::message::Note;
 use sagnac_core::recording::{ColumnRef, Role};
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
 
@@ -49,9 +51,19 @@ pub(crate) trait ReadSeveral: Send + Sync {
     fn read(
         &self,
         wanted: &[usize],
+        no_numbers: NoNumbers,
         on_block: &mut OnBlock<'_>,
         on_part: &mut dyn FnMut(usize, PartFacts),
     ) -> Result<Option<FileFacts>, IngestError>;
+}
+
+/// What becomes of a requested column that holds no numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum NoNumbers {
+    /// The recording is refused.
+    Refused,
+    /// Its rows are passed on without values.
+    PassedOn,
 }
 
 /// What was read of one file of a recording of several.
@@ -345,26 +357,39 @@ impl Source {
         on_block: &mut OnBlock<'_>,
         on_part: &mut dyn FnMut(usize, PartFacts),
     ) -> Result<Option<FileFacts>, IngestError> {
+        self.read_with(wanted, NoNumbers::Refused, on_block, on_part)
+    }
+
+    /// As [`Source::read_parts`], with the columns judged or not.
+    pub(crate) fn read_with(
+        &self,
+        wanted: &[usize],
+        no_numbers: NoNumbers,
+        on_block: &mut OnBlock<'_>,
+        on_part: &mut dyn FnMut(usize, PartFacts),
+    ) -> Result<Option<FileFacts>, IngestError> {
         if let Some(several) = &self.several {
-            return several.reader.read(wanted, on_block, on_part);
+            return several.reader.read(wanted, no_numbers, on_block, on_part);
         }
         let mut unique: Vec<usize> = Vec::new();
+        let mut slot_of = BTreeMap::new();
         for &w in wanted {
-            if !unique.contains(&w) {
+            slot_of.entry(w).or_insert_with(|| {
                 unique.push(w);
-            }
+                unique.len() - 1
+            });
         }
-        let slots: Vec<usize> = wanted.iter().filter_map(|w| unique.iter().position(|u| u == w)).collect();
-        let mut guard = requested_columns::NumericCheck::new(unique.len());
+        let slots: Vec<usize> = wanted.iter().filter_map(|w| slot_of.get(w).copied()).collect();
+        let mut guard = (no_numbers == NoNumbers::Refused).then(|| NumericCheck::new(unique.len()));
         let mut refusal = None;
         let facts = self.opened.table.read(&unique, &mut |block| {
-            if let Some(fault) = guard.judge(block) {
-                refusal = Some(fault);
+            refusal = guard.as_mut().and_then(|g| g.judge(block).into_iter().next());
+            if refusal.is_some() {
                 return ControlFlow::Break(());
             }
-            requested_columns::repeat_columns(block, &slots);
+            repeat_columns(block, &slots);
             let flow = on_block(block);
-            requested_columns::restore_columns(block, unique.len());
+            restore_columns(block, unique.len());
             flow
         });
         // A file that was still being written is not a damaged one.
@@ -372,8 +397,8 @@ impl Source {
             (Err(e), Some(identity)) => return Err(identity.check_unchanged(&self.path).err().unwrap_or(e)),
             (facts, _) => facts?,
         };
-        if let Some(fault) = refusal.or_else(|| guard.judge_at_end()) {
-            return Err(requested_columns::not_numeric(&self.path, &fault, &unique, self.columns()));
+        if let Some(fault) = refusal.or_else(|| guard?.judge_at_end().into_iter().next()) {
+            return Err(not_numeric(&self.path, &fault, &unique, self.columns()));
         }
         if let Some(facts) = &facts {
             byte_stream::unchanged(&self.path, self.bytes, facts.bytes, facts.bytes)?;

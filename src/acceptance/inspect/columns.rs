@@ -1,13 +1,11 @@
 //! The columns of a file: which hold numbers, and what each is taken for.
 
-use crate::ingest::{FieldFaultKind, IngestError, IngestErrorKind, Source};
+use crate::ingest::{FirstFields, IngestError, IngestErrorKind, Source};
 use crate::recording::column_inference::InferredColumn;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::Unit;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-
-/// Rows that are looked at before a column is judged.
-const PROBED_ROWS: u64 = 1000;
 
 /// What a column holds.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -43,25 +41,17 @@ impl Listed {
 /// # Errors
 /// What [`Source::read`] says, and the fault of the first column when none holds numbers.
 pub(super) fn list(source: &Source) -> Result<Vec<Listed>, IngestError> {
-    let mut refusal = None;
-    let mut listed = Vec::new();
-    for (index, column) in source.columns().iter().enumerate() {
-        let content = if column.numeric {
-            match look(source, index) {
-                Ok(content) => content,
-                Err(e) if e.kind() == IngestErrorKind::NotNumeric => {
-                    let text = e.text().unwrap_or_default().to_owned();
-                    refusal.get_or_insert(e);
-                    Content::Text(text)
-                }
-                Err(e) => return Err(e),
-            }
-        } else {
-            Content::Text(column.storage.clone())
-        };
-        let guess = column.inferred();
-        listed.push(Listed { name: column.name.clone(), content, guess });
-    }
+    let columns = source.columns();
+    let numeric: Vec<usize> =
+        (0..columns.len()).filter(|&i| columns.get(i).is_some_and(|c| c.numeric)).collect();
+    let looked: BTreeMap<usize, FirstFields> =
+        numeric.iter().copied().zip(source.first_fields(&numeric)?).collect();
+    let listed = columns.iter().enumerate().map(|(index, column)| Listed {
+        name: column.name.clone(),
+        content: looked.get(&index).map_or_else(|| Content::Text(column.storage.clone()), content),
+        guess: column.inferred(),
+    });
+    let mut listed: Vec<Listed> = listed.collect();
     let time = source.time_column().filter(|&t| listed.get(t).is_some_and(|c| c.content == Content::Numbers));
     if let Some(time) = time {
         // One column keeps time; the others that could are kept beside.
@@ -73,34 +63,24 @@ pub(super) fn list(source: &Source) -> Result<Vec<Listed>, IngestError> {
     if listed.iter().any(|c| c.content == Content::Numbers) {
         return Ok(listed);
     }
+    // Its reading says where it is refused.
+    let refused = looked.iter().find(|(_, fields)| fields.is_refused).map(|(index, _)| *index);
+    let refusal = refused.and_then(|index| source.read(&[index], &mut |_| ControlFlow::Continue(())).err());
     Err(refusal.unwrap_or_else(|| {
         IngestError::new(IngestErrorKind::NotNumeric, source.path(), "ingest.no_numbers")
             .hint("ingest.hint.recording_itself")
     }))
 }
 
-/// Reads one column until it is clear what it holds.
-fn look(source: &Source, index: usize) -> Result<Content, IngestError> {
-    let (mut rows, mut numbers, mut texts, mut sample) = (0u64, 0u64, 0u64, None);
-    source.read(&[index], &mut |block| {
-        rows += block.rows() as u64;
-        numbers += block.columns.iter().flatten().filter(|v| v.is_finite()).count() as u64;
-        texts += block.unparsable.iter().sum::<u64>();
-        if sample.is_none() {
-            let first = block.faults.iter().find(|f| f.kind == FieldFaultKind::Unparsable);
-            sample = first.map(|f| f.text.clone());
+/// What the first fields of a column say that it holds.
+fn content(fields: &FirstFields) -> Content {
+    match fields {
+        FirstFields { numbers: 0, texts: 0, .. } => Content::Nothing,
+        _ if fields.is_refused || fields.texts > fields.numbers => {
+            Content::Text(fields.first_text.clone().unwrap_or_default())
         }
-        if rows >= PROBED_ROWS && numbers + texts > 0 {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
-    })?;
-    Ok(match (numbers, texts) {
-        (0, 0) => Content::Nothing,
-        _ if texts > numbers => Content::Text(sample.unwrap_or_default()),
         _ => Content::Numbers,
-    })
+    }
 }
 
 /// The channels that are read: every column of numbers, by position, so that names may stand twice. With each, its

@@ -10,6 +10,7 @@ use crate::ingest::{ChannelFacts, Packing, Source};
 use crate::recording::Role;
 use crate::recording::clock::Measured;
 use crate::units::Unit;
+use std::collections::BTreeMap;
 
 /// Faults listed one by one.
 const MAX_LISTED: usize = 3;
@@ -84,9 +85,11 @@ fn columns(page: &mut Page, found: &Inspection) {
     ];
     let mut rows = vec![header.map(|w| w.say(lang)).to_vec()];
     let mut remarks = Vec::new();
+    // By place in the file; a column that was not read has none.
+    let facts: BTreeMap<usize, &ChannelFacts> =
+        found.places.iter().copied().zip(&found.report.channels).collect();
     for (place, column) in found.listed.iter().enumerate() {
-        let slot = found.places.iter().position(|p| *p == place);
-        let facts = slot.and_then(|s| found.report.channels.get(s));
+        let facts = facts.get(&place).copied();
         rows.push(row(column, facts, found.report.tau0_nominal_s, lang));
         remarks.extend(remark(column, facts));
     }

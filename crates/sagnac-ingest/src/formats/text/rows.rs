@@ -129,7 +129,8 @@ impl<'a> LineParser<'a> {
     pub(super) fn parse(&self, text: &[u8], block: &mut Block) {
         block.reset(self.wanted);
         block.columns.resize_with(self.slots, Vec::new);
-        let rows = text.len() / 8;
+        // A row has a byte a field at least; room for more would be asked for once a column.
+        let rows = text.len() / self.fields.max(8);
         block.columns.iter_mut().for_each(|c| c.reserve(rows.min(1 << 16)));
         let mut columns = std::mem::take(&mut block.columns);
         let blanks = self.of.separator == Separator::Blanks;
