@@ -12,7 +12,7 @@ pub use lang::Lang;
 pub use sagnac_core::local_text::LocalText;
 pub use sagnac_core::message::{Arg, Note};
 use sagnac_core::render;
-pub use sagnac_core::render::{fill, significant};
+pub use sagnac_core::render::{fill, significant, with_decimals};
 pub use sagnac_core::visible::{steers, visible, visible_lines};
 pub use system::io_reason;
 

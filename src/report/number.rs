@@ -2,7 +2,7 @@
 //! decimal mark of the language. Values are rounded for the eye only; decisions were made on the unrounded ones.
 
 use super::unit::superscript;
-use crate::i18n::{Lang, lookup, significant};
+use crate::i18n::{Lang, lookup, significant, with_decimals};
 
 /// Shown where there is nothing to show.
 pub const NOTHING: &str = "–";
@@ -265,7 +265,7 @@ pub fn decimals(value: f64, count: usize, zeros: bool, lang: Lang) -> String {
     if !value.is_finite() {
         return NOTHING.to_owned();
     }
-    let text = format!("{value:.count$}");
+    let text = with_decimals(value, count);
     let short =
         if !zeros && text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     // What was rounded to zero has no sign.

@@ -17,9 +17,11 @@ impl Arg {
             Arg::Figures { value, digits, zeros: false } => {
                 decimal(&trimmed(significant(*value, *digits)), patterns)
             }
-            Arg::Decimals { value, digits, zeros: true } => decimal(&format!("{value:.digits$}"), patterns),
+            Arg::Decimals { value, digits, zeros: true } => {
+                decimal(&with_decimals(*value, *digits), patterns)
+            }
             Arg::Decimals { value, digits, zeros: false } => {
-                decimal(&trimmed(format!("{value:.digits$}")), patterns)
+                decimal(&trimmed(with_decimals(*value, *digits)), patterns)
             }
             Arg::Count(v) => v.to_string(),
             Arg::Text(t) => visible(t).into_owned(),
@@ -87,6 +89,18 @@ fn trimmed(text: String) -> String {
     exponent.map_or_else(|| short.to_owned(), |e| format!("{short}e{e}"))
 }
 
+/// Significant digits that tell one double from any other.
+const MAX_DIGITS: usize = 17;
+
+/// Decimals of the least double with so many digits.
+const MAX_DECIMALS: usize = 324 + MAX_DIGITS;
+
+/// A number with the given count of decimals, as far as a double has so many: a record may ask for any count.
+pub fn with_decimals(value: f64, digits: usize) -> String {
+    let decimals = digits.min(MAX_DECIMALS);
+    format!("{value:.decimals$}")
+}
+
 /// A number with the given count of significant digits, plain where that reads well and with an exponent elsewhere.
 pub fn significant(value: f64, digits: usize) -> String {
     if value == 0.0 {
@@ -95,7 +109,7 @@ pub fn significant(value: f64, digits: usize) -> String {
     if !value.is_finite() {
         return "–".to_owned();
     }
-    let digits = digits.max(1);
+    let digits = digits.clamp(1, MAX_DIGITS);
     // Rounding may carry into the next decade (9.9996 → 10.00), so the exponent is read after rounding.
     let scientific = format!("{:.*e}", digits - 1, value);
     let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
@@ -106,5 +120,23 @@ pub fn significant(value: f64, digits: usize) -> String {
         if plain.trim_start_matches('-').chars().all(|c| c == '0' || c == '.') { "0".into() } else { plain }
     } else {
         format!("{mantissa}e{exponent}")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_number_is_shown_whatever_count_of_digits_is_asked_for() {
+        for digits in [0, 1, 17, 65_535, 65_536, usize::MAX] {
+            let figures = |zeros| Arg::Figures { value: 0.1, digits, zeros };
+            let decimals = |zeros| Arg::Decimals { value: 0.25, digits, zeros };
+            for arg in [figures(true), figures(false), decimals(true), decimals(false)] {
+                assert!(arg.render(&|_| None).len() <= 2 + MAX_DECIMALS, "{digits}");
+            }
+            assert!(significant(f64::MIN_POSITIVE, digits).len() < 30, "{digits}");
+        }
+        assert_eq!(with_decimals(5e-324, usize::MAX).trim_end_matches('0').len(), 2 + 340);
     }
 }
