@@ -1,6 +1,6 @@
 //! Quantities over time, with control limits.
 
-use super::selection::{Selection, Tested, limit, points};
+use super::selection::{Group, Selection, Tested};
 use crate::estimate::normal_quantile;
 use crate::i18n::Note;
 use crate::lot::capability::{self, Capability, Limits};
@@ -9,7 +9,7 @@ use crate::record::{
     HistoryCapability, HistoryChart, HistoryChartOf, HistoryControl, HistoryControlPoint, HistoryLimit,
     HistoryPoint, HistoryQuantity, Message,
 };
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 
 /// The charts of some quantities: of the unit that was asked for or of the process, and of every bench that a reference unit
 /// watches.
@@ -18,38 +18,39 @@ pub(super) fn charts(
     quantities: &[HistoryQuantity],
     of_unit: bool,
 ) -> Vec<HistoryChart> {
-    let mut charts = vec![];
-    for quantity in quantities {
-        if of_unit {
-            let tests: Vec<Tested<'_>> = selection.all().filter(Tested::counts).collect();
-            charts.extend(chart(HistoryChartOf::Unit, &tests, quantity));
-        } else {
-            charts.extend(chart(HistoryChartOf::Process, &selection.first_of_each(), quantity));
-        }
-    }
-    if !of_unit {
-        charts.extend(quantities.iter().flat_map(|q| benches(selection, q)));
-    }
-    charts
+    let (of, group) = if of_unit {
+        (HistoryChartOf::Unit, Group::of(selection.all().filter(Tested::counts)))
+    } else {
+        (HistoryChartOf::Process, Group::of(selection.first_of_each()))
+    };
+    let benches = if of_unit { vec![] } else { benches(selection) };
+    let of_all = quantities.iter().filter_map(|q| chart(of, selection, &group, q));
+    let of_bench =
+        |q| benches.iter().filter_map(move |group| chart(HistoryChartOf::Bench, selection, group, q));
+    of_all.chain(quantities.iter().flat_map(of_bench)).collect()
 }
 
-/// A chart for each station and reference unit.
-fn benches(selection: &Selection<'_>, quantity: &HistoryQuantity) -> Vec<HistoryChart> {
+/// The results of each station and reference unit.
+fn benches(selection: &Selection<'_>) -> Vec<Group> {
     let key = |t: &Tested<'_>| (t.attempt.entry.test.station.clone(), t.attempt.entry.unit.key());
-    let benches: BTreeSet<(String, String)> = selection.references().map(|t| key(&t)).collect();
-    let each = |bench: (String, String)| {
-        let tests: Vec<Tested<'_>> = selection.references().filter(|t| key(t) == bench).collect();
-        chart(HistoryChartOf::Bench, &tests, quantity)
-    };
-    benches.into_iter().filter_map(each).collect()
+    let mut benches: BTreeMap<(String, String), Vec<Tested<'_>>> = BTreeMap::new();
+    for test in selection.references() {
+        benches.entry(key(&test)).or_default().push(test);
+    }
+    benches.into_values().map(Group::of).collect()
 }
 
 /// A chart of results in the order of time; `None` of fewer than two values.
-fn chart(of: HistoryChartOf, tests: &[Tested<'_>], quantity: &HistoryQuantity) -> Option<HistoryChart> {
-    let points = points(tests.iter().copied(), quantity);
+fn chart(
+    of: HistoryChartOf,
+    selection: &Selection<'_>,
+    group: &Group,
+    quantity: &HistoryQuantity,
+) -> Option<HistoryChart> {
+    let points = selection.points(quantity, group);
     let first = points.first().filter(|_| points.len() > 1)?;
     let mut notes: Vec<Note> = vec![];
-    let limit = limit(tests.iter().copied(), quantity).unwrap_or_else(|()| {
+    let limit = selection.limit(quantity, group).unwrap_or_else(|()| {
         notes.push("history.note.limits_differ".into());
         None
     });

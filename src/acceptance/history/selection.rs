@@ -8,16 +8,18 @@ use std::collections::{BTreeMap, BTreeSet};
 /// A result with what it counts for.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Tested<'a> {
+    /// Place among the results, from 0.
+    place: usize,
     pub attempt: &'a Attempt,
     /// False where the test was not done as required: aborted, or with a condition that was not met.
     pub is_done: bool,
 }
 
 impl Tested<'_> {
-    fn of(attempt: &Attempt) -> Tested<'_> {
+    fn of(place: usize, attempt: &Attempt) -> Tested<'_> {
         let entry = &attempt.entry;
         let unmet = entry.reasons.iter().any(|r| matches!(r.kind, ReasonKind::Condition | ReasonKind::Error));
-        Tested { attempt, is_done: entry.verdict != Verdict::Error && !unmet }
+        Tested { place, attempt, is_done: entry.verdict != Verdict::Error && !unmet }
     }
 
     /// True where the result itself counts.
@@ -39,16 +41,82 @@ impl Tested<'_> {
     }
 }
 
-/// Results in the order of time.
-pub(super) struct Selection<'a>(Vec<Tested<'a>>);
+/// The row of a quantity in a result.
+#[derive(Debug, Clone, Copy)]
+struct Row<'a> {
+    of: Tested<'a>,
+    measurand: &'a EntryMeasurand,
+}
+
+/// Results in the order of time, and the rows of each quantity in them: a result may have many.
+pub(super) struct Selection<'a> {
+    tests: Vec<Tested<'a>>,
+    rows: BTreeMap<HistoryQuantity, Vec<Row<'a>>>,
+}
+
+/// Results of a selection, by their places in it.
+pub(super) struct Group(BTreeSet<usize>);
+
+impl Group {
+    pub fn of<'a>(tests: impl IntoIterator<Item = Tested<'a>>) -> Group {
+        Group(tests.into_iter().map(|t| t.place).collect())
+    }
+}
 
 impl<'a> Selection<'a> {
     pub fn of(attempts: &'a [Attempt]) -> Selection<'a> {
-        Selection(attempts.iter().map(Tested::of).collect())
+        let tests: Vec<Tested<'a>> = attempts.iter().enumerate().map(|(i, a)| Tested::of(i, a)).collect();
+        let mut rows: BTreeMap<HistoryQuantity, Vec<Row<'a>>> = BTreeMap::new();
+        for of in &tests {
+            for measurand in &of.attempt.entry.measurands {
+                let rows = rows.entry(quantity(of.attempt, measurand)).or_default();
+                // The first row of a quantity is the one that counts.
+                if rows.last().is_none_or(|row| row.of.place != of.place) {
+                    rows.push(Row { of: *of, measurand });
+                }
+            }
+        }
+        Selection { tests, rows }
     }
 
     pub fn all(&self) -> impl Iterator<Item = Tested<'a>> {
-        self.0.iter().copied()
+        self.tests.iter().copied()
+    }
+
+    /// The rows of a quantity with a value, in some results, in their order.
+    fn rows(&self, of: &HistoryQuantity, group: &Group) -> impl Iterator<Item = (Row<'a>, f64)> {
+        let rows = self.rows.get(of).into_iter().flatten().copied();
+        let in_group = rows.filter(|row| group.0.contains(&row.of.place));
+        in_group.filter_map(|row| Some((row, row.measurand.value?)))
+    }
+
+    /// The values of a quantity in some results, in their order.
+    pub fn points(&self, of: &HistoryQuantity, group: &Group) -> Vec<HistoryPoint> {
+        let point = |(row, value): (Row<'a>, f64)| {
+            let attempt = row.of.attempt;
+            HistoryPoint {
+                result: attempt.address.clone(),
+                serial: attempt.entry.unit.serial.clone(),
+                station: attempt.entry.test.station.clone(),
+                evaluated_at: attempt.entry.test.evaluated_at.clone(),
+                value,
+                interval: row.measurand.interval,
+            }
+        };
+        self.rows(of, group).map(point).collect()
+    }
+
+    /// The limits of a quantity in some results. `Err` where they differ, `Ok(None)` where there are none.
+    pub fn limit(&self, of: &HistoryQuantity, group: &Group) -> Result<Option<HistoryLimit>, ()> {
+        let mut found: Option<HistoryLimit> = None;
+        for (row, _) in self.rows(of, group) {
+            let limit = HistoryLimit { min: row.measurand.min, max: row.measurand.max };
+            match found {
+                Some(other) if other != limit => return Err(()),
+                _ => found = Some(limit),
+            }
+        }
+        Ok(found.filter(|l| l.min.is_some() || l.max.is_some()))
     }
 
     /// Results that count, of units that are products.
@@ -81,11 +149,11 @@ impl<'a> Selection<'a> {
     /// The quantities of results that count: the one that is asked for, or those with a limit, or else all.
     pub fn quantities(&self, asked: Option<&str>) -> Vec<HistoryQuantity> {
         let of = |keep: &dyn Fn(&EntryMeasurand) -> bool| -> Vec<HistoryQuantity> {
-            let mut found: Vec<HistoryQuantity> = vec![];
+            let (mut found, mut seen) = (vec![], BTreeSet::new());
             for t in self.all().filter(Tested::counts) {
                 for m in t.attempt.entry.measurands.iter().filter(|m| m.value.is_some() && keep(m)) {
                     let quantity = quantity(t.attempt, m);
-                    if !found.contains(&quantity) {
+                    if seen.insert(quantity.clone()) {
                         found.push(quantity);
                     }
                 }
@@ -111,52 +179,4 @@ fn quantity(attempt: &Attempt, m: &EntryMeasurand) -> HistoryQuantity {
         phase: m.phase.clone(),
         unit: m.unit.clone(),
     }
-}
-
-/// The row of a quantity in a result; `None` where it has no value.
-fn row<'a>(attempt: &'a Attempt, of: &HistoryQuantity) -> Option<(&'a EntryMeasurand, f64)> {
-    if attempt.entry.test.procedure != of.procedure {
-        return None;
-    }
-    let is_it = |m: &&EntryMeasurand| {
-        m.id == of.measurand && m.channel == of.channel && m.phase == of.phase && m.unit == of.unit
-    };
-    let row = attempt.entry.measurands.iter().find(is_it)?;
-    Some((row, row.value?))
-}
-
-/// The values of a quantity in some results, in their order.
-pub(super) fn points<'a>(
-    results: impl Iterator<Item = Tested<'a>>,
-    of: &HistoryQuantity,
-) -> Vec<HistoryPoint> {
-    let point = |t: Tested<'_>| {
-        let (row, value) = row(t.attempt, of)?;
-        Some(HistoryPoint {
-            result: t.attempt.address.clone(),
-            serial: t.attempt.entry.unit.serial.clone(),
-            station: t.attempt.entry.test.station.clone(),
-            evaluated_at: t.attempt.entry.test.evaluated_at.clone(),
-            value,
-            interval: row.interval,
-        })
-    };
-    results.filter_map(point).collect()
-}
-
-/// The limits of a quantity in some results. `Err` where they differ, `Ok(None)` where there are none.
-pub(super) fn limit<'a>(
-    results: impl Iterator<Item = Tested<'a>>,
-    of: &HistoryQuantity,
-) -> Result<Option<HistoryLimit>, ()> {
-    let mut found: Option<HistoryLimit> = None;
-    for t in results {
-        let Some((row, _)) = row(t.attempt, of) else { continue };
-        let limit = HistoryLimit { min: row.min, max: row.max };
-        match found {
-            Some(other) if other != limit => return Err(()),
-            _ => found = Some(limit),
-        }
-    }
-    Ok(found.filter(|l| l.min.is_some() || l.max.is_some()))
 }

@@ -1,7 +1,7 @@
 //! One unit over its tests, and stations over their units.
 
 use super::charts::measured;
-use super::selection::{Selection, Tested, points};
+use super::selection::{Group, Selection, Tested};
 use crate::lot::control_chart::Measured;
 use crate::lot::drift::drift;
 use crate::lot::station::{Difference, against_others};
@@ -19,12 +19,18 @@ pub(super) fn drifts(
     quantities: &[HistoryQuantity],
     common: f64,
 ) -> Vec<HistoryDrift> {
-    let each = |quantity: &HistoryQuantity| one(selection, quantity, common);
+    let counted = Group::of(selection.all().filter(Tested::counts));
+    let each = |quantity: &HistoryQuantity| one(selection, &counted, quantity, common);
     quantities.iter().filter_map(each).collect()
 }
 
-fn one(selection: &Selection<'_>, quantity: &HistoryQuantity, common: f64) -> Option<HistoryDrift> {
-    let all = points(selection.all().filter(Tested::counts), quantity);
+fn one(
+    selection: &Selection<'_>,
+    counted: &Group,
+    quantity: &HistoryQuantity,
+    common: f64,
+) -> Option<HistoryDrift> {
+    let all = selection.points(quantity, counted);
     // A value that does not say when it was measured tells nothing of a drift.
     let timed: Vec<(f64, &HistoryPoint)> =
         all.iter().filter_map(|p| Some((days(&p.evaluated_at)?, p))).collect();
@@ -54,10 +60,10 @@ fn days(moment: &str) -> Option<f64> {
 
 /// The stations of every quantity that several have.
 pub(super) fn stations(selection: &Selection<'_>, quantities: &[HistoryQuantity]) -> Vec<HistoryStation> {
-    let first = selection.first_of_each();
+    let first = Group::of(selection.first_of_each());
     let each = |quantity: &HistoryQuantity| {
         let mut groups: BTreeMap<String, Vec<f64>> = BTreeMap::new();
-        for point in points(first.iter().copied(), quantity) {
+        for point in selection.points(quantity, &first) {
             groups.entry(point.station).or_default().push(point.value);
         }
         if groups.len() < 2 {

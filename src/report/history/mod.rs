@@ -10,10 +10,11 @@ use super::number::{count, date_time, limit_digits};
 use super::translator::{Field, Translator};
 use super::view::FigureView;
 use crate::acceptance::history::figures::{self, MONTHS, figure_id};
+use crate::figure::Figure;
 use crate::i18n::{Lang, Localize};
 use crate::record::{HistoryDrift, HistoryRecord, HistoryResult, HistoryShare, HistoryStation};
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Results that a page lists; all are in the other forms.
 const LISTED: usize = 200;
@@ -141,10 +142,9 @@ impl HistoryView {
     pub fn new(history: &HistoryRecord, lang: Lang) -> HistoryView {
         let words = Translator { lang };
         let figures = figures::all(history);
-        let drawn = |id: &str| {
-            let at = figures.iter().position(|f| f.id == id)?;
-            figures.get(at).map(|f| FigureView::of(f, at + 1, words))
-        };
+        let by_id: BTreeMap<&str, (usize, &Figure)> =
+            figures.iter().enumerate().map(|(at, f)| (f.id.as_str(), (at, f))).collect();
+        let drawn = |id: &str| by_id.get(id).map(|(at, f)| FigureView::of(f, at + 1, words));
         let several = several_channels(history);
         let generator = format!("{} {}", history.program.name, history.program.version);
         let latest = history.results.last().map(|r| date_time(&r.evaluated_at)).unwrap_or_default();
