@@ -25,7 +25,7 @@ pub use checksums::{
     CHECKSUMS_FILE, UNREAD, checksums, read_checksums, sha256, sha256_of_file, sha256_of_several,
 };
 pub use contained::{Found, NotRead, found_below, open_below, read_below, sha256_below};
-pub use csv::quoted;
+pub use csv::csv_line;
 pub use error::OutputError;
 pub use file::StagedFile;
 pub use kind::{Kind, LIMITS_FILE, PROCEDURE_FILE, SIGNATURES_FOLDER};

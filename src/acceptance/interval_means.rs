@@ -5,7 +5,7 @@ use crate::estimate::{Interval, Spread};
 use crate::influence::comparison::{Comparison, IntervalMean};
 use crate::influence::repeatability::{Repeatability, RunMean};
 use crate::numeric::reml::Combination;
-use crate::output::quoted;
+use crate::output::csv_line;
 use crate::record::{Evidence, IntervalMeanRecord, RunRecord};
 
 /// The 95 % interval of a mean; its ends are no numbers where the spread has none.
@@ -74,16 +74,16 @@ pub(super) fn csv(records: &[IntervalMeanRecord]) -> String {
     for r in records {
         let number = |v: Option<f64>| v.map_or_else(String::new, |v| v.to_string());
         let fields = [
-            quoted(&r.channel),
+            r.channel.clone(),
             r.number.to_string(),
-            quoted(&r.name),
+            r.name.clone(),
             r.from_s.to_string(),
             r.to_s.to_string(),
             r.row.to_string(),
             number(r.level),
             r.evidence.map_or_else(String::new, |e| e.id().to_owned()),
-            quoted(r.level_unit.as_deref().unwrap_or_default()),
-            quoted(r.axis.as_deref().unwrap_or_default()),
+            r.level_unit.clone().unwrap_or_default(),
+            r.axis.clone().unwrap_or_default(),
             r.without.map_or_else(String::new, |w| w.to_string()),
             number(r.temperature_deg_c),
             r.mean_deg_h.to_string(),
@@ -92,8 +92,7 @@ pub(super) fn csv(records: &[IntervalMeanRecord]) -> String {
             r.low_deg_h.to_string(),
             r.high_deg_h.to_string(),
         ];
-        out.push_str(&fields.join(","));
-        out.push('\n');
+        out.push_str(&csv_line(&fields));
     }
     out
 }

@@ -2,7 +2,7 @@
 
 use super::interval_means;
 use crate::noise::family::Estimator;
-use crate::output::quoted;
+use crate::output::csv_line;
 use crate::record::{DeviationRecord, RunRecord, TableStepRecord};
 use std::collections::BTreeMap;
 
@@ -44,22 +44,21 @@ pub(super) fn table_steps(records: &[TableStepRecord]) -> String {
     );
     for r in records {
         let temperature = r.temperature_deg_c.map_or_else(String::new, |t| t.to_string());
-        out.push_str(&format!(
-            "{},{},{},{},{},{},{},{},{},{},{},{},{}\n",
-            quoted(&r.channel),
-            r.from_s,
-            r.to_s,
-            r.row,
-            r.rate_deg_h,
-            r.turns,
+        out.push_str(&csv_line([
+            r.channel.clone(),
+            r.from_s.to_string(),
+            r.to_s.to_string(),
+            r.row.to_string(),
+            r.rate_deg_h.to_string(),
+            r.turns.to_string(),
             temperature,
-            r.approach,
-            r.cycle,
-            r.output_deg_h,
-            r.residual_deg_h,
-            r.standard_uncertainty_deg_h,
-            r.residual_ppm
-        ));
+            r.approach.to_string(),
+            r.cycle.to_string(),
+            r.output_deg_h.to_string(),
+            r.residual_deg_h.to_string(),
+            r.standard_uncertainty_deg_h.to_string(),
+            r.residual_ppm.to_string(),
+        ]));
     }
     out
 }

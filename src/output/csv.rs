@@ -1,8 +1,13 @@
-//! Fields of tables in CSV.
+//! Tables in CSV, a line at a time.
 
-/// A field that holds a text: in quotation marks where it must be (RFC 4180). A spreadsheet takes a text that begins
-/// with one of a few signs for a formula; such a text gets an apostrophe in front. A number stays a number.
-pub fn quoted(text: &str) -> String {
+/// A line of a table, its end included: each field in quotation marks where it must be (RFC 4180). A spreadsheet takes a text that
+/// begins with one of a few signs for a formula; such a text gets an apostrophe in front. A number stays a number.
+pub fn csv_line<T: AsRef<str>>(fields: impl IntoIterator<Item = T>) -> String {
+    let fields: Vec<String> = fields.into_iter().map(|f| quoted(f.as_ref())).collect();
+    format!("{}\n", fields.join(","))
+}
+
+fn quoted(text: &str) -> String {
     let text = harmless(text);
     if text.contains([',', ';', '"', '\n', '\r', '\t']) {
         format!("\"{}\"", text.replace('"', "\"\""))
@@ -32,7 +37,12 @@ fn harmless(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::quoted;
+    use super::{csv_line, quoted};
+
+    #[test]
+    fn a_line_holds_no_formula_in_any_field() {
+        assert_eq!(csv_line(["A", "=1", "-2.5e-3", "b,c", ""]), "A,'=1,-2.5e-3,\"b,c\",\n");
+    }
 
     #[test]
     fn a_text_is_no_formula_and_a_number_stays_one() {

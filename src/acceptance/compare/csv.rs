@@ -3,8 +3,7 @@
 use super::published::Checked;
 use super::{Comparison, ReadOutRule, Unit};
 use crate::measurand;
-use crate::output::quoted;
-use std::fmt::Write;
+use crate::output::csv_line;
 
 /// Columns of a comparison of units.
 const COLUMNS: &str = "unit,channel,path,length_s,n_100s,detrend,sigma100_deg_h,sigma100_low,sigma100_high,\
@@ -45,12 +44,12 @@ fn units(units: &[Unit]) -> String {
         let b = unit.quantity(measurand::BIAS_INSTABILITY.id);
         let floor = detail.and_then(|d| d.floor.as_ref());
         let row = [
-            quoted(&unit.name),
-            quoted(&unit.channel),
-            quoted(&unit.path),
+            unit.name.clone(),
+            unit.channel.clone(),
+            unit.path.clone(),
             number(unit.length_s),
             count(w100.map(|w| w.n)),
-            quoted(detail.map(|d| d.detrend.as_str()).unwrap_or_default()),
+            detail.map(|d| d.detrend.clone()).unwrap_or_default(),
             value(measurand::RUSSIAN_DRIFT_100S.id),
             low(measurand::RUSSIAN_DRIFT_100S.id),
             high(measurand::RUSSIAN_DRIFT_100S.id),
@@ -97,7 +96,7 @@ fn units(units: &[Unit]) -> String {
             number(floor.map(|f| f.crossover_s)),
             number(floor.and_then(|f| f.identifiable_h)),
         ];
-        let _ = writeln!(out, "{}", row.join(","));
+        out.push_str(&csv_line(&row));
     }
     out
 }
@@ -112,7 +111,7 @@ n_table1_deg_rt_h,remarks\n",
     for row in &checked.rows {
         let ids: Vec<&str> = row.remarks.iter().map(|r| r.id.as_ref()).collect();
         let fields = [
-            quoted(&row.device),
+            row.device.clone(),
             number(Some(row.sigma100)),
             number(Some(row.bias_instability)),
             number(Some(row.ratio_printed)),
@@ -128,7 +127,7 @@ n_table1_deg_rt_h,remarks\n",
             number(row.n_table1),
             ids.join(";"),
         ];
-        let _ = writeln!(out, "{}", fields.join(","));
+        out.push_str(&csv_line(&fields));
     }
     out
 }

@@ -1,7 +1,7 @@
 //! The measured quantities of a run as a table: a row each, the same in every language.
 
 use super::{ExportedFile, Exporter};
-use crate::output::{Column, quoted, write_table};
+use crate::output::{Column, csv_line, write_table};
 use crate::record::MeasurandRecord;
 use crate::report::{Document, Renderer, ReportError};
 
@@ -29,16 +29,14 @@ const COLUMNS: &[(&str, Column<MeasurandRecord>)] = &[
 
 /// The table as CSV, every number to the last digit.
 pub fn csv(rows: &[MeasurandRecord]) -> String {
-    let names: Vec<&str> = COLUMNS.iter().map(|(name, _)| *name).collect();
-    let mut out = format!("{}\n", names.join(","));
+    let mut out = csv_line(COLUMNS.iter().map(|(name, _)| *name));
     for row in rows {
         let field = |(_, column): &(&str, Column<MeasurandRecord>)| match column {
             Column::Count(of) => of(row).to_string(),
-            Column::Text(of) => quoted(&of(row)),
+            Column::Text(of) => of(row),
             Column::Number(of) => of(row).map(|v| format!("{v:?}")).unwrap_or_default(),
         };
-        let fields: Vec<String> = COLUMNS.iter().map(field).collect();
-        out.push_str(&format!("{}\n", fields.join(",")));
+        out.push_str(&csv_line(COLUMNS.iter().map(field)));
     }
     out
 }

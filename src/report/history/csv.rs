@@ -1,6 +1,6 @@
 //! A history as a table: one row a result and measurand; the same in every language.
 
-use crate::output::quoted;
+use crate::output::csv_line;
 use crate::store::Attempt;
 
 /// The columns.
@@ -33,27 +33,27 @@ const COLUMNS: [&str; 24] = [
 
 /// The table of some results; of one measurand only where it is named.
 pub fn csv(attempts: &[Attempt], measurand: Option<&str>) -> String {
-    let mut out = format!("{}\n", COLUMNS.join(","));
+    let mut out = csv_line(COLUMNS);
     let number = |v: Option<f64>| v.map_or_else(String::new, |v| v.to_string());
     for a in attempts {
         let (unit, test) = (&a.entry.unit, &a.entry.test);
         for m in a.entry.measurands.iter().filter(|m| measurand.is_none_or(|id| m.id == id)) {
             let fields = [
-                quoted(&test.evaluated_at),
-                quoted(&unit.serial),
-                quoted(&unit.model),
-                quoted(&unit.lot),
+                test.evaluated_at.clone(),
+                unit.serial.clone(),
+                unit.model.clone(),
+                unit.lot.clone(),
                 unit.reference.to_string(),
-                quoted(&test.procedure),
-                quoted(&test.revision),
-                quoted(&test.station),
-                quoted(&test.operator),
+                test.procedure.clone(),
+                test.revision.clone(),
+                test.station.clone(),
+                test.operator.clone(),
                 a.number.to_string(),
                 a.entry.verdict.id().to_owned(),
-                quoted(&m.id),
-                quoted(&m.channel),
-                quoted(m.phase.as_deref().unwrap_or_default()),
-                quoted(&m.unit),
+                m.id.clone(),
+                m.channel.clone(),
+                m.phase.clone().unwrap_or_default(),
+                m.unit.clone(),
                 number(m.value),
                 number(m.interval.map(|i| i.low)),
                 number(m.interval.map(|i| i.high)),
@@ -64,8 +64,7 @@ pub fn csv(attempts: &[Attempt], measurand: Option<&str>) -> String {
                 a.superseded.as_ref().map(|c| c.by.clone()).unwrap_or_default(),
                 a.address.clone(),
             ];
-            out.push_str(&fields.join(","));
-            out.push('\n');
+            out.push_str(&csv_line(&fields));
         }
     }
     out

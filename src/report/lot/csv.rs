@@ -3,9 +3,10 @@
 use super::reasons::reasons;
 use crate::estimate::Verdict;
 use crate::i18n::Lang;
-use crate::output::quoted;
+use crate::output::csv_line;
 use crate::record::{ConditionStatus, LotRecord, LotUnit, MeasurandRecord};
 use crate::report::translator::Translator;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Columns of every lot; five for each quantity with a limit follow.
 const COLUMNS: [&str; 12] = [
@@ -26,31 +27,32 @@ const COLUMNS: [&str; 12] = [
 /// The table of a lot.
 pub fn csv(lot: &LotRecord) -> String {
     let mut quantities: Vec<Quantity<'_>> = vec![];
+    let mut seen = BTreeSet::new();
     for m in lot.units.iter().flat_map(|u| &u.measurands) {
-        if !quantities.iter().any(|q| q.is(m)) {
-            quantities.push(Quantity {
-                id: &m.id,
-                channel: &m.channel,
-                phase: m.phase.as_deref(),
-                unit: &m.unit,
-            });
+        let quantity = Quantity::of(m);
+        if seen.insert(quantity) {
+            quantities.push(quantity);
         }
     }
     let several = quantities.iter().any(|q| Some(q.channel) != quantities.first().map(|f| f.channel));
     let mut head: Vec<String> = COLUMNS.iter().map(|c| (*c).to_owned()).collect();
     head.extend(quantities.iter().flat_map(|q| q.columns(several)));
-    let mut out = line(&head);
+    let mut out = csv_line(&head);
     for unit in &lot.units {
         let mut fields = facts(unit);
+        // The first row of a quantity is the one that counts.
+        let own: BTreeMap<Quantity<'_>, &MeasurandRecord> =
+            unit.measurands.iter().rev().map(|m| (Quantity::of(m), m)).collect();
         for q in &quantities {
-            fields.extend(values(unit.measurands.iter().find(|m| q.is(m))));
+            fields.extend(values(own.get(q).copied()));
         }
-        out.push_str(&line(&fields));
+        out.push_str(&csv_line(&fields));
     }
     out
 }
 
 /// A quantity that has columns.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Quantity<'a> {
     id: &'a str,
     channel: &'a str,
@@ -59,11 +61,8 @@ struct Quantity<'a> {
 }
 
 impl Quantity<'_> {
-    fn is(&self, m: &MeasurandRecord) -> bool {
-        self.id == m.id
-            && self.channel == m.channel
-            && self.phase == m.phase.as_deref()
-            && self.unit == m.unit
+    fn of(m: &MeasurandRecord) -> Quantity<'_> {
+        Quantity { id: &m.id, channel: &m.channel, phase: m.phase.as_deref(), unit: &m.unit }
     }
 
     fn columns(&self, several_channels: bool) -> Vec<String> {
@@ -79,11 +78,6 @@ impl Quantity<'_> {
 fn slug(text: &str) -> String {
     let parts = text.split(|c: char| !c.is_alphanumeric()).filter(|p| !p.is_empty());
     parts.collect::<Vec<_>>().join("_")
-}
-
-fn line(fields: &[String]) -> String {
-    let fields: Vec<String> = fields.iter().map(|f| quoted(f)).collect();
-    format!("{}\n", fields.join(","))
 }
 
 /// What every unit has.
