@@ -55,6 +55,7 @@ pub mod config;
 pub mod i18n;
 pub mod ingest;
 mod library;
+pub mod moment;
 pub mod output;
 pub mod prove;
 pub mod record;

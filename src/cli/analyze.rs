@@ -15,9 +15,9 @@ use crate::acceptance::column_choice::{channels, unit_contradictions};
 use crate::config::procedure::EffectiveLimits;
 use crate::i18n::{Lang, Note};
 use crate::ingest::open_recording;
+use crate::moment;
 use crate::output::Kind;
 use crate::record::UnitUnderTest;
-use chrono::Utc;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -49,7 +49,7 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
         return Err(say(Note::new("cli.warm_up").with("given", args.columns.warm_up.to_string())));
     }
     let writer = args.output.writer(lang)?;
-    let now = Utc::now();
+    let now = moment::now();
     let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
     let stem = stem.split('.').next().unwrap_or_default().to_owned();
     let out = OutputPlace::new(args.out.as_deref(), "analysis", Some(&stem), now);

@@ -20,6 +20,7 @@ use crate::config::procedure::limits::LimitSpec;
 use crate::config::procedure::{EffectiveLimits, load_limits};
 use crate::i18n::{Lang, Localize, Note, visible_lines};
 use crate::ingest::{RecordingError, each_of, open_recording};
+use crate::moment;
 use crate::output::{Kind, StagedFolder};
 use crate::record::{RunRecord, UnitUnderTest, read};
 use crate::report::Results;
@@ -60,7 +61,7 @@ pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
     }
     let writer = args.output.writer(lang)?;
     let printer = Printer::new(&args.output, lang);
-    let now = Utc::now();
+    let now = moment::now();
     let stamp = now.to_rfc3339_opts(SecondsFormat::Secs, true);
     let first = args.recording.first().map_or_else(|| "published".to_owned(), |p| stem(p));
     let out = place::OutputPlace::new(args.out.as_deref(), "comparison", Some(&first), now);

@@ -18,6 +18,7 @@ use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::lot::{LotError, Member, members};
 use crate::ingest::serial::SerialPattern;
 use crate::ingest::{ReadOptions, RecordingError, files_read};
+use crate::moment;
 use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::{LotUnit, ProcedureRecord, SerialSource, Session};
 use crate::report::export::{EXPORTERS, export};
@@ -125,7 +126,7 @@ impl UnitTest for PhasedUnits<'_> {
 /// # Errors
 /// The diagnostic, in words, where the lot as a whole cannot be tested or written.
 pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
-    let now = Utc::now();
+    let now = moment::now();
     if is_phased(&args.procedure) {
         let test = PhasedTest::load(args, now, lang)?;
         if let Some(odd) = args.recording.iter().find(|r| !is_manifest(r) && r.exists()) {

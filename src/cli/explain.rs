@@ -11,10 +11,11 @@ use crate::i18n::{Arg, EffectText, Lang, Note, effect_key};
 use crate::ingest::{ReadOptions, are_several, files_read};
 use crate::mismatch;
 use crate::mismatch::finding::MismatchVerdict;
+use crate::moment;
 use crate::output::Kind;
 use crate::report::explain::{Context, ExplainView};
 use crate::report::{ExplanationResults, Results, terminal};
-use chrono::{SecondsFormat, Utc};
+use chrono::SecondsFormat;
 use std::path::{Path, PathBuf};
 
 /// Explains a recording, or several together.
@@ -39,7 +40,7 @@ fn single(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
     let writer = args.output.writer(lang)?;
     // What is wrong with the model is said before a long recording is read.
     let stated = args.model.as_deref().map(model::load).transpose().map_err(|p| p.say(lang))?;
-    let now = Utc::now();
+    let now = moment::now();
     let name = args.recording.first().map(|p| stem(p));
     let out = OutputPlace::new(args.out.as_deref(), "explain", name.as_deref(), now);
     let printer = Printer::new(&args.output, lang);

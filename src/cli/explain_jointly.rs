@@ -11,11 +11,12 @@ use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{RecordingError, each_of};
 use crate::mismatch::finding::MismatchVerdict;
 use crate::mismatch::joint::{JointOutcome, JointProgress, Recording, explain_jointly};
+use crate::moment;
 use crate::output::Kind;
 use crate::report::explain::Context;
 use crate::report::joint::{JointContext, JointFile, JointView};
 use crate::report::{ExplanationResults, JointResults, Results, terminal};
-use chrono::{SecondsFormat, Utc};
+use chrono::SecondsFormat;
 use std::path::{Path, PathBuf};
 
 /// The files of the recordings that are named, patterns among them.
@@ -42,7 +43,7 @@ pub fn main(args: &ExplainArgs, files: Vec<PathBuf>, lang: Lang) -> Result<u8, S
     let options = options(args).map_err(say)?;
     let writer = args.output.writer(lang)?;
     let claim = model::load(path).map_err(|p| p.say(lang))?;
-    let now = Utc::now();
+    let now = moment::now();
     let out = OutputPlace::new(
         args.out.as_deref(),
         "explain",

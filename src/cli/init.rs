@@ -20,10 +20,10 @@ use crate::measurand::{
     BIAS_TEMPERATURE_SENSITIVITY, QUANTIZATION, RATE_RAMP, RATE_RANDOM_WALK, RUSSIAN_ARW_10S,
     RUSSIAN_DRIFT_100S,
 };
+use crate::moment;
 use crate::record::RunRecord;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::report::number::duration;
-use chrono::Utc;
 use clap::Args;
 use minijinja::{Environment, UndefinedBehavior, context};
 use std::path::{Path, PathBuf};
@@ -114,7 +114,7 @@ fn analysed(
     let prepared = Prepared::new(channels.to_vec(), &args.columns.choice(), &args.recording, source);
     let prepared = prepared.map_err(say)?;
     let limits = EffectiveLimits::default();
-    let request = prepared.request(source, &limits, Utc::now());
+    let request = prepared.request(source, &limits, moment::now());
     let mut progress = Progress::new(Display::unless(false), lang);
     let outcome = with_progress(&request, &Note::new("cli.reading").say(lang), &mut progress)
         .map_err(|e| say(e.note()))?;

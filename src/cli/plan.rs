@@ -13,6 +13,7 @@ use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::ReadOptions;
 use crate::mismatch::finding::Finding;
 use crate::mismatch::{self, Alternative, Options};
+use crate::moment;
 use crate::output::Kind;
 use crate::plan::record::PlanOutcome;
 use crate::plan::{Limits, plan};
@@ -20,7 +21,7 @@ use crate::record::explanation::Explanation;
 use crate::report::plan::{PlanContext, PlanFile, PlanView};
 use crate::report::{ALTERNATIVES_FILE, Results, StoredResults, terminal};
 use crate::series::{SeriesOptions, load_series};
-use chrono::{SecondsFormat, Utc};
+use chrono::SecondsFormat;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -61,7 +62,7 @@ pub fn main(args: &PlanArgs, lang: Lang) -> Result<u8, String> {
     let limits = limits(args, lang)?;
     let writer = args.output.writer(lang)?;
     let claim = load_model(&args.model).map_err(|p| p.say(lang))?.claim;
-    let now = Utc::now();
+    let now = moment::now();
     let printer = Printer::new(&args.output, lang);
     let mut progress = printer.progress();
     progress.stage("progress.inputs");

@@ -7,6 +7,7 @@ use super::writer::Writer;
 use super::{exit, place};
 use crate::config::laboratory;
 use crate::i18n::{Lang, Note};
+use crate::moment;
 use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::LotUnit;
 use crate::report::export::{Dcc, EXPORTERS, FURTHER};
@@ -14,7 +15,6 @@ use crate::report::signatures::{self, SIGNATURES_SHOWN, Signature};
 use crate::report::{Results, StoredResults};
 use crate::signing;
 use crate::verify::{Folder, stated_hashes};
-use chrono::Utc;
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::{Component, Path, PathBuf};
@@ -60,7 +60,7 @@ pub fn main(args: &ReportArgs, lang: Lang) -> Result<u8, String> {
     let laboratory = args.laboratory.as_deref().map(laboratory::load).transpose().map_err(|p| p.say(lang))?;
     let writer = if asked(DCC) { writer.with_certificate(Dcc { laboratory }) } else { writer };
     let stored = StoredResults::open(&args.result).map_err(|note| place::error(&note, lang))?;
-    let out = place::OutputPlace::new(args.out.as_deref(), "report", stored.results.subject(), Utc::now());
+    let out = place::OutputPlace::new(args.out.as_deref(), "report", stored.results.subject(), moment::now());
     let folder = Inputs::new(args.force)
         .of_result(stored.inputs)
         .beside(Some(&args.result))

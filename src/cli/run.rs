@@ -11,12 +11,12 @@ use super::{exit, next_step};
 use crate::config::shipped::find;
 use crate::i18n::{Lang, Localize};
 use crate::ingest::RecordingError;
+use crate::moment;
 use crate::output::Kind;
-use chrono::Utc;
 
 pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     args.join.check(&args.recording, "join.help.run", lang)?;
-    let now = Utc::now();
+    let now = moment::now();
     let test = SingleTest::load(args, now, lang)?;
     let writer = args.output.writer(lang)?;
     let keeper = Keeper::new(&args.store, lang)?;

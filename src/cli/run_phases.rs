@@ -9,13 +9,13 @@ use super::run_args::RunArgs;
 use crate::acceptance::phases::failure;
 use crate::config::manifest::{self, is_manifest};
 use crate::i18n::{Lang, Note};
+use crate::moment;
 use crate::output::Kind;
-use chrono::Utc;
 
 /// Runs every phase and writes the folder of the whole.
 pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
     let error = |note: Note| place::error(&note, lang);
-    let now = Utc::now();
+    let now = moment::now();
     let test = PhasedTest::load(args, now, lang)?;
     let path = match args.recording.as_slice() {
         [one] if is_manifest(one) || one.extension().is_some_and(|e| e == "toml") => one,

@@ -4,10 +4,11 @@ use super::options::renderer;
 use super::{exit, place};
 use crate::estimate::Verdict;
 use crate::i18n::{Lang, Note};
+use crate::moment;
 use crate::record::{self, RunRecord};
 use crate::signing::{self, Role, SIGNATURES_FOLDER, SignOff, Waived};
 use crate::verify::{Finding, Folder, contents, required, run_of, stated_hashes};
-use chrono::{SecondsFormat, Utc};
+use chrono::SecondsFormat;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -101,7 +102,7 @@ fn put(args: &SignArgs, role: Role, follows: bool, lang: Lang) -> Result<u8, Str
     let procedure = run.as_ref().and_then(|r| r.procedure.as_ref());
     let about = SignOff {
         role,
-        signed_at: Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true),
+        signed_at: moment::now().to_rfc3339_opts(SecondsFormat::Secs, true),
         name: args.name.clone(),
         record: folder.kind.record_file().to_owned(),
         verdict: run.as_ref().map(|r| r.verdict.id().to_owned()),

@@ -4,9 +4,10 @@ use super::{exit, place};
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::io_reason;
 use crate::ingest::result_table::{TableResult, results_in, tables_at};
+use crate::moment;
 use crate::output::Kind;
 use crate::store::{self, Filter, RecordingSearch, Store, StoreError, result_folders};
-use chrono::{SecondsFormat, Utc};
+use chrono::SecondsFormat;
 use clap::{Args, Subcommand};
 use std::path::{Path, PathBuf};
 
@@ -137,7 +138,7 @@ pub fn main(args: &StoreVerbArgs, lang: Lang) -> Result<u8, String> {
 }
 
 fn now() -> String {
-    Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true)
+    moment::now().to_rfc3339_opts(SecondsFormat::Secs, true)
 }
 
 /// Opens a store to ask it, and says what must be known of it.

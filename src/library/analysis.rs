@@ -7,6 +7,7 @@ use crate::acceptance::column_choice::{ColumnChoice, channels};
 use crate::acceptance::execute;
 use crate::config::procedure::EffectiveLimits;
 use crate::i18n::Note;
+use crate::moment;
 use crate::noise::tau_grid::TauGrid;
 use crate::record::UnitUnderTest;
 use chrono::{DateTime, Utc};
@@ -68,7 +69,7 @@ impl Analysis {
             unit: UnitUnderTest { serial, ..UnitUnderTest::default() },
             taus: self.taus.clone(),
             exact: self.exact,
-            ..prepared.request(source, &limits, self.evaluated_at.unwrap_or_else(Utc::now))
+            ..prepared.request(source, &limits, self.evaluated_at.unwrap_or_else(moment::now))
         };
         Ok(RunResult::new(execute(&request, progress)?))
     }

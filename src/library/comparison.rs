@@ -2,8 +2,9 @@
 
 use super::{Error, RunResult};
 use crate::acceptance::compare::{Comparison, Origin, Unit, mark_repeated, name_apart, units_of};
+use crate::moment;
 use crate::report::Results;
-use chrono::{SecondsFormat, Utc};
+use chrono::SecondsFormat;
 
 /// A result that is compared.
 pub struct Compared<'a> {
@@ -29,6 +30,6 @@ pub fn compare(results: &[Compared<'_>]) -> Result<Results, Error> {
     }
     name_apart(&mut units);
     mark_repeated(&mut units);
-    let now = Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true);
+    let now = moment::now().to_rfc3339_opts(SecondsFormat::Secs, true);
     Ok(Results::of_comparison(Comparison::of_units(units, now)))
 }

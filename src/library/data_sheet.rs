@@ -4,9 +4,10 @@ use super::Error;
 use crate::acceptance::datasheet::{Refusal, TestedUnit, datasheet, select};
 use crate::i18n::{Lang, Note};
 use crate::lot::tolerance::Promise;
+use crate::moment;
 use crate::output::Kind;
 use crate::report::Results;
-use chrono::{SecondsFormat, Utc};
+use chrono::SecondsFormat;
 use rayon::prelude::*;
 use std::path::Path;
 
@@ -38,7 +39,7 @@ pub fn data_sheet(results: &[SheetSource<'_>], promise: Promise) -> Result<Resul
         Refusal::None => Error::argument("datasheet.refused.none"),
         Refusal::Mixed(note) => Error::argument(note),
     })?;
-    let now = Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true);
+    let now = moment::now().to_rfc3339_opts(SecondsFormat::Secs, true);
     Ok(Results::of_datasheet(datasheet(selected, promise, now)))
 }
 

@@ -5,13 +5,14 @@ use crate::claim::Claim;
 use crate::config::model::{self, ModelFile, Profile, SimulationPlan};
 use crate::i18n::{Lang, Note};
 use crate::mismatch::{self, Options, Outcome, Progress};
+use crate::moment;
 use crate::record::explanation::{self, MismatchVerdict};
 use crate::report::explain::{Context, ExplainView};
 use crate::report::export::Exporter;
 use crate::report::terminal::{self, Terminal};
 use crate::report::{Document, ExplanationResults, Results};
 use crate::simulate::{Order, Over, Rows, SimulateError, Simulation};
-use chrono::{SecondsFormat, Utc};
+use chrono::SecondsFormat;
 use std::path::Path;
 
 /// A simulation as its author believes it: noise, mean, sensitivities and effects, each with its uncertainty.
@@ -171,7 +172,7 @@ impl Explanation {
             claim: self.model.name.clone(),
             identified: false,
             description: Some(self.model.claim.description.clone()),
-            explained_at: Utc::now().to_rfc3339_opts(SecondsFormat::Secs, true),
+            explained_at: moment::now().to_rfc3339_opts(SecondsFormat::Secs, true),
             correction: self.outcome.correction.is_some(),
             notes: self.notes.clone(),
         }

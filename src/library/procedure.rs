@@ -8,6 +8,7 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Note};
 use crate::mismatch;
+use crate::moment;
 use crate::record::{ExplainedRecord, MeasurandRecord, RESULT_FORMAT, RunKind, RunRecord, UnitUnderTest};
 use crate::report::export::Exporter;
 use crate::report::{Document, Results, StoredResults};
@@ -130,7 +131,7 @@ impl Procedure {
             serial_of_recording,
             operator: self.operator.clone(),
             station: self.station.clone(),
-            now: self.evaluated_at.unwrap_or_else(Utc::now),
+            now: self.evaluated_at.unwrap_or_else(moment::now),
             taus: None,
             exact: false,
         };

@@ -32,7 +32,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
     (
         "src",
         &[
-            &["i18n"],
+            &["i18n", "moment"],
             &["output"],
             &["record", "signing"],
             &["config"],

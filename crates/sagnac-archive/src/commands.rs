@@ -288,7 +288,7 @@ fn say(text: std::fmt::Arguments<'_>) -> Result<(), String> {
 
 fn time(given: Option<String>) -> Result<String, String> {
     let Some(given) = given else {
-        return Ok(chrono::Utc::now().to_rfc3339_opts(chrono::SecondsFormat::Secs, true));
+        return Ok(sagnac::moment::now().to_rfc3339_opts(chrono::SecondsFormat::Secs, true));
     };
     match chrono::DateTime::parse_from_rfc3339(&given) {
         Ok(_) => Ok(given),

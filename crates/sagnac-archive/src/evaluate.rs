@@ -83,7 +83,7 @@ fn panic_text(cause: &(dyn Any + Send)) -> &str {
 fn evaluated(order: &Order<'_>) -> Result<Outcome, Failure> {
     let file = fetch(order.uri)?;
     let unit = order.unit.map(unit_of).transpose()?.unwrap_or_default();
-    let at = order.at.map(time_of).transpose()?.unwrap_or_else(Utc::now);
+    let at = order.at.map(time_of).transpose()?.unwrap_or_else(sagnac::moment::now);
     let shown = Shown { file: &file, uri: order.uri };
     let recording = Recording::open(file.path()).map_err(|e| shown.failure(&e))?;
     match order.task {

@@ -159,7 +159,7 @@ impl Runner {
                 cluster::client(scheduler, order.portion.div_ceil((*rows_per_task).max(1))).await?
             }
         };
-        let run = format!("{}-{}", chrono::Utc::now().format("%Y%m%dT%H%M%S%3f"), std::process::id());
+        let run = format!("{}-{}", sagnac::moment::now().format("%Y%m%dT%H%M%S%3f"), std::process::id());
         let (store, folder) = stores::open(&order.out)?;
         let pending = order
             .out

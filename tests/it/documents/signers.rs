@@ -2,7 +2,6 @@
 
 use crate::documents::{signing::key, tested};
 use crate::support::sagnac;
-use chrono::Utc;
 use sagnac::signing::{Signers, Standing};
 use ssh_key::PublicKey;
 use std::fs;
@@ -96,7 +95,7 @@ fn lists_of_signers_are_read_as_ssh_keygen_reads_them() {
         let text = list.replace("KEY", &public("anna")).replace("OTHER", &public("berta"));
         fs::write(at.join("signers"), text).unwrap();
         let signers = Signers::read(&at.join("signers")).unwrap();
-        let is_allowed = matches!(signers.standing(&anna, Utc::now()), Standing::Allowed(_));
+        let is_allowed = matches!(signers.standing(&anna, sagnac::moment::now()), Standing::Allowed(_));
         match by_ssh_keygen() {
             Ok(expected) => assert_eq!(is_allowed, expected, "{list}: {signers:?}"),
             Err(e) => println!("skipped: ssh-keygen: {e}"),
