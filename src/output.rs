@@ -28,7 +28,7 @@ pub use contained::{Found, NotRead, found_below, open_below, read_below, sha256_
 pub use csv::csv_line;
 pub use error::OutputError;
 pub use file::StagedFile;
-pub use kind::{Kind, LIMITS_FILE, PROCEDURE_FILE, SIGNATURES_FOLDER};
+pub use kind::{Kind, LIMITS_FILE, MAX_RECORD_BYTES, PROCEDURE_FILE, SIGNATURES_FOLDER};
 pub use parquet::{Column, write_table};
 pub use part::StagedPart;
 pub use partial::{abandon_all, is_partial, remove_abandoned};
@@ -39,6 +39,7 @@ use crate::i18n::Note;
 use earlier::{Earlier, starts_with_format};
 use error::io;
 use partial::Partial;
+use sagnac_ingest::read_file;
 use serde::Serialize;
 use std::borrow::Cow;
 use std::collections::{BTreeMap, BTreeSet};
@@ -320,7 +321,9 @@ fn replaceable(target: &Path, kind: Kind, order: &Order) -> Result<Option<Earlie
 
 /// True when a folder holds the record that was just written.
 fn is_own(folder: &Path, json: &[u8]) -> bool {
-    Kind::ALL.iter().any(|k| fs::read(folder.join(k.record_file())).is_ok_and(|found| found == json))
+    Kind::ALL
+        .iter()
+        .any(|k| read_file(&folder.join(k.record_file()), MAX_RECORD_BYTES).is_ok_and(|found| found == json))
 }
 
 /// Waits until the names in a folder are on the disk.

@@ -9,6 +9,7 @@ use super::run_args::{EachArgs, RunArgs};
 use super::{next_step, options::GridArgs, place};
 use crate::i18n::{Lang, Localize, Note};
 use clap::Args;
+use sagnac_ingest::read_file;
 use std::path::{Path, PathBuf};
 
 /// A synthetic unit, 100 h at rest.
@@ -61,7 +62,7 @@ fn write(recording: &Path, lang: Lang) -> Result<(), String> {
         let note = Note::new("procedures.not_saved").with("path", place::shown(recording));
         place::error(&note.with("reason", reason), lang)
     };
-    match std::fs::read(recording) {
+    match read_file(recording, RECORDING.len() as u64) {
         Ok(found) if found == RECORDING => return Ok(()),
         Ok(_) => return Err(failed(Note::new("procedures.other_content").say(lang))),
         Err(_) => {}

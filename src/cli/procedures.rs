@@ -4,6 +4,7 @@ use super::{exit, place};
 use crate::config::shipped::{LIMITS, PROCEDURES, Shipped, find};
 use crate::i18n::{Lang, Localize, Note};
 use clap::{Args, Subcommand};
+use sagnac_ingest::read_file;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -71,7 +72,9 @@ fn save(folder: &Path, lang: Lang) -> Result<(), String> {
     let all: Vec<(PathBuf, &Shipped)> =
         PROCEDURES.iter().chain(LIMITS).map(|s| (folder.join(s.path()), s)).collect();
     for (path, shipped) in &all {
-        if path.exists() && std::fs::read(path).ok().as_deref() != Some(shipped.text.as_bytes()) {
+        if path.exists()
+            && read_file(path, shipped.text.len() as u64).ok().as_deref() != Some(shipped.text.as_bytes())
+        {
             return Err(failed(path, Note::new("procedures.other_content").say(lang)));
         }
     }

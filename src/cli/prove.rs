@@ -7,13 +7,15 @@ use super::place::{self, OutputPlace};
 use super::printer::Printer;
 use crate::config::contained_files::folder_of;
 use crate::config::proof::{self, ClaimSource, Source};
+use crate::config::text_file;
 use crate::i18n::{Lang, Note};
+use crate::moment;
 use crate::output::{Kind, sha256};
 use crate::prove::{CLAIM_FILE, ProofOrder, prove};
 use crate::record::ProofOutcome;
 use crate::report::proof::ProofView;
 use crate::report::{Results, terminal};
-use chrono::{SecondsFormat, Utc};
+use chrono::SecondsFormat;
 use clap::Args;
 use std::path::PathBuf;
 
@@ -36,7 +38,7 @@ pub fn main(args: &ProveArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
     let writer = args.output.writer(lang)?;
     let file = proof::load(&args.proof).map_err(|p| p.say(lang))?;
-    let now = Utc::now();
+    let now = moment::now();
     let stem = args.proof.file_stem().map(|s| s.to_string_lossy().into_owned());
     let out = OutputPlace::new(args.out.as_deref(), "proof", stem.as_deref(), now);
     let printer = Printer::new(&args.output, lang);
@@ -56,7 +58,7 @@ pub fn main(args: &ProveArgs, lang: Lang) -> Result<u8, String> {
         .beside(args.output.templates.as_deref())
         .begin(&out, Kind::Proof, lang)?;
     let program = std::env::current_exe().map_err(|_| say("prove.error.no_room".into()))?;
-    let bytes = std::fs::read(&args.proof).unwrap_or_default();
+    let bytes = text_file::read(&args.proof).unwrap_or_default();
     let order = ProofOrder {
         proof: &file,
         path: &place::shown(&args.proof),

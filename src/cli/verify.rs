@@ -3,9 +3,10 @@
 use super::options::renderer;
 use super::{exit, place};
 use crate::i18n::{Arg, Lang, Localize, Note, io_reason};
+use crate::moment;
 use crate::record;
 use crate::report::signatures::row_name;
-use crate::signing::{self, ListError, Signers};
+use crate::signing::{self, Signers};
 use crate::verify::{
     Anew, Finding, Folder, Signing, anew, contents, pdf, run_of, signatures, stated_hashes,
     waits_for_recording,
@@ -105,7 +106,7 @@ fn of_pdf(path: &Path, lang: Lang) -> Result<u8, String> {
 /// The moment at which keys must be valid.
 fn moment(given: Option<&str>) -> Result<DateTime<Utc>, Note> {
     match given {
-        None => Ok(Utc::now()),
+        None => Ok(moment::now()),
         Some(text) => signing::moment(text).map_err(|_| Note::new("signing.moment").with("given", text)),
     }
 }
@@ -113,13 +114,8 @@ fn moment(given: Option<&str>) -> Result<DateTime<Utc>, Note> {
 /// Reads a list of signers; lines that are passed over are said.
 fn read_signers(path: &Path, lang: Lang) -> Result<Signers, String> {
     let note = |key: &'static str| Note::new(key).with("path", place::shown(path));
-    let signers = Signers::read(path).map_err(|e| {
-        let note = match e {
-            ListError::Io(e) => note("signing.signers_unreadable").with("reason", io_reason(&e)),
-            ListError::TooLarge => note("signing.signers_too_large"),
-        };
-        place::error(&note, lang)
-    })?;
+    let signers = Signers::read(path)
+        .map_err(|e| place::error(&note("signing.signers_unreadable").with("reason", io_reason(&e)), lang))?;
     for bad in &signers.passed_over {
         let why = Arg::Key(bad.fault.key().to_owned());
         let note = note("signing.signers_line").with("line", bad.line).with("why", why);

@@ -3,7 +3,7 @@
 use super::diagnostics::{Problem, Problems, SourceText};
 use super::shipped;
 use crate::i18n::{Note, io_reason};
-use std::fs::File;
+use sagnac_ingest::open_file;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
 
@@ -56,13 +56,16 @@ fn help(path: &Path) -> Note {
         .with("limits", names(shipped::LIMITS))
 }
 
-/// The bytes of a file; where there is none, those of the shipped one of that name.
-fn read(path: &Path) -> std::io::Result<Vec<u8>> {
+/// The bytes of a file, one more than allowed at the most; where there is none, those of the shipped one of that name.
+///
+/// # Errors
+/// As [`open_file`].
+pub(crate) fn read(path: &Path) -> std::io::Result<Vec<u8>> {
     if let Some(shipped) = shipped::find(path).filter(|_| !path.is_file()) {
         return Ok(shipped.text.as_bytes().to_vec());
     }
     let mut bytes = Vec::new();
-    File::open(path)?.take(MAX_READ_BYTES).read_to_end(&mut bytes)?;
+    open_file(path)?.take(MAX_READ_BYTES).read_to_end(&mut bytes)?;
     Ok(bytes)
 }
 

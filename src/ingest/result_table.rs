@@ -5,7 +5,7 @@ use crate::i18n::{Arg, Note};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::RowAccessor;
 use parquet::schema::types::Type;
-use std::fs::File;
+use sagnac_ingest::open_file;
 use std::path::{Path, PathBuf};
 
 /// Column with the record, as the text of `result.json`; null where a recording gave none.
@@ -61,7 +61,7 @@ pub fn results_in(path: &Path) -> Result<impl Iterator<Item = Result<TableResult
         let shown = shown.clone();
         move |why: Arg| Note::new("result_table.unreadable").with("path", shown.as_str()).with("reason", why)
     };
-    let file = File::open(path).map_err(|e| unreadable(sagnac_ingest::io_reason(&e).into()))?;
+    let file = open_file(path).map_err(|e| unreadable(sagnac_ingest::io_reason(&e).into()))?;
     let reader = SerializedFileReader::new(file).map_err(|e| unreadable(e.to_string().into()))?;
     let root = reader.metadata().file_metadata().schema();
     let (name, fields) = (root.name().to_owned(), root.get_fields().to_vec());

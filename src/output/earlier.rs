@@ -1,11 +1,12 @@
 //! What stands where a result is to go.
 
 use super::error::{OutputError, io};
-use super::kind::Kind;
+use super::kind::{Kind, MAX_RECORD_BYTES};
 use crate::i18n::{Arg, Note};
+use sagnac_ingest::{open_file, read_file};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
-use std::fs::{self, File};
+use std::fs;
 use std::io::Read;
 use std::path::Path;
 
@@ -61,7 +62,7 @@ impl Earlier {
 
     fn read(folder: &Path, kind: Kind) -> Option<Earlier> {
         let path = folder.join(kind.record_file());
-        let record: Value = serde_json::from_slice(&fs::read(&path).ok()?).ok()?;
+        let record: Value = serde_json::from_slice(&read_file(&path, MAX_RECORD_BYTES).ok()?).ok()?;
         let text = |v: &Value| v.as_str().map(str::to_owned);
         let files = record.get("files")?.as_array()?.iter().map(text).collect::<Option<_>>()?;
         let inputs = record.get("inputs")?.as_object()?;
@@ -120,11 +121,7 @@ pub(super) fn is_of(folder: &Path, kind: Kind) -> bool {
 /// True for a JSON file that begins so, spaces aside.
 pub(super) fn starts_with_format(file: &Path, start: &str) -> bool {
     let mut head = vec![];
-    // A pipe of that name would wait for a writer.
-    if !file.is_file() {
-        return false;
-    }
-    let read = File::open(file).and_then(|f| f.take(64).read_to_end(&mut head));
+    let read = open_file(file).and_then(|f| f.take(64).read_to_end(&mut head));
     let head: String = String::from_utf8_lossy(&head).split_whitespace().collect();
     read.is_ok() && head.starts_with(start)
 }

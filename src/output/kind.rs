@@ -11,6 +11,9 @@ pub const LIMITS_FILE: &str = "limits.toml";
 /// Folder of the signatures in a folder of results.
 pub const SIGNATURES_FOLDER: &str = "signatures";
 
+/// Largest record of a folder that is read, bytes; results of shipped samples take about a tenth of a megabyte.
+pub const MAX_RECORD_BYTES: u64 = 256 << 20;
+
 /// What a folder holds; one kind never takes the place of another.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {

@@ -5,6 +5,7 @@
 //! age tells.
 
 use super::kind::Kind;
+use sagnac_ingest::open_file;
 use std::fs::{self, File, TryLockError};
 use std::ops::Deref;
 use std::path::{Path, PathBuf};
@@ -49,7 +50,7 @@ pub fn abandon_all() {
 
 /// A lock on a file or folder; `None` where it is taken or the system has none. It ends with the value.
 pub(super) fn lock(path: &Path) -> Option<File> {
-    let file = File::open(path).ok()?;
+    let file = open_file(path).ok()?;
     file.try_lock().ok().map(|()| file)
 }
 
@@ -84,7 +85,7 @@ impl<T: AsRef<Path>> Partial<T> {
             let thing = make()?;
             let path = thing.as_ref().to_owned();
             // Between making and locking it, another run may have taken it for abandoned: it is gone, or locked to be removed.
-            let held = File::open(&path).map(|file| file.try_lock().map(|()| file));
+            let held = open_file(&path).map(|file| file.try_lock().map(|()| file));
             let doomed = matches!(held, Ok(Err(TryLockError::WouldBlock)));
             let lock = held.ok().and_then(Result::ok);
             if path.exists() && !doomed || attempt == ATTEMPTS {
@@ -142,7 +143,7 @@ pub fn remove_abandoned(parent: &Path) {
             continue;
         }
         // The lock is held while it is removed, so that nobody begins to use it.
-        let held = File::open(&path).map(|file| file.try_lock().map(|()| file));
+        let held = open_file(&path).map(|file| file.try_lock().map(|()| file));
         let dead = match &held {
             Ok(Ok(_)) if here => true,
             Ok(Err(TryLockError::WouldBlock)) => false,

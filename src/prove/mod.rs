@@ -12,6 +12,7 @@ mod rows;
 
 use crate::config::model;
 use crate::config::proof::{ClaimSource, ProofFile, Source};
+use crate::config::text_file;
 use crate::figure::Figure;
 use crate::i18n::Note;
 use crate::record::{
@@ -85,8 +86,9 @@ fn claim(
 ) -> Result<(ClaimOrigin, String, bool), Note> {
     match &order.proof.claim {
         ClaimSource::Model(path) => {
-            let unreadable = |_| Note::new("prove.error.unreadable").with("path", path.display().to_string());
-            Ok((ClaimOrigin::Model, std::fs::read_to_string(path).map_err(unreadable)?, true))
+            let unreadable = || Note::new("prove.error.unreadable").with("path", path.display().to_string());
+            let text = text_file::read(path).ok().and_then(|bytes| String::from_utf8(bytes).ok());
+            Ok((ClaimOrigin::Model, text.ok_or_else(unreadable)?, true))
         }
         ClaimSource::Identified { rate, .. } => {
             room.put("claim.csv", &text_of(prepared.claim.as_ref().unwrap_or(&prepared.shown)))?;

@@ -4,11 +4,12 @@ use super::order::ProofOrder;
 use crate::claim::Claim;
 use crate::config::model;
 use crate::config::proof::{ClaimSource, Decoy, Part, ProofFile, Source};
+use crate::config::text_file;
 use crate::effect::{ClaimedMean, Column};
 use crate::i18n::{Lang, Note};
 use crate::ingest::ReadOptions;
 use crate::noise::model::NoiseModel;
-use crate::output::sha256;
+use crate::output::{sha256, sha256_of_file};
 use crate::series::{Series, SeriesOptions, load_series};
 use crate::simulate::{Order, Over, Rows, Simulation};
 use std::collections::BTreeMap;
@@ -98,9 +99,9 @@ fn read(order: &ProofOrder<'_>, rate: Option<&str>) -> Result<(String, String, S
     match &proof.source {
         Source::File { path, sha256: stated } => {
             let file = order.data.join(path);
-            let bytes = std::fs::read(&file)
-                .map_err(|_| Note::new("prove.error.unreadable").with("path", file.display().to_string()))?;
-            let found = sha256(&bytes);
+            let found = sha256_of_file(&file).ok_or_else(|| {
+                Note::new("prove.error.unreadable").with("path", file.display().to_string())
+            })?;
             if found != *stated {
                 let note = Note::new("prove.error.other_recording").with("path", file.display().to_string());
                 return Err(note.with("stated", stated.as_str()).with("found", found));
@@ -109,7 +110,7 @@ fn read(order: &ProofOrder<'_>, rate: Option<&str>) -> Result<(String, String, S
         }
         Source::Simulated { model: path, duration_s } => {
             let named = path.display().to_string();
-            let bytes = std::fs::read(path)
+            let bytes = text_file::read(path)
                 .map_err(|_| Note::new("prove.error.unreadable").with("path", named.as_str()))?;
             let file = model::parse(&named, &bytes)
                 .map_err(|p| Note::new("system.other").with("reason", p.say(Lang::En)))?;

@@ -3,14 +3,14 @@
 use super::null_numbers;
 use super::{RESULT_FORMAT, RunRecord};
 use crate::i18n::{Note, io_reason};
+use crate::output::MAX_RECORD_BYTES;
+use sagnac_ingest::{FileFault, read_file};
 use serde::de::DeserializeOwned;
 use serde_json::Value;
-use std::fs::File;
-use std::io::Read;
 use std::path::Path;
 
-/// Largest file that is read, bytes; results of shipped samples take about a tenth of a megabyte.
-pub const MAX_BYTES: usize = 256 << 20;
+/// Largest file that is read, bytes.
+pub const MAX_BYTES: usize = MAX_RECORD_BYTES as usize;
 
 /// Why a file is no result that this program reads.
 #[derive(Debug, thiserror::Error)]
@@ -76,9 +76,10 @@ impl ReadError {
 /// # Errors
 /// [`ReadError::Io`] and [`ReadError::TooLarge`].
 pub fn bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
-    let mut bytes = vec![];
-    File::open(path)?.take(MAX_BYTES as u64 + 1).read_to_end(&mut bytes)?;
-    if bytes.len() > MAX_BYTES { Err(ReadError::TooLarge) } else { Ok(bytes) }
+    read_file(path, MAX_RECORD_BYTES).map_err(|e| match FileFault::of(&e) {
+        Some(FileFault::TooLarge { .. }) => ReadError::TooLarge,
+        _ => ReadError::Io(e),
+    })
 }
 
 /// The record in a `result.json`.

@@ -11,6 +11,7 @@ use crate::record::RunRecord;
 use base64::Engine as _;
 use minijinja::value::{Kwargs, Serde, Value};
 use minijinja::{AutoEscape, Environment, UndefinedBehavior};
+use sagnac_ingest::read_text;
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
 use std::fmt;
@@ -77,13 +78,6 @@ pub enum ReportError {
         /// Names that would be used.
         names: String,
     },
-    /// A file is larger than any template.
-    TooLarge {
-        /// The file.
-        path: String,
-        /// Its size.
-        bytes: u64,
-    },
     /// A file could not be read or written.
     Io {
         /// The file.
@@ -119,10 +113,6 @@ impl ReportError {
             ReportError::NothingReplaced { path, names } => Note::new("template_error.nothing_replaced")
                 .with("path", path.as_str())
                 .with("names", names.as_str()),
-            ReportError::TooLarge { path, bytes } => Note::new("template_error.too_large")
-                .with("path", path.as_str())
-                .with("bytes", *bytes)
-                .with("most", LARGEST),
             ReportError::Io { path, source } => {
                 Note::new("template_error.io").with("path", path.as_str()).with("reason", io_reason(source))
             }
@@ -189,10 +179,7 @@ impl Renderer {
             if !known || !about.is_file() {
                 continue;
             }
-            if about.len() > LARGEST {
-                return Err(ReportError::TooLarge { path: path.display().to_string(), bytes: about.len() });
-            }
-            let text = std::fs::read_to_string(&path).map_err(failed(&path))?;
+            let text = read_text(&path, LARGEST).map_err(failed(&path))?;
             renderer.overrides.insert(name, text);
         }
         if !TEMPLATES.iter().any(|(name, _)| renderer.overrides.contains_key(*name)) {

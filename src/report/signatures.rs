@@ -4,7 +4,9 @@ use super::number::date_time;
 use super::translator::Translator;
 use crate::i18n::{Arg, Lang, Localize, Note};
 use crate::measurand;
+use crate::output::MAX_RECORD_BYTES;
 use crate::signing::{Link, Role};
+use sagnac_ingest::read_file;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -93,7 +95,7 @@ pub(super) fn waived(signatures: &[Signature], lang: Lang) -> Vec<WaivedView> {
 
 /// The signatures that the pages of a folder show, where they are those of another.
 pub fn shown(folder: &Path) -> Vec<Signature> {
-    let bytes = std::fs::read(folder.join(SIGNATURES_SHOWN)).unwrap_or_default();
+    let bytes = read_file(&folder.join(SIGNATURES_SHOWN), MAX_RECORD_BYTES).unwrap_or_default();
     serde_json::from_slice(&bytes).unwrap_or_default()
 }
 

@@ -201,11 +201,11 @@ pub fn sign(
     let shown = key.display().to_string();
     let signature = key::sign(key, &bytes).map_err(|e| {
         let name = match e {
-            KeyError::Unreadable(_) => "signing.key_unreadable",
+            KeyError::File(_) | KeyError::Unreadable(_) => "signing.key_unreadable",
             KeyError::Kind(_) => "signing.key_kind",
             KeyError::Agent(_) => "signing.agent",
         };
-        Note::new(name).with("path", shown).with("reason", e.to_string())
+        Note::new(name).with("path", shown).with("reason", e.reason())
     })?;
     let at = folder.join(SIGNATURES_FOLDER);
     fs::create_dir_all(&at).map_err(|e| {

@@ -1,8 +1,9 @@
 //! Keys and signatures in the forms of OpenSSH, so that `ssh-keygen -Y verify` checks them too.
 
+use crate::i18n::{Arg, io_reason};
+use sagnac_ingest::read_text;
 use ssh_key::{Algorithm, HashAlg, LineEnding, PrivateKey, PublicKey, SshSig};
-use std::fs::File;
-use std::io::{Read, Write};
+use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -15,7 +16,10 @@ const MAX_KEY_BYTES: u64 = 1 << 20;
 /// Why something could not be signed.
 #[derive(Debug, thiserror::Error)]
 pub enum KeyError {
-    /// The key cannot be read.
+    /// The file cannot be read.
+    #[error("{0}")]
+    File(std::io::Error),
+    /// It holds no key.
     #[error("{0}")]
     Unreadable(String),
     /// The key is of another kind than Ed25519.
@@ -26,6 +30,16 @@ pub enum KeyError {
     Agent(String),
 }
 
+impl KeyError {
+    /// The reason; of the operating system in words of the tables.
+    pub fn reason(&self) -> Arg {
+        match self {
+            KeyError::File(e) => io_reason(e).into(),
+            other => other.to_string().into(),
+        }
+    }
+}
+
 /// Signs a message. A private key signs by itself; a public key, or a private one with a passphrase, through `ssh-keygen`, which
 /// asks the agent or the user.
 ///
@@ -33,9 +47,7 @@ pub enum KeyError {
 /// [`KeyError`] for what is no key of kind Ed25519, or where the agent refuses.
 pub fn sign(key: &Path, message: &[u8]) -> Result<String, KeyError> {
     let unreadable = |e: &dyn std::fmt::Display| KeyError::Unreadable(e.to_string());
-    let mut text = String::new();
-    let file = File::open(key).map_err(|e| unreadable(&e))?;
-    file.take(MAX_KEY_BYTES).read_to_string(&mut text).map_err(|e| unreadable(&e))?;
+    let text = read_text(key, MAX_KEY_BYTES).map_err(KeyError::File)?;
     if let Ok(public) = PublicKey::from_openssh(text.trim()) {
         ed25519(&public.algorithm())?;
         return through_agent(key, message);

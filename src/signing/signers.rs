@@ -4,9 +4,9 @@
 use super::key::NAMESPACE;
 use super::pattern::{Listed, matches_list};
 use chrono::{DateTime, Local, NaiveDateTime, TimeZone, Utc};
+use sagnac_ingest::read_file;
 use ssh_key::PublicKey;
-use std::fs::File;
-use std::io::Read;
+use std::io;
 use std::path::Path;
 
 /// Largest list that is read, bytes.
@@ -64,15 +64,6 @@ impl LineFault {
     }
 }
 
-/// Why a list cannot be read.
-#[derive(Debug)]
-pub enum ListError {
-    /// The operating system refused.
-    Io(std::io::Error),
-    /// It is larger than any list.
-    TooLarge,
-}
-
 /// Whether a key may sign.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Standing<'a> {
@@ -124,15 +115,9 @@ impl Signers {
     /// Reads a list.
     ///
     /// # Errors
-    /// [`ListError`].
-    pub fn read(path: &Path) -> Result<Signers, ListError> {
-        let mut bytes = vec![];
-        let file = File::open(path).map_err(ListError::Io)?;
-        file.take(MAX_LIST_BYTES + 1).read_to_end(&mut bytes).map_err(ListError::Io)?;
-        if bytes.len() as u64 > MAX_LIST_BYTES {
-            return Err(ListError::TooLarge);
-        }
-        Ok(Signers::of_text(&String::from_utf8_lossy(&bytes)))
+    /// As [`read_file`].
+    pub fn read(path: &Path) -> io::Result<Signers> {
+        Ok(Signers::of_text(&String::from_utf8_lossy(&read_file(path, MAX_LIST_BYTES)?)))
     }
 
     /// The list in a text.

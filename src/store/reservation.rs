@@ -8,6 +8,7 @@ use super::error::{StoreError, io};
 use super::layout::names;
 use super::lock::FORGOTTEN_AFTER;
 use super::opened::Store;
+use sagnac_ingest::open_file;
 use std::fs::{self, File, TryLockError};
 use std::path::{Path, PathBuf};
 use std::time::SystemTime;
@@ -71,7 +72,7 @@ fn beginning(unit: &str, procedure: &str) -> String {
 
 /// True where the process that took a number lives, as far as can be told.
 fn is_alive(path: &Path) -> bool {
-    let Ok(file) = File::open(path) else { return false };
+    let Ok(file) = open_file(path) else { return false };
     match file.try_lock() {
         Ok(()) => false,
         Err(TryLockError::WouldBlock) => true,

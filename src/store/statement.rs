@@ -4,10 +4,10 @@
 use super::address::sha256;
 use super::error::{StoreError, io};
 use super::layout::{Layout, is_address, names};
-use crate::output::StagedFile;
+use crate::output::{MAX_RECORD_BYTES, StagedFile};
 use crate::record::read;
+use sagnac_ingest::read_file;
 use serde::{Deserialize, Serialize};
-use std::fs;
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -78,7 +78,7 @@ pub(super) fn write(layout: &Layout, hash: &str, bytes: &[u8]) -> Result<(), Sto
 
 /// The statement of a hash; `None` where there is none, or one that was changed.
 pub(super) fn at(layout: &Layout, hash: &str) -> Option<Statement> {
-    let bytes = fs::read(file(layout, hash)).ok()?;
+    let bytes = read_file(&file(layout, hash), MAX_RECORD_BYTES).ok()?;
     read::of_format(&bytes, STATEMENT_FORMAT).ok().filter(|_| sha256(&bytes) == hash)
 }
 
@@ -102,7 +102,7 @@ pub(super) fn all(layout: &Layout) -> Result<Vec<Stored>, StoreError> {
             continue;
         };
         let path = layout.statements().join(&name);
-        let bytes = fs::read(&path).map_err(io("store_error.unreadable", &path))?;
+        let bytes = read_file(&path, MAX_RECORD_BYTES).map_err(io("store_error.unreadable", &path))?;
         let statement = read::of_format(&bytes, STATEMENT_FORMAT).ok();
         out.push(Stored { hash: hash.to_owned(), found: sha256(&bytes), statement, path });
     }

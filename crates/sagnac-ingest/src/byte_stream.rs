@@ -1,7 +1,7 @@
 //! The bytes of a file: decompressed where needed, hashed and counted while they are read.
 
 use super::error::{IngestError, IngestErrorKind};
-use crate::io_reason;
+use crate::{FileFault, io_reason, open_file};
 use sagnac_core::message::Note;
 use sha2::{Digest, Sha256};
 use std::fs::File;
@@ -103,7 +103,7 @@ impl ByteStream {
     /// # Errors
     /// [`IngestErrorKind::Io`] when it cannot be opened, [`IngestErrorKind::Damaged`] when the packing is broken.
     pub fn open(path: &Path, packing: Packing) -> Result<ByteStream, IngestError> {
-        let file = File::open(path).map_err(|e| io_error(path, &e))?;
+        let file = open_file(path).map_err(|e| io_error(path, &e))?;
         let size = file.metadata().map_err(|e| io_error(path, &e))?.len();
         let hashed = Hashed { file, hash: Sha256::new(), bytes: 0 };
         let buffered = |h| BufReader::with_capacity(1 << 18, h);
@@ -209,6 +209,7 @@ fn hex(bytes: &[u8]) -> String {
 /// The diagnostic of an operating-system error.
 pub(crate) fn io_error(path: &Path, error: &io::Error) -> IngestError {
     let hint = match error.kind() {
+        _ if FileFault::of(error).is_some() => "ingest.hint.save_as_file",
         io::ErrorKind::NotFound => "ingest.hint.check_path",
         io::ErrorKind::PermissionDenied => "ingest.hint.permissions",
         _ => "ingest.hint.disk",

@@ -90,6 +90,7 @@ mod in_memory;
 pub mod layout;
 mod metadata;
 pub mod multi_file;
+mod named_file;
 mod options;
 #[cfg(any(feature = "bag", feature = "hdf5", feature = "mcap", feature = "tdms"))]
 mod part_selection;
@@ -113,6 +114,7 @@ pub use format::{Candidate, Format, OnBlock, Opened, Table};
 pub use formats::FORMATS;
 pub use guarded::decoder_is_running;
 pub use in_memory::{MemoryColumn, MemoryValues};
+pub use named_file::{FileFault, open_file, read_file, read_text};
 pub use options::{Encoding, ReadOptions, StampOptions, StampWriting, TextOptions};
 pub use pauses::Pauses;
 pub use plan::{Plan, TimeBaseSpec, prepare};

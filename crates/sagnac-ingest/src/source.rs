@@ -7,6 +7,7 @@ use super::format_detection::format_of;
 use super::guarded::guarded;
 use super::in_memory::MemoryColumn;
 use super::metadata::serial_numbers;
+use super::named_file::open_file;
 use super::requested_columns::{NumericCheck, not_numeric, repeat_columns, restore_columns};
 use super::similar_column::similar;
 use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, in_memory};
@@ -94,6 +95,7 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
             IngestError::new(IngestErrorKind::Io, path, "ingest.is_folder").hint("ingest.hint.name_a_file")
         );
     }
+    open_file(path).map_err(|e| io_error(path, &e))?;
     if metadata.len() == 0 {
         return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.empty_file")
             .hint("ingest.hint.check_written"));

@@ -1,10 +1,16 @@
 //! What the operating system answers, in words of the tables.
 
+use super::named_file::FileFault;
 use sagnac_core::message::Note;
 use std::io::{Error, ErrorKind};
 
 /// The reason of an error of the operating system as a note; a reason without a translation is quoted as it is.
 pub fn io_reason(error: &Error) -> Note {
+    match FileFault::of(error) {
+        Some(FileFault::Special) => return Note::new("system.no_file"),
+        Some(FileFault::TooLarge { most }) => return Note::new("system.too_large").with("most", most),
+        None => {}
+    }
     let key = match error.kind() {
         ErrorKind::NotFound => "system.not_found",
         ErrorKind::PermissionDenied => "system.permission_denied",

@@ -1,5 +1,7 @@
 //! The compensation tables beside a result.
 
+use crate::output::MAX_RECORD_BYTES;
+use sagnac_ingest::read_file;
 use serde::Deserialize;
 use std::path::Path;
 
@@ -19,7 +21,7 @@ impl Table {
             std::fs::read_dir(folder).into_iter().flatten().flatten().map(|e| e.path()).collect();
         paths.retain(|p| p.file_name().is_some_and(|n| is_table(&n.to_string_lossy())));
         paths.sort();
-        paths.iter().filter_map(|p| Table::of_bytes(&std::fs::read(p).ok()?)).collect()
+        paths.iter().filter_map(|p| Table::of_bytes(&read_file(p, MAX_RECORD_BYTES).ok()?)).collect()
     }
 
     /// The tables among files by name, in the order of their names.

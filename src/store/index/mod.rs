@@ -11,8 +11,9 @@ pub use query::{Attempt, Correction, Counted, Filter};
 use super::error::{StoreError, io};
 use super::lock::PATIENCE;
 use rusqlite::{Connection, OpenFlags};
+use sagnac_ingest::open_file;
 use schema::{APPLICATION_ID, TABLES, VERSION};
-use std::fs::{self, File};
+use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -231,7 +232,7 @@ struct Size {
 
 impl Size {
     fn of(path: &Path) -> Result<Size, StoreError> {
-        let mut file = match File::open(path) {
+        let mut file = match open_file(path) {
             Ok(file) => file,
             Err(e) if e.kind() == std::io::ErrorKind::NotFound => {
                 return Err(StoreError::NoIndex(path.to_owned()));

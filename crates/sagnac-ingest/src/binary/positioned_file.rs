@@ -3,6 +3,7 @@
 use crate::Candidate;
 use crate::byte_stream::{ByteStream, Packing, io_error};
 use crate::error::IngestError;
+use crate::open_file;
 use std::fs::File;
 use std::io::{self, Read, Write};
 use std::path::Path;
@@ -25,7 +26,7 @@ impl PositionedFile {
     pub fn open(candidate: &Candidate) -> Result<Arc<PositionedFile>, IngestError> {
         let path = &candidate.path;
         if candidate.packing == Packing::Plain {
-            let file = File::open(path).map_err(|e| io_error(path, &e))?;
+            let file = open_file(path).map_err(|e| io_error(path, &e))?;
             return Ok(Arc::new(PositionedFile { file, size: candidate.bytes }));
         }
         let mut stream = ByteStream::open(path, candidate.packing)?;

@@ -4,6 +4,7 @@ use crate::byte_stream::{Packing, io_error};
 use crate::decode_pipeline::{Blocks, run_pipeline};
 use crate::error::{IngestError, IngestErrorKind};
 use crate::in_memory::non_finite;
+use crate::open_file;
 use crate::{Block, Candidate, Column, FieldFaultKind, FileFacts, Format, OnBlock, Opened, Table};
 use ::parquet::basic::{ConvertedType, LogicalType, TimeUnit, Type};
 use ::parquet::column::reader::{ColumnReader, ColumnReaderImpl};
@@ -96,7 +97,7 @@ fn describe(column: &ColumnDescriptor) -> Column {
 }
 
 fn reader(path: &Path) -> Result<SerializedFileReader<File>, IngestError> {
-    let file = File::open(path).map_err(|e| io_error(path, &e))?;
+    let file = open_file(path).map_err(|e| io_error(path, &e))?;
     SerializedFileReader::new(file).map_err(|e| damaged(path, &e))
 }
 

@@ -13,13 +13,13 @@ use crate::byte_stream::io_error;
 use crate::column_inference::infer;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::metadata::Metadata;
+use crate::open_file;
 use crate::part_selection::{self, Part};
 use crate::{Candidate, Column, Format, Opened};
 use properties::{Properties, Value};
 use sagnac_core::message::Note;
 use sagnac_core::recording::Role;
 use segments::{Channel, Contents, Kind, Scanner};
-use std::fs::File;
 use table::{Origin, TdmsTable};
 
 /// TDMS.
@@ -37,7 +37,7 @@ impl Format for Tdms {
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
         part_selection::unpacked(file, "ingest.tdms.what")?;
         let path = &file.path;
-        let handle = File::open(path).map_err(|e| io_error(path, &e))?;
+        let handle = open_file(path).map_err(|e| io_error(path, &e))?;
         let contents = Scanner::scan(path, handle, file.bytes)?;
         let (parts, members) = groups(&contents);
         let (chosen, mut notes) = part_selection::choose(path, &parts, file.options.part.as_deref())?;

@@ -7,6 +7,7 @@ use super::segments::{Channel, Kind, Piece};
 use crate::byte_stream::io_error;
 use crate::decode_pipeline::{Blocks, run_pipeline};
 use crate::error::IngestError;
+use crate::open_file;
 use crate::{FileFacts, OnBlock, Table};
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -171,7 +172,7 @@ struct Pages {
 
 impl Pages {
     fn open(path: &Path) -> Result<Pages, IngestError> {
-        let file = File::open(path).map_err(|e| io_error(path, &e))?;
+        let file = open_file(path).map_err(|e| io_error(path, &e))?;
         Ok(Pages { path: path.to_owned(), file, pages: Vec::new(), clock: 0 })
     }
 

@@ -1,9 +1,9 @@
 //! Whether a text file ends within a row.
 
 use crate::byte_stream::{Packing, io_error};
+use crate::open_file;
 use crate::{Candidate, IngestError};
 use sagnac_core::message::Note;
-use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 
 /// Bytes at the end that are looked at.
@@ -20,7 +20,7 @@ pub(super) fn look(file: &Candidate) -> Result<Vec<Note>, IngestError> {
         return Ok(Vec::new());
     }
     let io = |e| io_error(&file.path, &e);
-    let mut handle = File::open(&file.path).map_err(io)?;
+    let mut handle = open_file(&file.path).map_err(io)?;
     handle.seek(SeekFrom::Start(file.bytes.saturating_sub(TAIL))).map_err(io)?;
     let mut tail = Vec::new();
     handle.take(TAIL).read_to_end(&mut tail).map_err(io)?;

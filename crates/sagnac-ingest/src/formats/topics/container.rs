@@ -2,6 +2,7 @@
 
 use super::message::{Encoding, Layout};
 use crate::error::{IngestError, IngestErrorKind};
+use crate::open_file;
 use sagnac_core::message::Note;
 use std::collections::BTreeSet;
 use std::fs::File;
@@ -137,7 +138,7 @@ pub(crate) struct Stream {
 impl Stream {
     pub fn open(path: &Path, at: u64, size: u64) -> Result<Stream, IngestError> {
         let io = |e| crate::byte_stream::io_error(path, &e);
-        let mut file = File::open(path).map_err(io)?;
+        let mut file = open_file(path).map_err(io)?;
         file.seek(SeekFrom::Start(at)).map_err(io)?;
         Ok(Stream { path: path.to_owned(), file: BufReader::with_capacity(1 << 18, file), at, size })
     }
