@@ -10,12 +10,14 @@ use crate::i18n::{Arg, Lang, Localize, Note, io_reason, lookup, table};
 use crate::record::RunRecord;
 use base64::Engine as _;
 use minijinja::value::{Kwargs, Serde, Value};
-use minijinja::{AutoEscape, Environment, UndefinedBehavior};
+use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
 use sagnac_ingest::read_text;
 use sha2::{Digest as _, Sha256};
 use std::collections::BTreeMap;
 use std::fmt;
+use std::io::{self, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The built-in templates by name.
 pub const TEMPLATES: &[(&str, &str)] = &[
@@ -56,8 +58,34 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("proof.md", include_str!("../../templates/proof.md")),
 ];
 
-/// Largest template file that is read.
+/// Largest template file that is read, bytes.
 const LARGEST: u64 = 4 << 20;
+
+/// Steps of the template engine that a page may take: a hundred times those of a page on a lot of a thousand units.
+const MAX_STEPS: u64 = 50_000_000;
+
+/// Largest page, and most bytes of values that templates write for it, what they keep in variables included.
+const MAX_PAGE_BYTES: usize = 256 << 20;
+
+/// What a page is made of, each within bounds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Budget {
+    /// Steps of the template engine.
+    Steps,
+    /// Bytes that are written.
+    Bytes,
+}
+
+impl Budget {
+    /// What an error of the template engine says to be used up.
+    fn used_up(error: &minijinja::Error) -> Option<Budget> {
+        match error.kind() {
+            ErrorKind::OutOfFuel => Some(Budget::Steps),
+            ErrorKind::WriteFailure => Some(Budget::Bytes),
+            _ => None,
+        }
+    }
+}
 
 /// Why a report could not be rendered.
 #[derive(Debug)]
@@ -70,6 +98,15 @@ pub enum ReportError {
         line: Option<usize>,
         /// What is wrong.
         reason: String,
+    },
+    /// A template takes more than a page may.
+    UsedUp {
+        /// Name of the template.
+        name: String,
+        /// Line, counted from 1.
+        line: Option<usize>,
+        /// What is used up.
+        budget: Budget,
     },
     /// A folder of templates replaces nothing.
     NothingReplaced {
@@ -110,6 +147,15 @@ impl ReportError {
                 .with("name", name.as_str())
                 .with("line", *line)
                 .with("reason", reason.as_str()),
+            ReportError::UsedUp { name, line, budget } => {
+                let reason = match budget {
+                    Budget::Steps => Note::new("template_error.steps").with("most", MAX_STEPS),
+                    Budget::Bytes => Note::new("template_error.bytes").with("most", MAX_PAGE_BYTES),
+                };
+                let key = if line.is_some() { "template_error.wrong_at" } else { "template_error.wrong" };
+                let note = Note::new(key).with("name", name.as_str()).with("reason", reason);
+                line.iter().fold(note, |note, line| note.with("line", *line))
+            }
             ReportError::NothingReplaced { path, names } => Note::new("template_error.nothing_replaced")
                 .with("path", path.as_str())
                 .with("names", names.as_str()),
@@ -211,12 +257,14 @@ impl Renderer {
     fn environment(&self, lang: Lang) -> Result<Environment<'_>, ReportError> {
         let mut env = Environment::new();
         env.set_undefined_behavior(UndefinedBehavior::SemiStrict);
+        env.set_fuel(Some(MAX_STEPS));
+        let written = AtomicUsize::new(0);
         env.set_auto_escape_callback(|name| match name.rsplit('.').next() {
             Some("html") => AutoEscape::Html,
             Some("md") => AutoEscape::Custom("md".into()),
             _ => AutoEscape::None,
         });
-        env.set_formatter(|out, state, value| {
+        env.set_formatter(move |out, state, value| {
             // An undefined name goes the ordinary way, which reports it.
             if value.is_undefined() {
                 return minijinja::escape_formatter(out, state, value);
@@ -228,6 +276,10 @@ impl Renderer {
                 AutoEscape::Custom(kind) if kind == "md" => prose::markdown(&text),
                 _ => text,
             };
+            let before = written.fetch_add(escaped.len(), Ordering::Relaxed);
+            if before.saturating_add(escaped.len()) > MAX_PAGE_BYTES {
+                return Err(ErrorKind::WriteFailure.into());
+            }
             out.write_str(&escaped).map_err(minijinja::Error::from)
         });
         let signatures: Vec<SignatureView> = self.signatures.iter().map(|s| s.view(lang)).collect();
@@ -273,7 +325,9 @@ impl Renderer {
     pub fn render(&self, name: &str, context: &Value, lang: Lang) -> Result<String, ReportError> {
         let env = self.environment(lang)?;
         let template = env.get_template(name).map_err(|e| wrong(&e, name))?;
-        let mut text = template.render(context).map_err(|e| wrong(&e, name))?;
+        let mut page = Page::default();
+        template.render_captured_to(context, &mut page).map_err(|e| wrong(&e, name))?;
+        let mut text = String::from_utf8_lossy(&page.0).into_owned();
         if !text.ends_with('\n') {
             text.push('\n');
         }
@@ -342,7 +396,30 @@ pub fn render_markdown(
     renderer.render("report.md", &run_context(&View::new(record, figures, lang), record, lang), lang)
 }
 
+/// A page in the making, of a bounded size.
+#[derive(Debug, Default)]
+struct Page(Vec<u8>);
+
+impl Write for Page {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.0.len() + bytes.len() > MAX_PAGE_BYTES {
+            return Err(io::ErrorKind::StorageFull.into());
+        }
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}
+
 fn wrong(error: &minijinja::Error, name: &str) -> ReportError {
+    let place = || (error.name().unwrap_or(name).to_owned(), error.line());
+    if let Some(used_up) = Budget::used_up(error) {
+        let (name, line) = place();
+        return ReportError::UsedUp { name, line, budget: used_up };
+    }
     let mut reason = error.kind().to_string();
     if let Some(detail) = error.detail() {
         reason = format!("{reason}: {detail}");
