@@ -374,3 +374,35 @@ fn faults_of_a_recording_and_a_model_that_fails_are_told() {
     assert!(said.contains("consistent, indicative"), "{said}");
     assert_eq!(all["units"][0]["indicative"], true);
 }
+
+#[test]
+fn a_crafted_comparison_writes_no_formula_for_a_spreadsheet() {
+    let dir = tempdir().unwrap();
+    let formula = "=HYPERLINK(\"https://example.org\",\"B\")";
+    analyzed_once("pass").copy_to(&dir.path().join("a"));
+    let mut crafted = json(&dir.path().join("a/result.json"));
+    for window in crafted["comparison"][0]["windows"].as_array_mut().unwrap() {
+        window["shares"][0]["part"] = formula.into();
+    }
+    std::fs::write(dir.path().join("a/result.json"), crafted.to_string()).unwrap();
+    compare(dir.path(), &["a/result.json"]);
+    let table = std::fs::read_to_string(dir.path().join("c/comparison.csv")).unwrap();
+    assert!(table.contains("\"'=HYPERLINK(\"\"https"), "{table}");
+    assert!(!table.contains(&format!(",{formula}")), "{table}");
+}
+
+#[test]
+fn a_crafted_comparison_is_shown_whatever_count_of_digits_it_asks_for() {
+    let dir = tempdir().unwrap();
+    compare(dir.path(), &["--published"]);
+    let at = dir.path().join("c/comparison.json");
+    let crafted = std::fs::read_to_string(&at).unwrap().replace("\"digits\": 3", "\"digits\": 4000000000");
+    let crafted = crafted.replace(
+        "\"show\": {\n              \"factor\": {\n                \"figures\"",
+        "\"show\": {\n              \"factor\": {\n                \"decimals\"",
+    );
+    assert!(crafted.contains("4000000000") && crafted.contains("\"decimals\""), "{crafted}");
+    std::fs::write(&at, crafted).unwrap();
+    let said = sagnac(dir.path(), &["report", "c/comparison.json", "--out", "p"]);
+    assert_eq!(said.code, 0, "{said:?}");
+}

@@ -1,4 +1,4 @@
-//! How long a large store takes to answer: figures for `docs/validation/lots.md`, not a test of time.
+//! How long a large store takes to answer: figures for `docs/validation/lots.md`, and that the time does not grow with a square.
 
 use crate::store::{a_result, store, with_store};
 use crate::support::{result, sagnac, shipped};
@@ -80,4 +80,31 @@ fn how_long_a_large_store_takes() {
     println!("{:.2} s: data sheet of {UNITS} units", timed(&sheet));
     store(dir.path(), &["init", "empty"]);
     println!("{:.1} ms: start of the program and nothing else", 1e3 * timed(&["effects"]));
+}
+
+#[test]
+fn a_history_takes_time_that_grows_with_its_quantities() {
+    let dir = with_store();
+    let quantities = 20_000;
+    for (day, value) in [(1, 0.5), (2, 0.6)] {
+        let mut result = a_result("SN-1", "L1", &format!("2026-03-0{day}T10:00:00Z"), value);
+        let row = result["measurands"][0].clone();
+        let rows = (0..quantities).map(|i| {
+            let mut row = row.clone();
+            row["channel"] = format!("rate_{i}").into();
+            row
+        });
+        result["measurands"] = rows.collect();
+        put(dir.path(), &result);
+    }
+    store(dir.path(), &["rebuild", "store"]);
+    let began = Instant::now();
+    let said = sagnac(dir.path(), &["history", "SN-1", "--store", "store", "--format", "json"]);
+    let took = began.elapsed();
+    assert_eq!(said.code, 0, "{}", said.err);
+    let history: Value = serde_json::from_str(&said.out).unwrap();
+    assert_eq!(history["charts"].as_array().unwrap().len(), quantities);
+    assert_eq!(history["charts"][quantities - 1]["points"][1]["value"], 0.6);
+    // Seconds where nothing is optimised; time that grows with the square would be minutes.
+    assert!(took.as_secs() < 60, "{took:?}");
 }
