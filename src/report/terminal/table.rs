@@ -57,10 +57,16 @@ pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Stri
     let cell = |row: &[Cell], c: usize| row.get(c).cloned().unwrap_or_default();
     let filled = |c: &usize| rows.iter().any(|row| !cell(row, *c).text.is_empty());
     let mut shown: Vec<usize> = (0..columns.len()).filter(filled).collect();
-    let needed = |c: usize| {
-        let head = columns.get(c).map_or(0, |column| column.head.width());
-        rows.iter().map(|row| cell(row, c).text.width()).max().unwrap_or(0).max(head)
-    };
+    // Looked at once: a line of a table must not look through all of it.
+    let widths: Vec<usize> = columns
+        .iter()
+        .enumerate()
+        .map(|(c, column)| {
+            let texts = rows.iter().filter_map(|row| row.get(c)).map(|cell| cell.text.width());
+            texts.max().unwrap_or(0).max(column.head.width())
+        })
+        .collect();
+    let needed = |c: usize| widths.get(c).copied().unwrap_or(0);
     let room = |shown: &[usize]| {
         let others: usize = shown.iter().filter(|c| **c != 0).map(|c| needed(*c) + GAP).sum();
         terminal.width.checked_sub(others + GAP)
