@@ -61,7 +61,7 @@ pub const TEMPLATES: &[(&str, &str)] = &[
 /// Largest template file that is read, bytes.
 const LARGEST: u64 = 4 << 20;
 
-/// Steps of the template engine that a page may take: a hundred times those of a page on a lot of a thousand units.
+/// Steps of the template engine that a page may take: those of lists with hundreds of thousands of rows.
 const MAX_STEPS: u64 = 50_000_000;
 
 /// Largest page, and most bytes of values that templates write for it, what they keep in variables included.
