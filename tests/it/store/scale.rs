@@ -105,6 +105,10 @@ fn a_history_takes_time_that_grows_with_its_quantities() {
     let history: Value = serde_json::from_str(&said.out).unwrap();
     assert_eq!(history["charts"].as_array().unwrap().len(), quantities);
     assert_eq!(history["charts"][quantities - 1]["points"][1]["value"], 0.6);
+    let began = Instant::now();
+    let said = sagnac(dir.path(), &["history", "SN-1", "--store", "store"]);
+    assert_eq!(said.code, 0, "{}", said.err);
+    let took = took.max(began.elapsed());
     // Seconds where nothing is optimised; time that grows with the square would be minutes.
-    assert!(took.as_secs() < 60, "{took:?}");
+    assert!(took.as_secs() < 120, "{took:?}");
 }
