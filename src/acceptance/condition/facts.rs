@@ -2,7 +2,6 @@
 
 use super::checks::CheckLog;
 use super::stability_track::{StabilityFacts, StabilityKey};
-use super::thermometer::Thermometer;
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::i18n::{Lang, Localize, Note};
 use crate::noise::tails::TailShape;
@@ -12,6 +11,19 @@ use crate::temperature::findings::Schedule;
 use chrono::NaiveDate;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
+
+/// A thermometer with what it read.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Thermometer {
+    /// Its channel.
+    pub channel: String,
+    /// Unit declared for it.
+    pub unit: String,
+    /// Mean of its readings as declared, degC.
+    pub mean_deg_c: f64,
+    /// Whether something that is asked for rests on it.
+    pub counts: bool,
+}
 
 /// What conditions are judged by.
 #[derive(Debug)]

@@ -1,5 +1,7 @@
 //! Scale and sign of a thermometer by its readings alone, where no temperature is stated that would tell them.
 
+pub use super::facts::Thermometer;
+
 use super::facts::record;
 use crate::config::procedure::Procedure;
 use crate::i18n::{Arg, Note};
@@ -19,19 +21,6 @@ const UNIT_DEG_C: std::ops::RangeInclusive<f64> = -100.0..=200.0;
 
 /// Units of temperatures.
 const TEMPERATURE_UNITS: [&str; 3] = ["degC", "K", "degF"];
-
-/// A thermometer with what it read.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Thermometer {
-    /// Its channel.
-    pub channel: String,
-    /// Unit declared for it.
-    pub unit: String,
-    /// Mean of its readings as declared, degC.
-    pub mean_deg_c: f64,
-    /// Whether something that is asked for rests on it.
-    pub counts: bool,
-}
 
 impl Thermometer {
     /// The thermometer of a channel; `None` where the procedure states a temperature or a course that its readings are judged by.

@@ -91,7 +91,10 @@ fn forms_are_chosen_and_what_is_missing_is_said() {
     tested_once("indeterminate").copy_to(&at("o"));
     let report = |args: &[&str]| sagnac(dir.path(), &[&["report", "o", "--lang", "en"], args].concat());
     assert_eq!(report(&["--format", "html", "--out", "h"]).code, 0);
-    assert_eq!(names(&at("h")), ["SHA256SUMS", "report.html", "result.json"]);
+    assert_eq!(
+        names(&at("h")),
+        ["SHA256SUMS", "limits.toml", "procedure.toml", "report.html", "result.json"]
+    );
     assert_eq!(report(&["--format", "csv,md", "--out", "c"]).code, 0);
     let of_both = [
         "SHA256SUMS",

@@ -68,7 +68,7 @@ fn slow_changes_that_were_taken_out_leave_random_walk_open() {
         let said = sagnac(folder.path(), &["analyze", "r.csv", "--out", "a", "--force"]);
         assert_eq!(said.code, 0, "{said:?}");
         let found = result(&folder.path().join("a"));
-        objections(measurand(&found, "rate_random_walk")).contains(&"slow_part_removed")
+        !objections(measurand(&found, "rate_random_walk")).is_empty()
     };
     assert!(!contradicted(&values), "as it was recorded");
     // A third-order polynomial fitted and subtracted: Legendre polynomials on the grid, made square to one another.
