@@ -142,8 +142,12 @@ fn a_temperature_with_the_wrong_sign_is_named_by_the_shape_of_the_schedule() {
             fields[2] = plain(sign * chamber);
             fields.push(format!("{chamber:.1}"));
         });
+        let named_column =
+            fs::read_to_string(&recording).unwrap().replace("temp_degC\n", "temp_degC,set_degC\n");
+        fs::write(&recording, named_column).unwrap();
         let r = run(folder.path(), &symmetric, &recording, &["--serial", "SN-0104"]);
         assert_eq!(found(&r, "temperature_course", "invalid"), named, "{sign}");
+        assert!(r["conditions"].as_array().unwrap().iter().any(|c| c["id"] == "temperature_course"), "{sign}");
     }
 }
 
