@@ -147,7 +147,10 @@ fn a_temperature_with_the_wrong_sign_is_named_by_the_shape_of_the_schedule() {
         fs::write(&recording, named_column).unwrap();
         let r = run(folder.path(), &symmetric, &recording, &["--serial", "SN-0104"]);
         assert_eq!(found(&r, "temperature_course", "invalid"), named, "{sign}");
-        assert!(r["conditions"].as_array().unwrap().iter().any(|c| c["id"] == "temperature_course"), "{sign}");
+        assert!(
+            r["conditions"].as_array().unwrap().iter().any(|c| c["id"] == "temperature_course"),
+            "{sign}"
+        );
     }
 }
 

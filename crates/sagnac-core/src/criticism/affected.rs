@@ -4,6 +4,9 @@
 pub(crate) const SLOW_NOISE: [&str; 4] =
     ["bias_instability", "rate_random_walk", "rate_random_walk_readout", "rate_ramp"];
 
+/// Fast noise that follows from a fit of the noise model.
+pub(super) const NOISE_OF_FIT: [&str; 3] = ["angle_random_walk", "angle_random_walk_white", "quantization"];
+
 /// Every measurand of a gyro at rest that follows from the noise of the record.
 pub(crate) const NOISE: [&str; 17] = [
     "angle_random_walk",

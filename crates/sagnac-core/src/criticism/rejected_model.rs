@@ -1,7 +1,7 @@
 //! Whether the record departs from the fitted model by more than chance and more than is harmless, at frequencies or averaging
 //! times that a term was read from.
 
-use super::affected::SLOW_NOISE;
+use super::affected::{NOISE_OF_FIT, SLOW_NOISE};
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
 use crate::message::{Arg, Note};
@@ -15,11 +15,29 @@ const MIN_RATIO: f64 = 1.25;
 const MIN_SHARE: f64 = 0.25;
 /// Share of the record from which an averaging time is one of slow noise.
 const SLOW_SHARE: f64 = 0.003;
+/// Probability of the misfit below which a record is described by no term, where none was accepted.
+const UNDESCRIBED_PROBABILITY: f64 = 1e-3;
 /// Ratio of the ends of a departure from which it is broad: a narrow one is a resonance beside the white noise.
 const BROAD: f64 = 2.0;
 
-/// Finds the departures.
+/// Finds the departures, or that nothing describes the record.
 pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
+    undescribed(gyro).map_or_else(|| departures(gyro), |finding| vec![finding])
+}
+
+/// A record without any accepted term that is not the sum of what their upper limits allow: no limit follows from such a fit.
+fn undescribed(gyro: &GyroEvidence) -> Option<Finding> {
+    let misfit = gyro.identification.misfit;
+    let nothing_judged = gyro.goodness.views.is_empty();
+    (nothing_judged && misfit.probability < UNDESCRIBED_PROBABILITY).then(|| Finding {
+        measurands: NOISE_OF_FIT.into_iter().chain(SLOW_NOISE).collect(),
+        holds: Holds::Nothing,
+        found: Note::new("criticism_found.undescribed").with("misfit", Arg::rounded(misfit.per_dof, 2)),
+        advice: Note::new("criticism_advice.rejected_model"),
+    })
+}
+
+fn departures(gyro: &GyroEvidence) -> Vec<Finding> {
     let failures = gyro.goodness.failures();
     let mut found = vec![];
     for judged in failures {
