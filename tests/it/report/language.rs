@@ -84,6 +84,7 @@ const LATIN: &[&str] = &[
     "gz",
     "GPS",
     "UTC",
+    "Z",
     "zip",
     "z",
     "bzip",
@@ -266,6 +267,8 @@ const LATIN: &[&str] = &[
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "signer.quantity",
+    "verify.of_unit",
     "prove.found.named",
     "prove.found.place",
     "prove.found.share",
