@@ -41,15 +41,17 @@ pub(super) fn sheet(folder: &Folder) -> Vec<Finding> {
         .filter(|own| !made.quantities.iter().any(|other| is_same(own, other)))
         .map(|q| q.id.as_str())
         .collect();
-    let whole = stated.units == made.units
-        && stated.lots == made.lots
-        && stated.model == made.model
-        && stated.procedure == made.procedure
-        && stated.conditions == made.conditions
-        && stated.curves == made.curves
-        && stated.temperature_curves == made.temperature_curves
-        && stated.results == made.results;
-    differing.extend((!whole).then_some("units, conditions, curves"));
+    let facts = [
+        ("units", stated.units == made.units),
+        ("lots", stated.lots == made.lots),
+        ("model", stated.model == made.model),
+        ("procedure", stated.procedure == made.procedure),
+        ("conditions", stated.conditions == made.conditions),
+        ("curves", stated.curves == made.curves),
+        ("temperature_curves", stated.temperature_curves == made.temperature_curves),
+        ("results", stated.results == made.results),
+    ];
+    differing.extend(facts.into_iter().filter(|(_, is_same)| !is_same).map(|(name, _)| name));
     match differing.as_slice() {
         [] => vec![Finding::Agrees(Note::new("verify.sheet").with("n", made.units))],
         names => vec![Finding::Differs(Note::new("verify.sheet_differs").with("names", names.join(", ")))],

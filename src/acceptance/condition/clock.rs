@@ -91,7 +91,7 @@ fn is_set(interval_s: f64) -> bool {
     let off = |usual: &f64| (digits / usual - 1.0).abs();
     let nearest = USUAL_DIGITS.iter().map(off).fold(f64::INFINITY, f64::min);
     let binary = [4.8, 9.6].iter().any(|b| off(b) < RATE_TOLERANCE);
-    binary || nearest < RATE_TOLERANCE || nearest > RATE_SLIP_TOLERANCE
+    binary || !(RATE_TOLERANCE..=RATE_SLIP_TOLERANCE).contains(&nearest)
 }
 
 #[cfg(test)]

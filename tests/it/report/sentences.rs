@@ -22,6 +22,8 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/procedure/guide.rs", "the guide is an English document"),
     ("src/config/procedure/schema.rs", "the schema is English"),
     ("crates/sagnac-core/src/measurand/", "descriptions of measurands for the schema and the guide"),
+    ("crates/sagnac-core/src/evidence/test_evidence.rs", "evidence for tests"),
+    ("crates/sagnac-ingest/src/named_file.rs", "the fault as the library says it; the program translates it"),
     ("src/config/syntax.rs", "what the TOML parser says, to be recognised"),
     ("crates/sagnac-core/src/temperature/compensation.rs", "declarations of a header in C"),
     ("src/report/methods.rs", "formulas and names of sources"),

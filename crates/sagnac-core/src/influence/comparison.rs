@@ -100,6 +100,31 @@ pub struct Beside {
     pub others: Vec<(usize, Nuisance)>,
 }
 
+/// Time of the rows about their middle, from −1 to 1.
+fn scaled_time(cut: &Cut) -> DVector<f64> {
+    let (n, times) = (cut.rows.len(), &cut.rows.mid_s);
+    let middle = times.iter().sum::<f64>() / n as f64;
+    let length = times.iter().fold(0.0, |m: f64, t| m.max((t - middle).abs())).max(f64::MIN_POSITIVE);
+    DVector::from_fn(n, |i, _| (times[i] - middle) / length)
+}
+
+/// A column for every state: 1 in its rows.
+fn indicators(states: &States, cut: &Cut) -> Vec<DVector<f64>> {
+    let of = |s| DVector::from_fn(cut.rows.len(), |i, _| f64::from(states.of[cut.of[i]] == Some(s)));
+    (0..states.list.len()).map(of).collect()
+}
+
+/// The drive along an axis in every interval; 0 where it is off.
+fn drive_by_interval(
+    found: &Intervals,
+    states: &States,
+    axis: usize,
+    drive: &dyn Fn(f64) -> f64,
+) -> Vec<f64> {
+    let at = |k: usize| if states.is_off(k) { 0.0 } else { drive(found.list[k].levels[axis]) };
+    (0..found.list.len()).map(at).collect()
+}
+
 /// Evaluates a channel. `None` without an interval of both kinds.
 pub fn evaluate(
     blocks: &Blocks,
@@ -115,10 +140,7 @@ pub fn evaluate(
     if states.list.is_empty() || states.of.iter().all(Option::is_some) {
         return None;
     }
-    let middle = cut.rows.mid_s.iter().sum::<f64>() / n as f64;
-    let length =
-        cut.rows.mid_s.iter().fold(0.0, |m: f64, t| m.max((t - middle).abs())).max(f64::MIN_POSITIVE);
-    let time = DVector::from_fn(n, |i, _| (cut.rows.mid_s[i] - middle) / length);
+    let time = scaled_time(&cut);
     // A drift is told from the influence by what comes back.
     let drift = found.alternations() >= 1;
     let base = |extra: &[DVector<f64>]| {
@@ -136,11 +158,8 @@ pub fn evaluate(
     let (x, first) = base(&scaled);
     let (line, scatter) = solve(&cut, &states, &x)?;
     let (known, components) = (known(&cut), noise(&cut, &states));
-    let of_intervals = |axis: &usize| -> Vec<f64> {
-        let at = |k: usize| if states.is_off(k) { 0.0 } else { drive(found.list[k].levels[*axis]) };
-        (0..found.list.len()).map(at).collect()
-    };
-    let changes = Changes::new(blocks, found, test.settling_s, used.iter().map(of_intervals).collect());
+    let of_intervals = used.iter().map(|axis| drive_by_interval(found, &states, *axis, &drive)).collect();
+    let changes = Changes::new(blocks, found, test.settling_s, of_intervals);
     let own = levels(&states);
     let courses = Courses { cut: &cut, changes: &changes, known: &known, components: &components, own };
     let response = courses.find(&x);
@@ -156,10 +175,7 @@ pub fn evaluate(
     let plain = by_means(&cut, &x, found.list.len()).map_or(vec![], |all| per(&all));
     let by_means = plain.into_iter().zip(&per_unit).map(|(means, model)| ByMeans { means, model: *model });
     let by_means = by_means.collect();
-    let indicators: Vec<DVector<f64>> = (0..states.list.len())
-        .map(|s| DVector::from_fn(n, |i, _| f64::from(states.of[cut.of[i]] == Some(s))))
-        .collect();
-    let (x, first) = base(&indicators);
+    let (x, first) = base(&indicators(&states, &cut));
     let (each, _) = solve(&cut, &states, &x)?;
     let of_levels = coefficients(&x, &each);
     let shift = |(k, (a, level)): (usize, &(usize, f64))| Shift {

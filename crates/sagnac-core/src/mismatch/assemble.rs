@@ -100,10 +100,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let columns = columns::records(problem, best, &found.named, &recorded.read_from);
     let Noticeable { sizes, not_computed } = match verdict(&findings) {
         MismatchVerdict::UnknownMismatch => Noticeable::default(),
-        _ => {
-            let kinds: Vec<&'static str> = found.named.iter().map(|n| n.effect.kind()).collect();
-            noticeable::sizes(problem, selection, &kinds, options)
-        }
+        _ => noticeable::sizes(problem, selection, &kinds(&found.named), options),
     };
     let added = contribution::correction(best, spectra);
     // No claim can state a course of no kind.
@@ -154,6 +151,10 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let correction = correction.map(|c| on_rows(&c, problem));
     let skewness = departures::skewness_shown(spectra, best);
     Outcome { explanation, correction, augmented, skewness, alternatives, figures }
+}
+
+fn kinds(named: &[Named]) -> Vec<&'static str> {
+    named.iter().map(|n| n.effect.kind()).collect()
 }
 
 /// A series with another one added, where there is one; of none with another, that one.

@@ -20,7 +20,7 @@ pub(crate) fn map_items<S: Sync, T: Send + Sync>(items: &[S], value: impl Fn(&S)
 }
 
 fn for_each(count: usize, task: &(dyn Fn(usize) + Sync)) {
-    (0..count).into_par_iter().for_each(|i| task(i));
+    (0..count).into_par_iter().for_each(task);
 }
 
 #[cfg(test)]

@@ -107,7 +107,7 @@ impl Course<'_> {
         // A single jump raises the variance of long means, and hardly that of two blocks.
         ratios.first().filter(|r| r.1 > 1.0)?;
         let largest = ratios.into_iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
-        (largest.1 > SMOOTHED_RATIO).then(|| largest.0 as f64 * self.block_s)
+        (largest.1 > SMOOTHED_RATIO).then_some(largest.0 as f64 * self.block_s)
     }
 }
 
