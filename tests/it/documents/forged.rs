@@ -63,7 +63,8 @@ fn a_forged_pass_does_not_agree_with_its_own_recording() {
     let at = dir.path();
     let recording = sample("fail");
     let unchanged: fn(&mut Value) = |_| {};
-    let changes: [(&str, fn(&mut Value)); 5] = [
+    type Change = fn(&mut Value);
+    let changes: [(&str, Change); 5] = [
         ("plain", unchanged),
         ("options", |r| r["inputs"]["options"] = "other".into()),
         ("no-inputs", |r| r["inputs"] = json!({})),
