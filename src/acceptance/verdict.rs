@@ -41,7 +41,7 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
         value: estimate.value,
         unit: estimate.unit.to_owned(),
         interval: estimate.interval95(),
-        common_standard_uncertainty: estimate.value.map(|_| estimate.common.abs()),
+        common_standard_uncertainty: estimate.value.map(|_| estimate.common),
         identifiable: estimate.value.is_some(),
         upper_limit: estimate.upper_limit,
         most_likely: estimate.most_likely,

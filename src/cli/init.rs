@@ -207,7 +207,7 @@ fn written(
 /// The range of temperature that the bias followed, degC, where it did.
 fn swept(record: &RunRecord) -> Option<(f64, f64)> {
     let mut objections = record.measurands.iter().flat_map(|m| &m.objections);
-    let found = &objections.find(|o| o.check == temperature::CHECK)?.found;
+    let found = &objections.find(|o| o.check == temperature::CHECK_ID)?.found;
     let end = |name: &str| found.args.get(name)?.number();
     Some((end("low")?, end("high")?))
 }

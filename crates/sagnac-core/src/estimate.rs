@@ -192,7 +192,7 @@ pub struct Estimate {
     pub most_likely: Option<f64>,
     /// Bound from below, where the value is `None`.
     pub lower_limit: Option<LowerLimit>,
-    /// What contradicts it: it then decides no more than what still holds.
+    /// Contradictions that checks found: with one of them the estimate decides no more than what still holds.
     pub objections: Vec<Objection>,
     /// How it was obtained, short and stable: `whittle`, `overlapping_allan`, ...
     pub method: &'static str,
@@ -268,7 +268,7 @@ impl Estimate {
     /// The estimate with standard uncertainties that all tests on the same equipment have in common, such as that of the table.
     #[must_use]
     pub fn common(mut self, standard: &[f64]) -> Self {
-        self.common = standard.iter().map(|u| u * u).sum::<f64>().sqrt();
+        self.common = standard.iter().fold(0.0, |sum, u| sum + u * u).sqrt();
         self
     }
 

@@ -44,9 +44,9 @@ pub type OfComparison = for<'a> fn(&ComparisonEvidence<'a>) -> Vec<Finding>;
 /// Examination of a series of switchings-on.
 pub type OfRuns = fn(&Repeatability) -> Vec<Finding>;
 
-/// Checks of a gyro at rest, over temperature and from switching on, in the order in which they are told.
+/// Checks of a gyro at rest, over temperature and from switching on, in the order of their reports.
 pub static OF_GYRO: &[Check<OfGyro>] = &[
-    Check { id: temperature::CHECK, examine: temperature::examine },
+    Check { id: temperature::CHECK_ID, examine: temperature::examine },
     Check { id: "rate_rounding", examine: rate_rounding::examine },
     Check { id: "slow_part_removed", examine: slow_part_removed::examine },
     Check { id: "rejected_model", examine: rejected_model::examine },
@@ -63,7 +63,7 @@ pub static OF_COMPARISON: &[Check<OfComparison>] = &[Check { id: "response", exa
 /// Checks of a series of switchings-on.
 pub static OF_RUNS: &[Check<OfRuns>] = &[Check { id: "copied_run", examine: copied_run::examine }];
 
-/// What checks contradict; `ask` hands the evidence to one of them.
+/// Objections of all checks; `ask` hands the evidence to one of them.
 pub fn objections<F: Copy>(checks: &[Check<F>], ask: impl Fn(F) -> Vec<Finding>) -> Vec<Objection> {
     let of = |check: &Check<F>| {
         let id = check.id;
@@ -72,7 +72,7 @@ pub fn objections<F: Copy>(checks: &[Check<F>], ask: impl Fn(F) -> Vec<Finding>)
     checks.iter().flat_map(of).collect()
 }
 
-/// What is contradicted of a gyro at rest, over temperature or from switching on. Examined once, when all evidence is there.
+/// Objections to a gyro at rest, over temperature or from switching on. Examined once, when all evidence is there.
 pub fn of_gyro(gyro: &GyroEvidence) -> &[Objection] {
     gyro.objections.get_or_init(|| objections(OF_GYRO, |examine| examine(gyro)))
 }

@@ -18,7 +18,7 @@ const SLOW_SHARE: f64 = 0.003;
 /// Probability of the misfit below which a record is described by no term, where none was accepted.
 const UNDESCRIBED_PROBABILITY: f64 = 1e-3;
 /// Ratio of the ends of a departure from which it is broad: a narrow one is a resonance beside the white noise.
-const BROAD: f64 = 2.0;
+const MIN_RATIO_OF_BROAD: f64 = 2.0;
 
 /// Finds the departures, or that nothing describes the record.
 pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
@@ -65,7 +65,7 @@ fn departures(gyro: &GyroEvidence) -> Vec<Finding> {
             continue;
         }
         let mut measurands = vec![];
-        if high >= BROAD * low && white_share(gyro, middle, by_frequency) >= MIN_SHARE {
+        if high >= MIN_RATIO_OF_BROAD * low && white_share(gyro, middle, by_frequency) >= MIN_SHARE {
             measurands.push("angle_random_walk");
         }
         if tau_s >= SLOW_SHARE * gyro.usable_s() {

@@ -10,17 +10,17 @@ use crate::message::{Arg, Note};
 use nalgebra::{DMatrix, DVector};
 
 /// Id of this check.
-pub const CHECK: &str = "temperature";
+pub const CHECK_ID: &str = "temperature";
 /// Range of temperature of a test at rest from which its bias is looked at, degC.
 pub const MIN_RANGE_DEG_C: f64 = 10.0;
 /// Parts of the recording that means are taken over.
-const PARTS: usize = 48;
+const PARTS_OF_RECORDING: usize = 48;
 /// Fewest means that tell a course over temperature.
 const MIN_PARTS: usize = 12;
 /// Share of the variance of the means from which the bias counts as following.
 const MIN_SHARE: f64 = 0.5;
 
-/// What a parabola over temperature makes of the means.
+/// A parabola over temperature through the means.
 struct Followed {
     share: f64,
     slope: f64,
@@ -36,7 +36,7 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
         return vec![];
     };
     let found = course.temperatures.iter().filter_map(|(name, temperature)| {
-        let followed = followed(&course.beside(temperature, PARTS))?;
+        let followed = followed(&course.beside(temperature, PARTS_OF_RECORDING))?;
         (followed.high - followed.low >= MIN_RANGE_DEG_C && followed.share >= MIN_SHARE)
             .then_some((name, followed))
     });
@@ -81,7 +81,7 @@ mod tests {
     #[test]
     fn a_bias_that_follows_is_told_from_one_that_does_not() {
         let course = |of: fn(f64, usize) -> f64| -> Vec<Pair> {
-            (0..PARTS)
+            (0..PARTS_OF_RECORDING)
                 .map(|i| {
                     let temperature = 30.0 + 20.0 * (i as f64 / 6.0).sin();
                     Pair { temperature, rate: of(temperature, i) }

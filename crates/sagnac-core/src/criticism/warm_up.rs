@@ -18,7 +18,7 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
     contradiction.map(of).into_iter().collect()
 }
 
-/// What was found and what to do; `None` where nothing contradicts the decays.
+/// The contradiction and the advice; `None` where nothing contradicts the decays.
 fn contradiction(found: &WarmUpFindings) -> Option<(Note, Note)> {
     if let Some(smoothed_s) = found.smoothed_s {
         let said = Note::new("criticism_found.smoothed").with("seconds", Arg::figures(smoothed_s, 2));

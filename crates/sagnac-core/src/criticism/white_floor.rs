@@ -11,7 +11,7 @@ use crate::noise::data::NoiseType;
 use std::f64::consts::PI;
 
 /// Lengths of the memory of an output that a record must have for its white level to be read.
-const MEMORIES: f64 = 50.0;
+const MIN_LENGTH_IN_MEMORIES: f64 = 50.0;
 /// Share of the Allan variance that white noise must have at some averaging time to be seen.
 const MIN_SHARE: f64 = 0.5;
 
@@ -32,7 +32,7 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
             .with("memory_s", Arg::rounded(shortest_s, 2))
             .with("length_s", Arg::rounded(gyro.usable_s(), 3)),
         advice: Note::new("criticism_advice.white_floor")
-            .with("length_s", Arg::rounded(MEMORIES * shortest_s.max(gyro.tau0_s), 2)),
+            .with("length_s", Arg::rounded(MIN_LENGTH_IN_MEMORIES * shortest_s.max(gyro.tau0_s), 2)),
     }]
 }
 

@@ -1,4 +1,4 @@
-//! What contradicts an estimate.
+//! Contradictions of an estimate, found by checks.
 
 use crate::message::Note;
 

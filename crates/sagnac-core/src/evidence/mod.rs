@@ -82,7 +82,7 @@ pub struct GyroEvidence {
     /// Step of a rate that was rounded without its remainder being carried on, deg/h, where noise does not carry it from step
     /// to step.
     pub forgotten_step_deg_h: Option<f64>,
-    /// What checks contradict, once it was asked for (`criticism::of_gyro`).
+    /// Objections of the checks, empty until they are asked for (`criticism::of_gyro`).
     pub objections: OnceLock<Vec<Objection>>,
 }
 

@@ -16,11 +16,13 @@ use crate::rate_table::blocks::Blocks;
 use nalgebra::{DMatrix, DVector};
 
 /// Probability by chance, over all time constants, from which a response counts as seen.
-const SEEN: f64 = 2e-3;
+const MAX_CHANCE_OF_RESPONSE: f64 = 2e-3;
 /// Share of a step still to come at the end of an interval up to which the response has ended there.
-const ENDED: f64 = 0.05;
-/// Ratio of neighbouring time constants in the search, and in its refinement.
-const RATIOS: (f64, f64) = (2.0, 1.2);
+const MAX_REMAINING_SHARE: f64 = 0.05;
+/// Ratio of neighbouring time constants in the search.
+const SEARCH_RATIO: f64 = 2.0;
+/// Ratio of neighbouring time constants about the best one.
+const REFINEMENT_RATIO: f64 = 1.2;
 /// Longest time constant, in lengths of the longest interval.
 const LONGEST: f64 = 8.0;
 /// Loss of twice the log-likelihood up to which a time constant comes into question with 95 %.
@@ -40,12 +42,12 @@ pub struct Response {
 impl Response {
     /// True where the response goes on at the end of an interval, so that the settled change is extrapolated.
     pub fn goes_on(&self) -> bool {
-        self.remaining > ENDED
+        self.remaining > MAX_REMAINING_SHARE
     }
 
     /// Time after a change of level by which the response has ended, s.
     pub fn waiting_s(&self) -> f64 {
-        -ENDED.ln() * self.time_constant_s
+        -MAX_REMAINING_SHARE.ln() * self.time_constant_s
     }
 }
 
@@ -151,10 +153,11 @@ impl Courses<'_> {
         lengths.sort_ascending();
         let low = *lengths.get(lengths.len() / 2)?;
         let high = LONGEST * self.changes.lengths().fold(0.0, f64::max);
-        let count = ((high / low).ln() / RATIOS.0.ln()).ceil().max(1.0) as i32;
-        let tried: Vec<Tried> = (0..=count).filter_map(|i| self.tried(x, low * RATIOS.0.powi(i))).collect();
+        let count = ((high / low).ln() / SEARCH_RATIO.ln()).ceil().max(1.0) as i32;
+        let tried: Vec<Tried> =
+            (0..=count).filter_map(|i| self.tried(x, low * SEARCH_RATIO.powi(i))).collect();
         let all = tried.len() as f64;
-        if !tried.iter().any(|t| t.by_chance * all < SEEN) {
+        if !tried.iter().any(|t| t.by_chance * all < MAX_CHANCE_OF_RESPONSE) {
             return None;
         }
         let best = self.refined(x, tried)?;
@@ -171,9 +174,11 @@ impl Courses<'_> {
                 .map(|t| t.time_constant_s)
         };
         let middle = best(&tried)?;
-        let steps = (RATIOS.0.ln() / RATIOS.1.ln()).floor() as i32;
+        let steps = (SEARCH_RATIO.ln() / REFINEMENT_RATIO.ln()).floor() as i32;
         tried.extend(
-            (-steps..=steps).filter(|i| *i != 0).filter_map(|i| self.tried(x, middle * RATIOS.1.powi(i))),
+            (-steps..=steps)
+                .filter(|i| *i != 0)
+                .filter_map(|i| self.tried(x, middle * REFINEMENT_RATIO.powi(i))),
         );
         tried.sort_descending_by(|a| a.twice_log_likelihood);
         let top = tried.first()?.twice_log_likelihood;
