@@ -1,6 +1,5 @@
 //! A periodic disturbance with harmonics, of one cause; or one that repeats with the phase of a recorded ramp.
 
-use crate::numeric::order::SortByNumber;
 use crate::effect::shared::periodogram::LineGains;
 use crate::effect::shared::phase::Phase;
 use crate::effect::shared::polynomial::{Scale, sum};
@@ -12,6 +11,7 @@ use crate::effect::{
     Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
     list, number, text,
 };
+use crate::numeric::order::SortByNumber;
 use crate::numeric::range::Bounds;
 
 pub struct Comb;

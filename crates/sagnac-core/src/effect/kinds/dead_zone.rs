@@ -1,7 +1,7 @@
 //! No or reduced response around zero input rate.
 
-use crate::numeric::order::SortByNumber;
 use crate::effect::shared::search::{best_of, fast_level, log_grid, peaks};
+use crate::numeric::order::SortByNumber;
 
 use crate::effect::sizing::numbers;
 use crate::effect::{

@@ -1,6 +1,5 @@
 //! The gyro moved: another projection of the Earth rate from some time on.
 
-use crate::numeric::order::{SortByNumber, SortNumbers};
 use super::earth_rate_projection::EarthRateProjection;
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::step::{instants, sizing, step};
@@ -8,6 +7,7 @@ use crate::effect::{
     ClaimedMean, Domain, Drivers, Earth, Family, Later, MeanModel, Param, Place, Regressors, Resolution,
     SearchContext, Sizing, Starts, Values, number,
 };
+use crate::numeric::order::{SortByNumber, SortNumbers};
 use crate::numeric::range::Bounds;
 use crate::units::EARTH_RATE_DEG_H;
 use std::f64::consts::PI;

@@ -1,6 +1,5 @@
 //! A narrow-band disturbance of finite coherence.
 
-use crate::numeric::order::SortByNumber;
 use super::unobserved_driver::UnobservedDriver;
 use crate::effect::shared::search::{log_grid, peaks};
 use crate::effect::{
@@ -8,6 +7,7 @@ use crate::effect::{
     Value, Values, number,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
+use crate::numeric::order::SortByNumber;
 use crate::numeric::range::Bounds;
 use std::f64::consts::PI;
 

@@ -1,10 +1,10 @@
 //! Samples that repeat the one before them. They have no kind of their own in the format of explanations.
 
-use crate::numeric::order::SortNumbers;
 use crate::effect::{
     Detection, Detector, Domain, Drivers, Param, Place, Reported, RowDetector, Rows, RowsFound, Samples,
     Value, Values, list, number,
 };
+use crate::numeric::order::SortNumbers;
 use crate::numeric::range::{Bounds, ends};
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;

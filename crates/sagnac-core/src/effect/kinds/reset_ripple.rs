@@ -1,12 +1,12 @@
 //! A contribution that is periodic in the sensed angle.
 
-use crate::numeric::order::SortByNumber;
 use crate::effect::shared::search::{best_of, fast_level, peaks};
 use crate::effect::shared::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
 use crate::numeric::optimize::parabolic_peak;
+use crate::numeric::order::SortByNumber;
 use crate::numeric::range::{Bounds, ends};
 use rayon::prelude::*;
 use sagnac_fft::{Complex, Fft, complex_forward};

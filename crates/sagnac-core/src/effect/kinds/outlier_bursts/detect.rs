@@ -3,9 +3,9 @@
 //! Windows of 1 to 512 samples are compared with the level of the noise on both sides of them; a level that changes, a
 //! wrong level of the claim and steps of the output make no burst.
 
-use crate::numeric::order::SortByNumber;
 use crate::effect::{Drivers, FlatResidual, Outliers};
 use crate::numeric::optimize::bisect;
+use crate::numeric::order::SortByNumber;
 use crate::numeric::order::{NORMAL_MEDIAN, upper_median};
 use crate::numeric::range::ends;
 use crate::numeric::special::f_normal;

@@ -4,13 +4,13 @@
 //! its paths, beside the slow noise of the hypothesis. A process with the same spectrum gains by its spectrum alone; only
 //! what the chain gains beyond that tells two levels from it.
 
-use crate::numeric::order::SortNumbers;
 use super::chain::{Chain, Deviations};
 use super::dwell::{Visits, slope, spread, visits};
 use super::path::Paths;
 use crate::effect::{Background, FlatResidual, averages};
 use crate::numeric::cosine::{dct2, inverse_dct2};
 use crate::numeric::least_squares::Normal;
+use crate::numeric::order::SortNumbers;
 use crate::numeric::order::upper_median;
 
 /// Averages that are looked at in one length, at most and at least.
