@@ -7,6 +7,7 @@ pub mod allan_intervals;
 pub mod bench;
 pub mod comparison;
 pub mod coverage;
+pub mod disturbances;
 pub mod edges;
 pub mod false_lines;
 pub mod goodness_of_fit;
@@ -57,6 +58,7 @@ pub static STUDIES: &[&Study] = &[
     &edges::SMALL_RATES,
     &edges::TEMPERATURE,
     &edges::TILTS,
+    &disturbances::STUDY,
     &identification::STUDY,
     &identification::sample_rates::STUDY,
     &identification::flicker_or_markov::STUDY,

@@ -75,12 +75,14 @@ pub struct Truth {
     pub limit: Option<Limit>,
     /// Half width of the 95 % interval of an oracle that knows everything but this value.
     pub oracle: Option<f64>,
+    /// The recording shows this value or more: an upper bound may lie anywhere above.
+    pub at_least: bool,
 }
 
 impl Truth {
     /// A truth without a limit and without an oracle.
     pub fn new(id: impl Into<String>, value: f64) -> Truth {
-        Truth { id: id.into(), channel: None, value, limit: None, oracle: None }
+        Truth { id: id.into(), channel: None, value, limit: None, oracle: None, at_least: false }
     }
 
     /// With a limit.
@@ -115,6 +117,7 @@ impl Truth {
         match excess {
             e if e > tolerance => Standing::Bad,
             e if e < -tolerance => Standing::Good,
+            _ if self.at_least => Standing::Bad,
             _ => Standing::AtLimit,
         }
     }
@@ -175,6 +178,8 @@ pub struct Case {
     pub records: usize,
     /// Draws the unit and its recording of a seed. Every draw has a truth for each of `ids`.
     pub draw: Draw,
+    /// The program may refuse the recording, and so state nothing.
+    pub may_be_refused: bool,
 }
 
 /// A reason why an edge does not apply to some measurands.

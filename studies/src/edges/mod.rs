@@ -76,7 +76,10 @@ fn cases(family: &str) -> Vec<Case> {
 }
 
 /// Tests the files of a folder by the library.
-fn by_the_library(simulated: &Simulated, folder: &Path) -> Result<Vec<MeasurandRecord>, String> {
+///
+/// # Errors
+/// What the library refuses, as text.
+pub fn by_the_library(simulated: &Simulated, folder: &Path) -> Result<Vec<MeasurandRecord>, String> {
     let tested = || {
         let mut procedure = Procedure::load(folder.join("p.toml"))?;
         if simulated.is_limited() {

@@ -117,7 +117,7 @@ impl Family {
             let bench = entry.bench;
             let draw: Draw = Box::new(move |seed| judged.of(bench.simulated(&asked, seed)));
             let records = entry.records.unwrap_or(table.records);
-            Ok(Case { name: entry.name, edges: entry.edges, ids, records, draw })
+            Ok(Case { name: entry.name, edges: entry.edges, ids, records, draw, may_be_refused: false })
         };
         let cases = table.case.into_iter().map(case).collect::<Result<_, String>>()?;
         Ok(Family { name: table.name, ids: table.measurands, cases, exempt })

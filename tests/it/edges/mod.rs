@@ -49,6 +49,12 @@ fn every_measurand_stands_in_one_family_and_every_family_is_complete() {
 }
 
 #[test]
+fn every_measurand_stands_in_a_row_of_every_disturbance_or_with_a_reason() {
+    let gaps = sagnac_studies::disturbances::gaps(MEASURANDS.iter().map(|m| m.id));
+    assert!(gaps.is_empty(), "neither a case nor a reason why there is none: {gaps:#?}");
+}
+
+#[test]
 fn intervals_hold_at_the_edges_in_a_short_study() {
     if !crate::support::long::wanted("intervals_hold_at_the_edges_in_a_short_study") {
         return;
