@@ -177,8 +177,7 @@ fn low_pass(x: &[f64], cut_off: f64, qualities: &[f64]) -> Vec<f64> {
     let k = (PI * cut_off).tan();
     for quality in qualities {
         let scale = 1.0 / (1.0 + k / quality + k * k);
-        let (b, a1, a2) =
-            (k * k * scale, 2.0 * (k * k - 1.0) * scale, (1.0 - k / quality + k * k) * scale);
+        let (b, a1, a2) = (k * k * scale, 2.0 * (k * k - 1.0) * scale, (1.0 - k / quality + k * k) * scale);
         let start = y.first().copied().unwrap_or(0.0);
         let ([mut x1, mut x2], [mut y1, mut y2]) = ([start; 2], [start; 2]);
         for value in &mut y {

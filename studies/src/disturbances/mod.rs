@@ -1,0 +1,214 @@
+//! How every measurand behaves beside what its model lacks: the units of the edges, disturbed.
+//!
+//! The kinds of disturbances are a table, `studies/cases/disturbances.toml`. A kind says of which measurands the recording
+//! shows the truth no longer, and why; of which it shows at least the truth; all others keep theirs.
+
+mod transform;
+
+use crate::bench::noise_source::NoiseSource;
+use crate::edges::case::{Case as Unit, Edge, Family, Simulated, Standing, Truth};
+use crate::edges::tally::{self, Tally};
+use crate::edges::{FAMILIES, by_the_library};
+use crate::study::{Asked, Case, Row, Study};
+use serde::Deserialize;
+use std::sync::LazyLock;
+use transform::{Columns, Disturbance, Stimulus};
+
+/// Every measurand beside every disturbance.
+pub static STUDY: Study = Study {
+    id: "disturbances",
+    title: "Every measurand, disturbed",
+    method: "The units that the [edges](edges.md) test alone, with a disturbance that no model of theirs names. Limits lie \
+        exactly at the truth of the undisturbed unit where the edges have them there. Asked: what is stated holds the truth \
+        in .93 to .99 (bounds may hold it always), and a unit at its limit passes, and fails, in at most 5 %. A recording that \
+        the program refuses counts as one of which nothing is stated. Where a disturbance adds to a measurand, the recording \
+        shows at least the truth: only passes are wrong. The table of disturbances, and why a measurand has no row: \
+        `studies/cases/disturbances.toml`.",
+    records: 40,
+    cases,
+};
+
+/// Seed of a disturbance beside that of the unit.
+const OF_DISTURBANCE: u64 = 0xd157;
+
+static TABLE: LazyLock<Table> = LazyLock::new(|| {
+    toml::from_str(include_str!("../../cases/disturbances.toml"))
+        .unwrap_or_else(|wrong| panic!("the table of disturbances: {wrong}"))
+});
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Table {
+    stimulus: Vec<StimulusOf>,
+    kind: Vec<Kind>,
+}
+
+/// A stimulus, by the measurand that tells what the output makes of it.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct StimulusOf {
+    /// Any truth of this measurand.
+    measurand: String,
+    column: String,
+    #[serde(default = "first_power")]
+    power: i32,
+    /// Output per unit of the stimulus where it is not the truth of the measurand, deg/h.
+    effect: Option<f64>,
+}
+
+fn first_power() -> i32 {
+    1
+}
+
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Kind {
+    name: String,
+    /// Measurands that the disturbance adds to.
+    #[serde(default)]
+    adds_to: Vec<String>,
+    /// Measurands without a row.
+    absent: Vec<Absent>,
+    /// Units that it is tried on; without it all.
+    units: Option<Vec<String>>,
+    disturbance: Vec<Disturbance>,
+}
+
+/// Measurands whose truth the disturbed recording does not show, or that have nothing to disturb.
+#[derive(Deserialize)]
+#[serde(deny_unknown_fields)]
+struct Absent {
+    measurands: Vec<String>,
+    reason: String,
+}
+
+impl Kind {
+    /// Edge of the units: alone, or beside the other effects of the family where these are the disturbance.
+    fn edge(&self) -> Edge {
+        let other = self.disturbance.contains(&Disturbance::OtherEffect);
+        if other { Edge::BesideLarge } else { Edge::Alone }
+    }
+
+    fn absent(&self, id: &str) -> Option<&str> {
+        let named = self.absent.iter().find(|a| a.measurands.iter().any(|m| m == id));
+        named.map(|a| a.reason.as_str())
+    }
+
+    fn tries(&self, unit: &Unit) -> bool {
+        let named = self.units.as_ref().is_none_or(|units| units.contains(&unit.name));
+        named && unit.edges.contains(&self.edge()) && !self.judged(unit).is_empty()
+    }
+
+    fn judged(&self, unit: &Unit) -> Vec<String> {
+        unit.ids.iter().filter(|id| self.absent(id).is_none()).cloned().collect()
+    }
+
+    fn units(&self) -> impl Iterator<Item = &'static Unit> {
+        FAMILIES.iter().flat_map(|f| &f.cases).filter(|unit| self.tries(unit))
+    }
+
+    /// Truths of the disturbed recording.
+    fn left(&self, truths: Vec<Truth>) -> Vec<Truth> {
+        let kept = truths.into_iter().filter(|t| self.absent(&t.id).is_none());
+        kept.map(|t| Truth { at_least: self.adds_to.contains(&t.id), oracle: None, ..t }).collect()
+    }
+}
+
+fn disturbed(kind: &'static Kind, by: Disturbance, unit: &'static Unit) -> Unit {
+    let draw = move |seed| {
+        let Simulated { csv, procedure, truths } = (unit.draw)(seed);
+        let mut source = NoiseSource::new(seed ^ OF_DISTURBANCE);
+        let csv = Columns::read(&csv)
+            .and_then(|columns| columns.disturbed(by, stimulus(&truths), &mut source))
+            .unwrap_or_else(|| panic!("{}: nothing to disturb by {by:?}", unit.name))
+            .text();
+        Simulated { csv, procedure, truths: kind.left(truths) }
+    };
+    Unit {
+        name: format!("{}: {}", named(kind, by), unit.name),
+        edges: vec![],
+        ids: kind.judged(unit),
+        records: unit.records,
+        draw: Box::new(draw),
+        may_be_refused: true,
+    }
+}
+
+fn stimulus(truths: &[Truth]) -> Option<Stimulus<'static>> {
+    TABLE.stimulus.iter().find_map(|s| {
+        let truth = truths.iter().find(|t| t.id == s.measurand)?;
+        Some(Stimulus { column: &s.column, power: s.power, effect: s.effect.unwrap_or(truth.value) })
+    })
+}
+
+fn named(kind: &Kind, by: Disturbance) -> String {
+    let how = match by {
+        Disturbance::OtherEffect => return kind.name.clone(),
+        Disturbance::Response { tau_s } => format!("{tau_s} s"),
+        Disturbance::Resonance { at, quality } => format!("at {at} of the rate, quality {quality}"),
+        Disturbance::Filter { order, cut_off } => format!("order {order}, cut-off {cut_off} of the rate"),
+        Disturbance::Rounded { noise_steps } => format!("noise of {noise_steps} steps"),
+        Disturbance::Thermometer { step } => format!("{step} degC"),
+        Disturbance::Jump { sigmas, .. } => format!("{sigmas} σ of a sample"),
+        Disturbance::Telegraph { sigmas, dwell } => format!("{sigmas} σ of a sample, {dwell} samples"),
+        Disturbance::DriftRemoved { share } => format!("moving mean over {share} of the record"),
+    };
+    format!("{}, {how}", kind.name)
+}
+
+fn cases() -> Vec<Case> {
+    let each = |kind: &'static Kind| {
+        let of = move |by: &'static Disturbance| kind.units().map(move |unit| disturbed(kind, *by, unit));
+        kind.disturbance.iter().flat_map(of)
+    };
+    let case = |unit: Unit| {
+        Case::new(unit.name.clone(), move |records, seed| {
+            let records = records.min(unit.records as u64) as usize;
+            let tallies = tally::run(&unit, records, 1_000_000 * seed, &by_the_library);
+            tallies.iter().flat_map(rows).collect()
+        })
+    };
+    TABLE.kind.iter().flat_map(each).map(case).collect()
+}
+
+fn rows(t: &Tally) -> Vec<Row> {
+    let share =
+        |claim: &str, asked, hits: usize, of: usize| Row::share(&t.id, claim, asked, hits as u64, of as u64);
+    let withheld = t.records - t.given();
+    let mut rows = vec![share("nothing is stated", Asked::Nothing, withheld, t.records)];
+    if t.given() > 0 {
+        let asked = if t.bounded == 0 { Asked::Between(0.93, 0.99) } else { Asked::AtLeast(0.93) };
+        rows.push(share("what is stated holds the truth", asked, t.held, t.given()));
+    }
+    if matches!(t.standing, Standing::AtLimit | Standing::Bad) {
+        rows.push(share("false passes", Asked::AtMost(0.05), t.wrong_passes(), t.records));
+    }
+    if matches!(t.standing, Standing::AtLimit | Standing::Good) {
+        rows.push(share("false failures", Asked::AtMost(0.05), t.wrong_failures(), t.records));
+    }
+    if t.standing != Standing::Unlimited {
+        let undecided = t.records - t.passed - t.failed;
+        rows.push(share("no verdict", Asked::Nothing, undecided, t.records));
+    }
+    rows
+}
+
+/// Pairs of a measurand and a kind of disturbance that have neither a row nor a reason.
+pub fn gaps<'a>(measurands: impl Iterator<Item = &'a str>) -> Vec<String> {
+    let without = |kind: &Kind, id: &str| {
+        let shown = kind.units().any(|unit| kind.judged(unit).iter().any(|judged| judged == id));
+        let reason = kind.absent(id).or_else(|| exempt(id, kind.edge()));
+        !shown && reason.is_none_or(|reason| reason.len() <= 20)
+    };
+    let of =
+        |id: &'a str| TABLE.kind.iter().filter(move |kind| without(kind, id)).map(move |kind| (id, kind));
+    measurands.flat_map(of).map(|(id, kind)| format!("{id}: {}", kind.name)).collect()
+}
+
+/// Why the edges have no unit for a measurand.
+fn exempt(id: &str, edge: Edge) -> Option<&'static str> {
+    let of = |f: &'static Family| {
+        f.exempt.iter().find(|e| e.edges.contains(&edge) && e.ids.iter().any(|i| i == id))
+    };
+    FAMILIES.iter().find_map(of).map(|e| e.reason.as_str())
+}
