@@ -1,6 +1,6 @@
 //! What was done to a recording before it was delivered: a run saved again, slow changes taken out, outliers removed.
 
-use super::objections;
+use super::{analyzed, objections};
 use crate::support::{measurand, procedure, result, sagnac, shipped};
 use sagnac_studies::bench::noise_source::NoiseSource;
 use std::fmt::Write as _;
@@ -60,14 +60,8 @@ fn slow_changes_that_were_taken_out_leave_random_walk_open() {
     let slow_walk: Vec<f64> =
         source.white(0.002, interval_s, n).iter().zip(&few).map(|(v, w)| v + w).collect();
     let contradicted = |values: &[f64]| {
-        let mut text = String::from("time_s,rate_deg_h\n");
-        for (i, value) in values.iter().enumerate() {
-            let _ = writeln!(text, "{},{:.7}", 10 * i, 12.0 + value);
-        }
-        std::fs::write(folder.path().join("r.csv"), text).unwrap();
-        let said = sagnac(folder.path(), &["analyze", "r.csv", "--out", "a", "--force"]);
-        assert_eq!(said.code, 0, "{said:?}");
-        let found = result(&folder.path().join("a"));
+        let rates: Vec<f64> = values.iter().map(|v| 12.0 + v).collect();
+        let found = analyzed(folder.path(), interval_s, &rates);
         !objections(measurand(&found, "rate_random_walk")).is_empty()
     };
     assert!(!contradicted(&values), "as it was recorded");

@@ -9,6 +9,7 @@ mod temperature;
 
 use crate::support::{Said, procedure, result, sagnac, shipped};
 use serde_json::Value;
+use std::fmt::Write;
 use std::path::Path;
 
 /// A file of a case.
@@ -34,6 +35,18 @@ fn run(folder: &Path, recording: &str, limits: &str) -> (Said, Value) {
     let said = sagnac(folder, &arguments);
     assert!(said.code != 2, "{said:?}");
     (said, result(&folder.join("o")))
+}
+
+/// The result of an analysis of rates, deg/h, without limits.
+fn analyzed(folder: &Path, interval_s: f64, rates: &[f64]) -> Value {
+    let mut text = String::from("time_s,rate_deg_h\n");
+    for (i, rate) in rates.iter().enumerate() {
+        let _ = writeln!(text, "{},{rate:.7}", i as f64 * interval_s);
+    }
+    std::fs::write(folder.join("r.csv"), text).unwrap();
+    let said = sagnac(folder, &["analyze", "r.csv", "--out", "a", "--force"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    result(&folder.join("a"))
 }
 
 /// The checks that contradict a row.

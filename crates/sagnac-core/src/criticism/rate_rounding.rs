@@ -1,20 +1,24 @@
 //! Whether the rate was rounded so coarsely that its noise does not carry it from step to step.
 //!
 //! Rounding of angle increments carries its remainder on, and means lose nothing. Rounding of a rate forgets it: unless noise moves
-//! the rate by about half a step from sample to sample, the noise that is left is that of the steps.
+//! the rate by about half a step from sample to sample, the noise that is left is that of the steps, or none at all.
 
 use super::affected::NOISE;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
 use crate::message::Note;
+use crate::noise::coarse::RateRounding;
 
 /// Finds a rate that noise does not carry from step to step.
 pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
-    let Some(step_deg_h) = gyro.forgotten_step_deg_h else { return vec![] };
-    vec![Finding {
-        measurands: NOISE.to_vec(),
-        holds: Holds::Nothing,
-        found: Note::new("criticism_found.rate_rounding").with("step", step_deg_h),
-        advice: Note::new("criticism_advice.rate_rounding"),
-    }]
+    let (found, more) = match gyro.rounding {
+        RateRounding::Harmless => return vec![],
+        RateRounding::Forgotten { step_deg_h } => {
+            (Note::new("criticism_found.rate_rounding").with("step", step_deg_h), None)
+        }
+        RateRounding::Constant => (Note::new("criticism_found.constant_rate"), Some("static_bias")),
+    };
+    let advice = Note::new("criticism_advice.rate_rounding");
+    let measurands = NOISE.into_iter().chain(more).collect();
+    vec![Finding { measurands, holds: Holds::Nothing, found, advice }]
 }

@@ -10,7 +10,7 @@ use crate::estimate::Objection;
 use crate::influence::comparison::{Comparison, NoiseChange};
 use crate::message::Note;
 use crate::noise::allan::{DeviationCurve, DeviationSet};
-use crate::noise::coarse;
+use crate::noise::coarse::RateRounding;
 use crate::noise::composite::Composite;
 use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::digest::RateDigest;
@@ -79,9 +79,8 @@ pub struct GyroEvidence {
     pub warm_up: Option<WarmUpFindings>,
     /// The rate and the temperatures over the whole recording, for the caller to add.
     pub course: Option<Course>,
-    /// Step of a rate that was rounded without its remainder being carried on, deg/h, where noise does not carry it from step
-    /// to step.
-    pub forgotten_step_deg_h: Option<f64>,
+    /// Whether rounding of the rate hides what the unit does.
+    pub rounding: RateRounding,
     /// Objections of the checks, empty until they are asked for (`criticism::of_gyro`).
     pub objections: OnceLock<Vec<Objection>>,
 }
@@ -127,7 +126,7 @@ impl GyroEvidence {
         let octaves =
             digest.octaves.as_ref().map_or_else(|| sigma_tau.clone(), |set| allan_points(set, model, tau0_s));
         let first: Vec<(u64, f64)> = octaves.iter().map(|p| (p.point.m, p.point.deviation)).collect();
-        let forgotten_step_deg_h = step_deg_h.filter(|step| coarse::is_forgotten(*step, &first));
+        let rounding = RateRounding::of(step_deg_h, &first);
         let whole = Whole::of(&digest, &octaves, identification.highest_hz);
         let withheld_line = whole.lines(&mut lines);
         if withheld_line.is_some() {
@@ -155,7 +154,7 @@ impl GyroEvidence {
             over_temperature: None,
             warm_up: None,
             course: None,
-            forgotten_step_deg_h,
+            rounding,
             objections: OnceLock::new(),
         }
     }

@@ -7,6 +7,7 @@ use super::descriptor::{EARTH_RATE_OPTION, Measurand, Options, PowerModel};
 use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread, normal_probability};
 use crate::message::Note;
+use crate::noise::coarse::RateRounding;
 use crate::noise::data::NoiseType;
 use crate::noise::model::TERMS;
 use crate::noise::static_bias::BiasUncertainty;
@@ -65,11 +66,14 @@ fn evaluate(m: &Measurand, gyro: &GyroEvidence, options: &Options) -> Vec<Estima
     let u = uncertainty(gyro, removed.is_some());
     let standard_uncertainty = u.standard();
     let spread = Spread::StudentT { standard_uncertainty, dof: degrees_of_freedom(gyro, &u) };
-    let spread = match gyro.forgotten_step_deg_h {
-        Some(step) => beside_rounding(&spread, value, 0.5 * step),
-        None => spread,
+    let (spread, rounded) = match gyro.rounding {
+        RateRounding::Harmless => (spread, None),
+        RateRounding::Forgotten { step_deg_h: step } => {
+            let note = Note::new("note.bias_rounded").with("step", step);
+            (beside_rounding(&spread, value, 0.5 * step), Some(note))
+        }
+        RateRounding::Constant => (Spread::Unknown, None),
     };
-    let rounded = gyro.forgotten_step_deg_h.map(|step| Note::new("note.bias_rounded").with("step", step));
     let earth = match removed {
         Some(e) => Note::new("note.earth_rate_removed").with("rate", e.rate_deg_h),
         None => Note::new("note.earth_rate_kept"),

@@ -36,8 +36,36 @@ const UNCARRIED: f64 = 0.577;
 /// fourfold where samples are independent, and less than 2.5 times where the angle was rounded.
 const FORGOTTEN_GROWTH: f64 = 3.0;
 
+/// Whether rounding of the rate hides what the unit does.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub enum RateRounding {
+    /// Finer than the noise, or its remainder is carried on.
+    #[default]
+    Harmless,
+    /// Coarser than the noise, and the remainder of each sample is lost.
+    Forgotten {
+        /// Step of the rate, deg/h.
+        step_deg_h: f64,
+    },
+    /// All samples are equal: steps of unknown size hide all that the unit does.
+    Constant,
+}
+
+impl RateRounding {
+    /// The rounding that Allan deviations show; `step_deg_h` is the step that all values are multiples of, where there is one, and
+    /// `points` are as in [`highest_hz`].
+    pub fn of(step_deg_h: Option<f64>, points: &[(u64, f64)]) -> RateRounding {
+        let constant = points.first().is_some_and(|p| *p == (1, 0.0));
+        match step_deg_h {
+            _ if constant => RateRounding::Constant,
+            Some(step_deg_h) if is_forgotten(step_deg_h, points) => RateRounding::Forgotten { step_deg_h },
+            _ => RateRounding::Harmless,
+        }
+    }
+}
+
 /// True where a rate was rounded, sample by sample, and noise does not carry it from step to step. `points` as in [`highest_hz`].
-pub fn is_forgotten(step_deg_h: f64, points: &[(u64, f64)]) -> bool {
+fn is_forgotten(step_deg_h: f64, points: &[(u64, f64)]) -> bool {
     let at = |m: u64| points.iter().find(|p| p.0 == m).map(|p| p.1 * m as f64 / step_deg_h);
     let (Some(one), Some(four)) = (at(1), at(4)) else { return false };
     one < UNCARRIED && four * four > FORGOTTEN_GROWTH * one * one
@@ -102,5 +130,14 @@ mod tests {
         }
         // Noise of a step carries a rounded rate on.
         assert!(!is_forgotten(1.0, &[(1, 1.04), (2, 0.73), (4, 0.52)]));
+    }
+
+    #[test]
+    fn equal_samples_tell_nothing_of_their_step() {
+        assert_eq!(RateRounding::of(None, &[(1, 0.0), (2, 0.0)]), RateRounding::Constant);
+        assert_eq!(RateRounding::of(None, &[(1, 0.1), (2, 0.07)]), RateRounding::Harmless);
+        assert_eq!(RateRounding::of(None, &[]), RateRounding::Harmless);
+        let rare = [(1, 0.02), (2, 0.0142), (4, 0.01)];
+        assert_eq!(RateRounding::of(Some(1.0), &rare), RateRounding::Forgotten { step_deg_h: 1.0 });
     }
 }

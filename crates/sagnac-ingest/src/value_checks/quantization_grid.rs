@@ -87,9 +87,9 @@ enum State {
 
 impl QuantizationGrid {
     pub(super) fn take(&mut self, mut values: &[f64]) {
-        if self.state == State::Gathering {
-            let (head, rest) =
-                values.split_at(values.len().min(FIRST_SAMPLES - self.first.len().min(FIRST_SAMPLES)));
+        while self.state == State::Gathering && !values.is_empty() {
+            let room = FIRST_SAMPLES - self.first.len().min(FIRST_SAMPLES);
+            let (head, rest) = values.split_at(values.len().min(room));
             self.first.extend_from_slice(head);
             values = rest;
             if self.first.len() >= FIRST_SAMPLES {
@@ -117,11 +117,13 @@ impl QuantizationGrid {
         let samples = sorted.len();
         sorted.sort_unstable_by(f64::total_cmp);
         sorted.dedup();
-        self.state = State::None;
         let (Some(&low), Some(&high)) = (sorted.first(), sorted.last()) else { return };
         if sorted.len() < 2 {
+            // An output that stands still tells its step only where it moves.
+            self.first = sorted;
             return;
         }
+        self.state = State::None;
         self.origin = low;
         self.largest = low.abs().max(high.abs());
         let mut gaps: Vec<f64> = sorted.iter().zip(sorted.iter().skip(1)).map(|(a, b)| b - a).collect();

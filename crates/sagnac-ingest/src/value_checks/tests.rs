@@ -211,6 +211,10 @@ fn a_quantization_grid_is_found_where_there_is_one_and_only_there() {
     let step = check(&broken, Role::Rate).0.quantization_step;
     assert!(step.is_none_or(|s| s < 60.0), "{step:?}");
     assert_eq!(check(&vec![0.1; 100], Role::Rate).0.quantization_step, None);
+    // An output that leaves its step late.
+    let mut still = vec![2.4; 30_000];
+    still[20_000] = 4.8;
+    assert_eq!(check(&still, Role::Rate).0.quantization_step, Some(2.4));
     let _ = rng.random::<f64>();
 }
 
