@@ -4,24 +4,36 @@ use super::affected::SLOW_NOISE;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
 use crate::message::{Arg, Note};
-use crate::noise::residual::View;
+use crate::noise::residual::{Jump, View};
 
-/// Finds the step. What it adds makes slow noise look larger, so that an upper bound still holds.
+/// Log-likelihood by which a step must explain the record better than slow noise, nats. A walk that a record barely shows is as
+/// likely as a step; simulated walks give 2 in fewer than one of a hundred.
+const MIN_ADVANTAGE_NATS: f64 = 2.0;
+
+/// Finds the step, beside the slow noise of the model or in its place. What it adds makes slow noise look larger, so that an
+/// upper bound still holds.
 pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
     let found = &gyro.identification;
     let slow = [&found.bias_instability, &found.rate_random_walk, &found.rate_ramp];
-    let failures = gyro.goodness.failures();
-    let Some(jump) = failures.iter().find(|j| j.view == View::Jump) else { return vec![] };
     if slow.iter().all(|e| e.value.is_none()) {
         return vec![];
     }
+    let Some(whitened) = &gyro.goodness.whitened else { return vec![] };
+    let beside = gyro.goodness.failures().iter().any(|j| j.view == View::Jump);
+    let beside = whitened.jump.filter(|_| beside).map(|jump| (jump, whitened.step_s));
+    let instead = whitened.jump_instead.filter(|i| i.advantage >= MIN_ADVANTAGE_NATS);
+    let Some((jump, step_s)) = beside.or(instead.map(|i| (i.jump, i.step_s))) else { return vec![] };
     vec![Finding {
         measurands: SLOW_NOISE.to_vec(),
         holds: Holds::UpperBound,
-        found: Note::new("criticism_found.step")
-            .with("time_s", Arg::rounded(0.5 * (jump.departure.from + jump.departure.to), 6))
-            .with("size", Arg::figures(jump.departure.excess, 3))
-            .with("deviations", Arg::rounded(jump.statistic.abs(), 2)),
+        found: found_at(&jump, whitened.from_s + jump.before as f64 * step_s),
         advice: Note::new("criticism_advice.step"),
     }]
+}
+
+fn found_at(jump: &Jump, time_s: f64) -> Note {
+    Note::new("criticism_found.step")
+        .with("time_s", Arg::rounded(time_s, 6))
+        .with("size", Arg::figures(jump.size_deg_h, 3))
+        .with("deviations", Arg::rounded(jump.score.abs(), 2))
 }

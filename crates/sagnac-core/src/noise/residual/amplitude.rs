@@ -127,6 +127,7 @@ mod tests {
                 means: vec![],
                 from_s: 0.0,
                 jump: None,
+                jump_instead: None,
             })
         };
         let mut values: Vec<f64> = (0..98).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();

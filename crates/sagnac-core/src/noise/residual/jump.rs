@@ -25,6 +25,9 @@ pub struct Jump {
     pub score: f64,
     /// Probability of a larger one anywhere if the model is right.
     pub p_value: f64,
+    /// Natural logarithm of that probability, where it is small. Its negative is what the jump adds to the log-likelihood, less
+    /// what the search over all places adds by chance.
+    pub ln_p: f64,
 }
 
 /// The largest jump in cosine modes of a series (orthonormal) with expected powers; modes without power are left out.
@@ -67,8 +70,9 @@ pub(super) fn largest(modes: &[f64], powers: &[f64]) -> Option<Jump> {
     }
     let (before, z, information) = best?;
     let p = 2.0 * (normal_probability(-z.abs()) + crossings * (-0.5 * z * z).exp());
+    let ln_p = (2.0 * crossings).max(1.0).ln() - 0.5 * z * z;
     let size_deg_h = z / information.sqrt();
-    size_deg_h.is_finite().then_some(Jump { before, size_deg_h, score: z, p_value: p.min(1.0) })
+    size_deg_h.is_finite().then_some(Jump { before, size_deg_h, score: z, p_value: p.min(1.0), ln_p })
 }
 
 /// The view of jumps.

@@ -21,7 +21,7 @@ pub use frequency::BandRatio;
 pub use jump::Jump;
 pub use lag::ResidualCorrelation;
 pub use view::{Departure, Judged, View};
-pub use whiten::{Whitened, whitened};
+pub use whiten::{JumpInstead, Whitened, whitened};
 
 use super::composite::{Described, Line};
 use super::data::DeviationPoint;
