@@ -319,7 +319,7 @@ pub fn simulate(model: &Composite, hours: f64, tau0_s: f64, seed: u64) -> GyroEv
         over_temperature: None,
         warm_up: None,
         course: None,
-        forgotten_step_deg_h: None,
+        rounding: Default::default(),
         objections: Default::default(),
     }
 }

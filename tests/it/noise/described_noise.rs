@@ -105,7 +105,7 @@ fn gyro() -> GyroEvidence {
         over_temperature: None,
         warm_up: None,
         course: None,
-        forgotten_step_deg_h: None,
+        rounding: Default::default(),
         objections: Default::default(),
     }
 }
