@@ -34,7 +34,7 @@ fn random_walk_does_not_fail_for_a_step_and_the_step_is_timed_from_the_start_of_
 #[test]
 fn a_small_step_in_white_noise_leaves_random_walk_open_and_a_walk_does_not() {
     let folder = tempfile::tempdir().unwrap();
-    let mut contradicted = |rates: &[f64]| {
+    let contradicted = |rates: &[f64]| {
         let found = analyzed(folder.path(), 1.0, rates);
         let row = measurand(&found, "rate_random_walk");
         (row["value"].is_number(), objections(row).contains(&"step"))
