@@ -21,6 +21,10 @@ const POLYNOMIAL_CHANCE: f64 = 1e-3;
 const EMPTY_CHANCE: f64 = 1e-4;
 /// Values of which group means are taken, at least.
 const MIN_GROUPS: usize = 32;
+/// Doublings of the averaging time over which the level of white noise may not fall.
+const DOUBLINGS_TO_FALL: usize = 3;
+/// Ratio of levels over these doublings below which the level falls: differences of white noise give 0.35, white noise 1.
+const MAX_FALL: f64 = 0.6;
 /// Power over that of the model below which the lowest frequencies are empty.
 const MAX_RATIO: f64 = 0.5;
 /// Share of the frequencies that an empty part reaches up to at most without a doubt about the white noise.
@@ -55,7 +59,7 @@ fn removed_degree(values: &[f64]) -> Option<usize> {
     if n < MIN_VALUES || values.iter().any(|v| !v.is_finite()) {
         return None;
     }
-    let scatter = white_scatter(values);
+    let scatter = white_scatter(values)?;
     let position = |i: usize| (2.0 * i as f64 + 1.0) / n as f64 - 1.0;
     let mut square: Vec<Vec<f64>> = vec![];
     let (mut largest, mut found) = (0.0f64, None);
@@ -81,9 +85,9 @@ fn removed_degree(values: &[f64]) -> Option<usize> {
     found.filter(|_| scatter > 0.0)
 }
 
-/// Deviation of single values as white noise of the lowest level seen at any averaging time: noise that is less at long times than
-/// white, such as that of rounding, is square to polynomials by itself.
-fn white_scatter(values: &[f64]) -> f64 {
+/// Deviation of single values as white noise of the lowest level seen at any averaging time. Noise that is less at long times than
+/// white, such as that of rounding, is square to polynomials by itself: `None` where the level still falls at the longest times.
+fn white_scatter(values: &[f64]) -> Option<f64> {
     let of_groups = |size: usize| {
         let means: Vec<f64> =
             values.chunks_exact(size).map(|group| group.iter().sum::<f64>() / size as f64).collect();
@@ -91,7 +95,11 @@ fn white_scatter(values: &[f64]) -> f64 {
         (0.5 * size as f64 * changes.sum::<f64>() / (means.len() - 1) as f64).sqrt()
     };
     let sizes = (0..).map(|k| 1usize << k).take_while(|size| values.len() / size >= MIN_GROUPS);
-    sizes.map(of_groups).fold(f64::INFINITY, f64::min)
+    let levels: Vec<f64> = sizes.map(of_groups).collect();
+    let last = *levels.last()?;
+    let earlier = levels.len().checked_sub(1 + DOUBLINGS_TO_FALL).and_then(|at| levels.get(at));
+    let still_falls = earlier.is_some_and(|earlier| last < MAX_FALL * earlier);
+    (!still_falls).then(|| levels.into_iter().fold(f64::INFINITY, f64::min))
 }
 
 /// The lowest frequencies where less power is than the model has.

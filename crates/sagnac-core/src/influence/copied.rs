@@ -15,8 +15,9 @@ const MIN_CORRELATION: f64 = 0.5;
 const MIN_EVIDENCE: f64 = 40.0;
 /// Correlation of a run with itself some blocks later from which it repeats itself, and another run may look the same.
 const REPEATS_ITSELF: f64 = 0.3;
-/// Squared correlation times changes from which chance at one of those shifts is none.
-const MIN_EVIDENCE_OF_ITSELF: f64 = 20.0;
+/// Squared correlation times changes from which chance at those shifts is none; neighbouring changes share a value, which makes
+/// correlations by chance half as large again in square.
+const MIN_EVIDENCE_OF_ITSELF: f64 = 30.0;
 /// Shifts at which that is looked for: neighbouring changes share a value, and filters reach some values further.
 const SHIFTS_OF_ITSELF: std::ops::Range<usize> = 20..200;
 

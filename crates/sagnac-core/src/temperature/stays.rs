@@ -86,7 +86,8 @@ impl Course<'_> {
                 let mean = |sums: &[f64]| (sums[i + window] - sums[i]) / window as f64;
                 let (away, beyond) = (mean(&off), mean(&left).abs() / deviation);
                 let is_clearer = clearest.as_ref().is_none_or(|(most, _)| beyond > *most);
-                if away.abs() > band_deg_h && beyond > least && is_clearer {
+                let outside = (away.abs() - band_deg_h) / deviation;
+                if outside > least && beyond > least && is_clearer {
                     let from_s = self.first_s + (i as f64 - 0.5) * self.block_s;
                     let to_s = from_s + window as f64 * self.block_s;
                     clearest = Some((beyond, Departure { from_s, to_s, deg_h: away }));
