@@ -56,7 +56,7 @@ fn gyro() -> GyroEvidence {
         sampling: Sampling::Averaging,
     };
     let mut identification = record.identify("rate").ranged.identification;
-    identification.bias_instability = measured("bias_instability", 0.004, "deg/h");
+    identification.claimed.push(NoiseType::Flicker);
     identification.described = Described {
         parameters: vec![
             Parameter::Coefficient(NoiseType::AngleRandomWalk),
