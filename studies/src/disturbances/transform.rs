@@ -11,7 +11,7 @@ const MEDIAN_DEVIATE: f64 = 0.674_489_75;
 /// A distance of rows longer than so many of the first is a pause.
 const PAUSE: f64 = 1.5;
 
-/// What is done to a recording.
+/// A change of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
 pub enum Disturbance {
@@ -35,7 +35,7 @@ pub enum Disturbance {
     DriftRemoved { share: f64 },
 }
 
-/// What the output of a unit follows.
+/// The quantity that the output of a unit follows.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stimulus<'a> {
     /// Column of the stimulus.
@@ -189,7 +189,7 @@ fn low_pass(x: &[f64], cut_off: f64, qualities: &[f64]) -> Vec<f64> {
     y.split_off(lead)
 }
 
-/// What an output that follows its stimulus late has more than one that follows at once.
+/// Difference of an output that follows its stimulus late from one that follows at once.
 fn late(columns: &Columns, stimulus: Stimulus<'_>, tau_s: f64) -> Option<Vec<f64>> {
     let (time, level) = (columns.column("time_s")?, columns.column(stimulus.column)?);
     let keep = (-(time.get(1)? - time.first()?) / tau_s).exp();

@@ -78,7 +78,7 @@ fn cases(family: &str) -> Vec<Case> {
 /// Tests the files of a folder by the library.
 ///
 /// # Errors
-/// What the library refuses, as text.
+/// Refusals of the library, as text.
 pub fn by_the_library(simulated: &Simulated, folder: &Path) -> Result<Vec<MeasurandRecord>, String> {
     let tested = || {
         let mut procedure = Procedure::load(folder.join("p.toml"))?;
