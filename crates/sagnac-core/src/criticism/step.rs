@@ -6,8 +6,8 @@ use crate::evidence::GyroEvidence;
 use crate::message::{Arg, Note};
 use crate::noise::residual::{Jump, View};
 
-/// Log-likelihood by which a step must explain the record better than slow noise, nats. A walk that a record barely shows is as
-/// likely as a step; simulated walks give 2 in fewer than one of a hundred.
+/// Log-likelihood by which a step must explain the record better than slow noise, nats: a walk that a record barely shows is
+/// about as likely as a step.
 const MIN_ADVANTAGE_NATS: f64 = 2.0;
 
 /// Finds the step, beside the slow noise of the model or in its place. What it adds makes slow noise look larger, so that an
@@ -26,7 +26,7 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
     vec![Finding {
         measurands: SLOW_NOISE.to_vec(),
         holds: Holds::UpperBound,
-        found: found_at(&jump, whitened.from_s + jump.before as f64 * step_s),
+        found: found_at(&jump, jump.time_s(step_s, whitened.from_s)),
         advice: Note::new("criticism_advice.step"),
     }]
 }

@@ -30,6 +30,13 @@ pub struct Jump {
     pub ln_p: f64,
 }
 
+impl Jump {
+    /// When it happens, s, in means over `step_s` of which the first begins at `from_s`.
+    pub fn time_s(&self, step_s: f64, from_s: f64) -> f64 {
+        from_s + self.before as f64 * step_s
+    }
+}
+
 /// The largest jump in cosine modes of a series (orthonormal) with expected powers; modes without power are left out.
 pub(super) fn largest(modes: &[f64], powers: &[f64]) -> Option<Jump> {
     let n = modes.len();
@@ -77,7 +84,7 @@ pub(super) fn largest(modes: &[f64], powers: &[f64]) -> Option<Jump> {
 
 /// The view of jumps.
 pub(super) fn judge(jump: &Jump, step_s: f64, from_s: f64) -> Judged {
-    let at = from_s + jump.before as f64 * step_s;
+    let at = jump.time_s(step_s, from_s);
     Judged {
         view: View::Jump,
         statistic: jump.score,

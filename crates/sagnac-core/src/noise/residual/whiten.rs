@@ -143,11 +143,13 @@ fn jump_instead(
     let step_s = merged as f64 * step_s;
     let means: Vec<f64> =
         series.chunks_exact(merged).map(|c| c.iter().sum::<f64>() / merged as f64).collect();
-    let slope = terms.r * step_s / 3600.0;
-    let with_ramp: Vec<f64> = means.iter().enumerate().map(|(i, m)| m + slope * i as f64).collect();
+    let with_ramp = || -> Vec<f64> {
+        let slope = terms.r * step_s / 3600.0;
+        means.iter().enumerate().map(|(i, m)| m + slope * i as f64).collect()
+    };
     let used = used_modes(record, means.len(), step_s);
     let modes = |means: &[f64]| Modes { values: dct2(means), used: &used, step_s, tau0_s: record.tau0_s };
-    let (flat, ramped) = (modes(&means), modes(&with_ramp));
+    let (flat, ramped) = (modes(&means), (terms.r != 0.0).then(|| modes(&with_ramp())));
     let whole = flat.log_likelihood(&flat.powers(model));
     // Every choice of terms that are there, by the bits of its number.
     let choices = (1..8usize).map(|bits| [0, 1, 2].map(|i| bits >> i & 1 == 1));
@@ -155,7 +157,7 @@ fn jump_instead(
         let mut rest = model.clone();
         rest.terms.k = if walk { 0.0 } else { terms.k };
         rest.terms.b = if flicker { 0.0 } else { terms.b };
-        let kept = if ramp { &ramped } else { &flat };
+        let kept = if ramp { ramped.as_ref()? } else { &flat };
         let powers = kept.powers(&rest);
         let jump = jump::largest(&kept.values, &powers)?;
         let advantage = kept.log_likelihood(&powers) - jump.ln_p - whole;
