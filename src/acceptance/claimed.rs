@@ -74,35 +74,6 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
     Ok((claim, notes))
 }
 
-/// Effects that belong to a unit and not to a moment: another recording of it shows them too.
-const LASTING: [&str; 25] = [
-    "bandwidth_filter",
-    "column_curve",
-    "column_driver",
-    "column_law",
-    "comb",
-    "dead_zone",
-    "line",
-    "markov_long",
-    "markov_short",
-    "noise_variance_driver",
-    "noise_variance_rate",
-    "power_law_noise",
-    "quantization",
-    "quasi_periodic",
-    "sf_asymmetry",
-    "sf_driver",
-    "sf_nonlinearity",
-    "sf_temperature",
-    "supply_sensitivity",
-    "temp_hysteresis",
-    "temp_linear",
-    "temp_linear_delayed",
-    "temp_polynomial",
-    "temp_rate",
-    "temp_response",
-];
-
 /// A claim that was identified, with the effects of an augmented one that belong to the unit, and with the third standardised moment
 /// that its noise may have. Noise and mean are those beside the effects, if all of these are kept.
 pub fn with_lasting(claim: Claim, augmented: &Claim, skewness: f64) -> Claim {
@@ -114,8 +85,7 @@ pub fn with_lasting(claim: Claim, augmented: &Claim, skewness: f64) -> Claim {
     // that is not there weighs what a later recording shows behind it far too much.
     let beside_process = augmented.effects.iter().filter_map(spectrum).any(|s| s.has_course());
     let filters = |stated: &Stated| spectrum(stated).is_some_and(|s| s.act() == SpectrumAct::Filters);
-    let lasts =
-        |stated: &&Stated| LASTING.contains(&stated.effect.kind()) && !(beside_process && filters(stated));
+    let lasts = |stated: &&Stated| stated.effect.is_carried_over() && !(beside_process && filters(stated));
     let effects: Vec<Stated> = augmented.effects.iter().filter(lasts).cloned().collect();
     let uncertainty = Uncertainty { skewness, ..claim.uncertainty };
     let claim = Claim { uncertainty, ..claim };
@@ -152,7 +122,7 @@ fn known(row: &MeasurandRecord) -> Coefficient {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{EFFECTS, find};
+    use crate::effect::find;
 
     fn stated(kind: &str) -> Stated {
         Stated { effect: find(kind).unwrap(), values: Default::default() }
@@ -160,7 +130,6 @@ mod tests {
 
     #[test]
     fn effects_of_a_moment_are_left_out_and_those_of_the_unit_kept() {
-        assert!(LASTING.iter().all(|k| EFFECTS.iter().any(|e| e.kind() == *k)));
         let kinds = |claim: &Claim| claim.effects.iter().map(|s| s.effect.kind()).collect::<Vec<_>>();
         let text = b"[recording]\nsample_rate_hz = 1.0\n[noise]\nN_deg_rt_h = 0.1\n";
         let identified = crate::config::model::parse("m.toml", text).unwrap().claim;

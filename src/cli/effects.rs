@@ -112,9 +112,8 @@ fn page(effect: &dyn Effect, lang: Lang) -> String {
 }
 
 fn confusers(effect: &dyn Effect, lang: Lang) -> Vec<String> {
-    let named = |kind: &&str| match find(kind) {
-        Some(other) => format!("{kind}: {}", effect_text(other.kind(), EffectText::Title, lang)),
-        None => (*kind).to_owned(),
+    let named = |other: &&dyn Effect| {
+        format!("{}: {}", other.kind(), effect_text(other.kind(), EffectText::Title, lang))
     };
     effect.confusers().iter().map(named).collect()
 }
@@ -191,7 +190,7 @@ fn value(effect: &dyn Effect, lang: Lang) -> Value {
         "parameters": params(effect.params()),
         "lists": params(effect.list_params()),
         "signature": text(EffectText::Signature),
-        "confusers": effect.confusers(),
+        "confusers": effect.confusers().iter().map(|e| e.kind()).collect::<Vec<_>>(),
         "told_by": text(EffectText::Distinguishing),
         "confirm": text(EffectText::Confirm),
         "source": text(EffectText::Source),

@@ -1,6 +1,7 @@
-//! Modules depend downwards only: the table is the architecture, a module that reaches up fails here. Documents name what
-//! there is.
+//! Modules depend downwards only: the table is the architecture, a module that reaches up fails here. Effects are referred to by
+//! their properties and not by name. Documents name what there is.
 
+use sagnac::effect::EFFECTS;
 use sagnac_studies::pages::GENERATED;
 use sagnac_studies::{STUDIES, index};
 use std::collections::BTreeSet;
@@ -137,6 +138,65 @@ fn every_module_stands_on_a_floor_and_looks_down_only() {
         }
     }
     assert!(checked > 50, "the search found only {checked} uses");
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// Ids of effects that are ids of other things too: of measurands, parts of a noise model, tests of a residual, arguments of texts.
+const IDS_WITH_OTHER_MEANINGS: &[&str] = &[
+    "comb",
+    "cross_axis",
+    "dead_zone",
+    "line",
+    "quantization",
+    "quasi_periodic",
+    "rate_ramp",
+    "sf_error",
+    "sf_nonlinearity",
+    "supply_sensitivity",
+    "table_harmonic",
+    "thermal_lag",
+];
+
+/// The rooms in which such an id can only be that of the effect.
+const ROOMS_OF_EFFECTS: &[&str] = &["claim", "effect", "mismatch", "plan", "schedule", "simulate"];
+
+/// Source text without its unit tests.
+fn product_text(file: &Path) -> String {
+    let name = file.file_stem().unwrap().to_string_lossy();
+    if name.ends_with("tests") || name == "truths" {
+        return String::new();
+    }
+    fs::read_to_string(file).unwrap().split("#[cfg(test)]").next().unwrap_or_default().to_owned()
+}
+
+#[test]
+fn no_effect_is_referred_to_by_name_outside_its_own_file() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let (mut described, mut wrong) = (BTreeSet::new(), Vec::new());
+    for folder in PACKAGES.iter().map(|(folder, _)| *folder).chain(["crates/sagnac-ingest/src"]) {
+        let src = root.join(folder);
+        let mut files = Vec::new();
+        files_below(&src, "rs", &mut files);
+        for file in files {
+            let relative = file.strip_prefix(&src).unwrap().to_string_lossy().into_owned();
+            let of_effects = folder.ends_with("sagnac-core/src")
+                && ROOMS_OF_EFFECTS.iter().any(|room| relative.starts_with(room))
+                && !relative.starts_with("mismatch/departures");
+            let text = product_text(&file);
+            for id in EFFECTS.iter().map(|e| e.kind()) {
+                let quoted = format!("\"{id}\"");
+                let is_own = ["Mean", "Spectrum", "Samples"]
+                    .iter()
+                    .any(|class| text.contains(&format!("{quoted}, {class} in ")));
+                if is_own {
+                    described.insert(id);
+                } else if text.contains(&quoted) && (of_effects || !IDS_WITH_OTHER_MEANINGS.contains(&id)) {
+                    wrong.push(format!("{folder}/{relative} names {id}"));
+                }
+            }
+        }
+    }
+    assert_eq!(described.len(), EFFECTS.len(), "each effect has one file");
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 

@@ -124,8 +124,8 @@ pub(crate) fn stated(section: &Section, reader: &mut Reader<'_>) -> Option<State
     }
     if let effect::Model::Spectrum(spectrum) = effect.model()
         && section.values("parameters").len() == values.len()
-        && spectrum.stated(&values).is_none()
-        && effect.stated_course(&values, &Drivers { samples: 1, dt_s: 1.0, ..Drivers::default() }).is_none()
+        && spectrum.claimed_parameters(&values).is_none()
+        && effect.claimed_course(&values, &Drivers { samples: 1, dt_s: 1.0, ..Drivers::default() }).is_none()
     {
         let all = effect.params().iter().chain(effect.list_params());
         let missing: Vec<&str> = all.map(|p| p.name).filter(|n| !values.contains_key(*n)).collect();

@@ -45,7 +45,7 @@ impl Claim {
     /// The lines that it states.
     pub fn lines(&self) -> Vec<StatedLine> {
         let of = |stated: &Stated| match stated.effect.model() {
-            Model::Mean(course) => course.stated_line(&stated.values),
+            Model::Mean(course) => course.claimed_line(&stated.values),
             _ => None,
         };
         self.effects.iter().filter_map(of).collect()

@@ -1,5 +1,6 @@
-//! The columns of a recording beside time and rate.
+//! Columns of a recording beside time and rate.
 
+use super::Domain;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
@@ -16,7 +17,7 @@ pub enum Column {
     OuterRate,
     /// `supply_v`
     Supply,
-    /// Any other numeric column: what the laboratory recorded besides.
+    /// Any other numeric column of the laboratory.
     Other(OtherColumn),
 }
 
@@ -25,7 +26,7 @@ pub enum Column {
 pub struct OtherColumn(&'static str);
 
 impl Column {
-    /// Those that have a role of their own.
+    /// Columns that have a role of their own.
     pub const KNOWN: [Column; 5] =
         [Column::Temperature, Column::TableRate, Column::TableAngle, Column::OuterRate, Column::Supply];
 
@@ -56,6 +57,18 @@ impl Column {
             Column::OuterRate => "outer_rate_deg_s",
             Column::Supply => "supply_v",
             Column::Other(other) => other.0,
+        }
+    }
+
+    /// The domain along which an effect of its values is located.
+    pub fn domain(self) -> Domain {
+        match self {
+            Column::Temperature => Domain::Temperature,
+            Column::TableRate => Domain::InputRate,
+            Column::TableAngle => Domain::Angle,
+            Column::OuterRate => Domain::OuterRate,
+            Column::Supply => Domain::Supply,
+            Column::Other(_) => Domain::Driver,
         }
     }
 

@@ -1,10 +1,15 @@
 //! What the files of effects would otherwise repeat word for word.
 
-/// What every effect says of itself; `with` has further methods of [`Effect`](super::Effect).
+/// The description of an effect: what [`Effect`](super::Effect) asks of every one, and the properties in which it differs from a
+/// plain one. Its parameters are `PARAMS`, unless `params` names others. `with` has further methods of the trait.
 macro_rules! describe {
     (
         $name:ident, $kind:literal, $model:ident in $domain:ident,
-        needs [$($need:ident),*], confusers [$($confuser:literal),*] $(, lists [$($list:expr),*])?
+        needs [$($need:ident),*], confusers [$($confuser:ident),*]
+        $(, params $params:ident)?
+        $(, lists [$($list:expr),*])?
+        $(, texts [$($text:expr),*])?
+        $(, properties [$($property:ident $($value:ident)?),*])?
         $(, with { $($method:tt)* })?
     ) => {
         impl $crate::effect::Effect for $name {
@@ -12,12 +17,17 @@ macro_rules! describe {
                 $kind
             }
             fn params(&self) -> &'static [$crate::effect::Param] {
-                &PARAMS
+                describe!(@ params $($params)?)
             }
             $(
                 fn list_params(&self) -> &'static [$crate::effect::Param] {
                     const LISTS: &[$crate::effect::Param] = &[$($list),*];
                     LISTS
+                }
+            )?
+            $(
+                fn text_params(&self) -> &'static [&'static str] {
+                    &[$($text),*]
                 }
             )?
             fn needs(&self) -> &'static [$crate::effect::Column] {
@@ -26,115 +36,66 @@ macro_rules! describe {
             fn domain(&self) -> $crate::effect::Domain {
                 $crate::effect::Domain::$domain
             }
-            fn confusers(&self) -> &'static [&'static str] {
-                &[$($confuser),*]
+            fn confusers(&self) -> &'static [&'static dyn $crate::effect::Effect] {
+                const CONFUSERS: &[&dyn $crate::effect::Effect] = &[$(&$crate::effect::kinds::$confuser),*];
+                CONFUSERS
             }
             fn model(&self) -> $crate::effect::Model {
                 $crate::effect::Model::$model(&$name)
             }
+            $($(describe! { @ $property $($value)? })*)?
             $($($method)*)?
         }
     };
-}
-
-/// A spectrum that is a stated coefficient set free.
-macro_rules! frees {
-    ($name:ident, $term:ident, $field:ident, course $course:literal) => {
-        impl $crate::effect::Spectrum for $name {
-            fn act(&self) -> $crate::effect::SpectrumAct {
-                $crate::effect::SpectrumAct::Frees($crate::noise::data::NoiseType::$term)
-            }
-            fn density(&self, _fitted: &[f64], _bin: &$crate::effect::ModeBin) -> f64 {
-                0.0
-            }
-            fn starts(&self, _look: &$crate::effect::SpectralContext<'_>) -> Vec<Vec<f64>> {
-                vec![vec![]]
-            }
-            fn bounds(
-                &self,
-                _look: &$crate::effect::SpectralContext<'_>,
-            ) -> Vec<$crate::numeric::range::Bounds> {
-                vec![]
-            }
-            fn trials(&self, _look: &$crate::effect::SpectralContext<'_>) -> f64 {
-                1.0
-            }
-            fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
-                fitted.to_vec()
-            }
-            fn stated(&self, values: &$crate::effect::Values) -> Option<Vec<f64>> {
-                $crate::effect::number(values, PARAMS[0].name).map(|c| vec![c])
-            }
-            fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut $crate::noise::composite::Composite) {
-                if let [coefficient] = fitted {
-                    noise.terms.$field = *coefficient;
-                }
-            }
-            fn places(
-                &self,
-                fitted: &[f64],
-                context: &$crate::effect::SpectralContext<'_>,
-            ) -> Vec<$crate::effect::Place> {
-                $crate::effect::shared::power_law::power_law_places(
-                    $crate::noise::data::NoiseType::$term,
-                    fitted,
-                    context,
-                )
-            }
-            fn has_course(&self) -> bool {
-                $course
-            }
+    (@ params) => {
+        &PARAMS
+    };
+    (@ params $params:ident) => {
+        &$params
+    };
+    (@ outside_format) => {
+        fn in_format(&self) -> bool {
+            false
         }
     };
-}
-
-/// A course that is one column times its only parameter: `column(drivers)`, where `applies(drivers)`.
-macro_rules! linear {
-    ($name:ident, replaces $nuisance:expr, places $places:ident) => {
-        impl $crate::effect::MeanModel for $name {
-            fn resolution(&self) -> $crate::effect::Resolution {
-                $crate::effect::Resolution::FullRate
-            }
-            fn replaces(&self) -> Option<$crate::effect::Nuisance> {
-                $nuisance
-            }
-            fn applies(&self, drivers: &Drivers) -> bool {
-                applies(drivers)
-            }
-            fn starts(
-                &self,
-                _drivers: &Drivers,
-                _look: &$crate::effect::SearchContext<'_>,
-            ) -> $crate::effect::Starts {
-                $crate::effect::Starts::linear()
-            }
-            fn bounds(&self, _drivers: &Drivers) -> Vec<$crate::numeric::range::Bounds> {
-                vec![]
-            }
-            fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> $crate::effect::Regressors {
-                $crate::effect::Regressors {
-                    columns: column(drivers).into_iter().collect(),
-                    ..Default::default()
-                }
-            }
-            fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-                vec![coefficients.first().copied().unwrap_or(f64::NAN)]
-            }
-            fn course(&self, values: &$crate::effect::Values, drivers: &Drivers) -> Option<Vec<f64>> {
-                let coefficient = $crate::effect::number(values, PARAMS[0].name)?;
-                Some(column(drivers)?.into_iter().map(|x| coefficient * x).collect())
-            }
-            fn sizings(&self, _drivers: &Drivers) -> Vec<$crate::effect::Sizing> {
-                vec![$crate::effect::Sizing::linear(&PARAMS[0])]
-            }
-            fn places(
-                &self,
-                _shape: &[f64],
-                _coefficients: &[f64],
-                drivers: &Drivers,
-            ) -> Vec<$crate::effect::Place> {
-                $places(drivers)
-            }
+    (@ reported_as $other:ident) => {
+        fn reported_kind(&self) -> &'static str {
+            $crate::effect::Effect::kind(&$crate::effect::kinds::$other)
+        }
+    };
+    (@ family $family:ident) => {
+        fn family(&self) -> Option<$crate::effect::Family> {
+            Some($crate::effect::Family::$family)
+        }
+    };
+    (@ law $law:ident) => {
+        fn law(&self) -> Option<$crate::effect::ResponseLaw> {
+            Some($crate::effect::ResponseLaw::$law)
+        }
+    };
+    (@ carried_over) => {
+        fn is_carried_over(&self) -> bool {
+            true
+        }
+    };
+    (@ short_events) => {
+        fn is_short_events(&self) -> bool {
+            true
+        }
+    };
+    (@ follows_any_column) => {
+        fn follows_any_column(&self) -> bool {
+            true
+        }
+    };
+    (@ if_few_cycles $other:ident) => {
+        fn if_few_cycles(&self) -> Option<&'static dyn $crate::effect::Effect> {
+            Some(&$crate::effect::kinds::$other)
+        }
+    };
+    (@ reversed_pair $other:ident) => {
+        fn reversed_pair(&self) -> Option<&'static dyn $crate::effect::Effect> {
+            Some(&$crate::effect::kinds::$other)
         }
     };
 }

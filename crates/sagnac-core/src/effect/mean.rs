@@ -1,6 +1,6 @@
-//! Effects on the mean: what a parameter and the recorded columns add to the rate.
+//! Effects on the mean: a contribution to the rate that parameters and recorded columns determine.
 
-use super::{Drivers, Place, Sizing, StatedLine, Values};
+use super::{Drivers, Effect, Param, Place, Sizing, StatedLine, Values, number};
 use crate::numeric::range::Bounds;
 
 /// A nuisance of the claim: a value that it states with an uncertainty.
@@ -33,7 +33,7 @@ pub enum Resolution {
 /// one value a sample.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Regressors {
-    /// What the nonlinear parameters alone determine, deg/h; `None` for nothing.
+    /// Part that the nonlinear parameters alone determine, deg/h; `None` for nothing.
     pub offset: Option<Vec<f64>>,
     /// Columns whose coefficients are fitted, deg/h for a coefficient of 1.
     pub columns: Vec<Vec<f64>>,
@@ -41,7 +41,14 @@ pub struct Regressors {
     pub nuisance: Vec<Vec<f64>>,
 }
 
-/// What a search for nonlinear parameters may use. Every series has one value a sample, or a mode, of the drivers.
+impl Regressors {
+    /// Columns alone.
+    pub fn columns(columns: impl IntoIterator<Item = Vec<f64>>) -> Regressors {
+        Regressors { columns: columns.into_iter().collect(), ..Regressors::default() }
+    }
+}
+
+/// Data for a search of nonlinear parameters. Every series has one value a sample, or a mode, of the drivers.
 pub struct SearchContext<'a> {
     /// C⁻¹r in the time domain: the residual weighted by the inverse covariance of the noise.
     pub score: &'a [f64],
@@ -62,6 +69,11 @@ impl SearchContext<'_> {
         }
         if zz > 0.0 { 0.5 * zr * zr / zz } else { 0.0 }
     }
+
+    /// True where score, modes and powers are of a record of so many samples.
+    pub fn is_of(&self, samples: usize) -> bool {
+        [self.score, self.modes, self.powers].iter().all(|series| series.len() == samples)
+    }
 }
 
 /// Points that a local search begins from.
@@ -78,6 +90,17 @@ impl Starts {
     pub fn linear() -> Starts {
         Starts { points: vec![vec![]], trials: 1.0 }
     }
+
+    /// No start: a record in which the model cannot be searched.
+    pub fn none() -> Starts {
+        Starts { points: vec![], trials: 1.0 }
+    }
+
+    /// The point of the largest score, among `trials` independent ones.
+    pub fn best(scored: impl IntoIterator<Item = (f64, Vec<f64>)>, trials: f64) -> Starts {
+        let best = scored.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
+        Starts { points: best.map(|(_, point)| point).into_iter().collect(), trials }
+    }
 }
 
 /// Relative standard deviations of estimates beside those of their fit.
@@ -89,8 +112,39 @@ pub struct Unmodelled {
     pub rms: f64,
 }
 
+/// First value, such as the only coefficient; NaN where there is none.
+pub(super) fn first(values: &[f64]) -> f64 {
+    values.first().copied().unwrap_or(f64::NAN)
+}
+
 /// An effect that adds a course to the rate which its parameters and the recorded columns determine.
-pub trait MeanModel: Sync {
+///
+/// The defaults are those of the plainest model: one [`column`](MeanModel::column) times the first parameter. The further
+/// parameters of such a model are the nonlinear ones, in the same order; most have none. A model of another form has its own
+/// `regressors`, `parameters` and `course`.
+pub trait MeanModel: Effect {
+    /// False where the columns, or the claim, leave nothing to fit (a constant temperature, a table at rest).
+    fn applies(&self, drivers: &Drivers) -> bool;
+
+    /// Intervals in which it shows, principal one first, at most three.
+    fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place>;
+
+    /// The column of a model that has only one, deg/h for a coefficient of 1; `None` where a recorded column or a nonlinear
+    /// parameter is missing.
+    fn column(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// The coefficient of the column that the claim itself has: the fit adds to it.
+    fn claimed_coefficient(&self, _drivers: &Drivers) -> f64 {
+        0.0
+    }
+
+    /// Columns beside the only one: an unknown state at the beginning of the record.
+    fn initial_state(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Vec<Vec<f64>> {
+        vec![]
+    }
+
     /// The sampling at which it must be fitted.
     fn resolution(&self) -> Resolution {
         Resolution::Averaged
@@ -101,17 +155,35 @@ pub trait MeanModel: Sync {
         None
     }
 
-    /// False where the columns, or the claim, leave nothing to fit (a constant temperature, a table at rest).
-    fn applies(&self, drivers: &Drivers) -> bool;
+    /// Bounds of each nonlinear parameter.
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
+        vec![]
+    }
 
     /// At most four points from which a local search of the nonlinear parameters begins, found over their whole range.
-    fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts;
+    fn starts(&self, _drivers: &Drivers, _context: &SearchContext<'_>) -> Starts {
+        Starts::linear()
+    }
 
-    /// Bounds of each nonlinear parameter.
-    fn bounds(&self, drivers: &Drivers) -> Vec<Bounds>;
+    /// First step of the local search in each nonlinear parameter, where the likelihood has a peak much narrower than the
+    /// bounds; empty: a hundredth of the bounds.
+    fn steps(&self, _drivers: &Drivers) -> Vec<f64> {
+        vec![]
+    }
+
+    /// Positions of nonlinear parameters that are whole numbers: tried by [`MeanModel::starts`] and not refined.
+    fn whole(&self) -> &'static [usize] {
+        &[]
+    }
 
     /// The columns for given nonlinear parameters.
-    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors;
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors {
+            offset: None,
+            columns: self.column(nonlinear_parameters, drivers).into_iter().collect(),
+            nuisance: self.initial_state(nonlinear_parameters, drivers),
+        }
+    }
 
     /// Orthonormal cosine modes (DCT-II) of the columns, for a model that has nothing but columns and whose transform is known
     /// in closed form; `None`: they are transformed.
@@ -121,33 +193,38 @@ pub trait MeanModel: Sync {
 
     /// The parameters in the order of [`Effect::params`](super::Effect::params), from the nonlinear ones and the coefficients
     /// of the columns; NaN for one that the fit does not determine.
-    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64>;
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let nonlinear = nonlinear_parameters.iter().copied().chain(std::iter::repeat(f64::NAN));
+        let coefficient = first(coefficients) + self.claimed_coefficient(drivers);
+        std::iter::once(coefficient).chain(nonlinear).take(self.params().len()).collect()
+    }
+
+    /// The course of claimed parameters, deg/h, one value a sample; `None` where a parameter or a column is missing.
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let excess = number(values, self.params().first()?.name)? - self.claimed_coefficient(drivers);
+        let column = self.column(&further_numbers(self.params(), values)?, drivers)?;
+        Some(column.into_iter().map(|x| excess * x).collect())
+    }
+
+    /// Columns that are fitted when a claim states the effect: a state before the record that no claim can know.
+    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        let nonlinear = further_numbers(self.params(), values);
+        nonlinear.map_or_else(Vec::new, |parameters| self.initial_state(&parameters, drivers))
+    }
+
+    /// Name of the list of coefficients that the course is proportional to, where a claim states one.
+    fn linear_list(&self) -> Option<&'static str> {
+        None
+    }
 
     /// Lists that a claim states beside the numbers, by name.
     fn lists(
         &self,
         _nonlinear_parameters: &[f64],
-        _coefficients: &[f64],
+        coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<(&'static str, Vec<f64>)> {
-        vec![]
-    }
-
-    /// What the estimates do not know beside what their fit tells: physics has more shapes than an effect that stands for any loop,
-    /// any curve or any delay.
-    fn unmodelled(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Unmodelled {
-        Unmodelled::default()
-    }
-
-    /// How many parameters BIC counts for so many columns: as many, where each has a coefficient of its own size.
-    fn counted(&self, columns: usize) -> usize {
-        columns
-    }
-
-    /// Whether one shape is the same cause as an earlier one of the same effect, so that the two are not found beside each
-    /// other.
-    fn same_cause(&self, _earlier: &[f64], _nonlinear_parameters: &[f64]) -> bool {
-        false
+        self.linear_list().map(|name| (name, coefficients.to_vec())).into_iter().collect()
     }
 
     /// Texts that a claim states beside the numbers and a finding reports, by name.
@@ -165,43 +242,48 @@ pub trait MeanModel: Sync {
         None
     }
 
-    /// The course of stated parameters, deg/h, one value a sample; `None` where a parameter or a column is missing.
-    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>>;
+    /// Uncertainty of the estimates beyond that of their fit: physics has more shapes than an effect that stands for any loop,
+    /// any curve or any delay.
+    fn unmodelled(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Unmodelled {
+        Unmodelled::default()
+    }
 
-    /// Where it shows, principal place first, at most three.
-    fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place>;
+    /// Parameters that BIC counts for so many columns: one each, unless their coefficients are of a common size.
+    fn bic_parameters(&self, columns: usize) -> usize {
+        columns
+    }
 
-    /// First step of the local search in each nonlinear parameter, where the likelihood has a peak much narrower than the
-    /// bounds; empty: a hundredth of the bounds.
-    fn steps(&self, _drivers: &Drivers) -> Vec<f64> {
+    /// True where one shape is the same cause as an earlier one of the same effect, so that the two are not found beside each
+    /// other.
+    fn same_cause(&self, _earlier: &[f64], _nonlinear_parameters: &[f64]) -> bool {
+        false
+    }
+
+    /// Natural logarithm of the odds of this effect against others with the same course, from other evidence of the columns.
+    fn odds(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> f64 {
+        0.0
+    }
+
+    /// Samples within which the course is curved, so that the means of the columns do not determine it: they are left out of
+    /// the fit. `parameters` in the order of [`Effect::params`](super::Effect::params).
+    fn curvature_within_average(&self, _parameters: &[f64], _drivers: &Drivers) -> Vec<usize> {
         vec![]
     }
 
-    /// Positions of nonlinear parameters that are whole numbers: tried by [`MeanModel::starts`] and not refined.
-    fn whole(&self) -> &'static [usize] {
-        &[]
-    }
-
-    /// Samples within which the course bends, so that the means of the columns do not determine it: they are left out of the
-    /// fit. `parameters` in the order of [`Effect::params`](super::Effect::params).
-    fn bends_within(&self, _parameters: &[f64], _drivers: &Drivers) -> Vec<usize> {
-        vec![]
-    }
-
-    /// Columns that are fitted when a claim states the effect: a state before the record that no claim can know.
-    fn nuisance_columns(&self, _values: &Values, _drivers: &Drivers) -> Vec<Vec<f64>> {
-        vec![]
-    }
-
-    /// The line that stated parameters describe, for an effect that is one.
-    fn stated_line(&self, _values: &Values) -> Option<StatedLine> {
+    /// The line that claimed parameters describe, for an effect that is one.
+    fn claimed_line(&self, _values: &Values) -> Option<StatedLine> {
         None
     }
 
-    /// How large it is and where that is asked, to tell which size would have been noticed; one entry for each column that
-    /// can drive it. Empty for an effect whose size no single number tells.
-    fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
-        vec![]
+    /// Sizes to ask for when it is determined which size would have been noticed; one entry for each column that can drive it.
+    /// Empty for an effect whose size no single number tells. One column without nonlinear parameters is sized by its
+    /// coefficient.
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let coefficient = self.params().first().filter(|_| self.column(&[], drivers).is_some());
+        coefficient
+            .map(|p| Sizing::linear(p).claimed(self.claimed_coefficient(drivers)))
+            .into_iter()
+            .collect()
     }
 
     /// The course of a size at a place, deg/h, one value a sample.
@@ -215,18 +297,13 @@ pub trait MeanModel: Sync {
         self.course(&sizing.values(place, size), drivers)
     }
 
-    /// What a claim states of a size at a place.
-    fn stated_size(&self, sizing: &Sizing, place: &Values, size: f64, _drivers: &Drivers) -> Values {
+    /// Values by which a claim states a size at a place.
+    fn claimed_size(&self, sizing: &Sizing, place: &Values, size: f64, _drivers: &Drivers) -> Values {
         sizing.values(place, size)
     }
+}
 
-    /// Name of the list of coefficients that the course is proportional to, where a claim states one.
-    fn linear_list(&self) -> Option<&'static str> {
-        None
-    }
-
-    /// Natural logarithm of the odds of this effect against others with the same course, from what else the columns show.
-    fn odds(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> f64 {
-        0.0
-    }
+/// The numbers that a claim states for all parameters but the first; `None` where one is missing.
+fn further_numbers(params: &[Param], values: &Values) -> Option<Vec<f64>> {
+    params.iter().skip(1).map(|p| number(values, p.name)).collect()
 }

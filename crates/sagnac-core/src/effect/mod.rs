@@ -1,15 +1,15 @@
 //! The catalogue of physics that a simulation can leave out: one file an effect.
 //!
-//! An effect says what its parameters are and how it acts. There is one forward model of each: simulation, fitting and
-//! the stated effects of a claim all go through it. Its description for readers (physical cause, signature, the experiment
+//! An effect consists of parameters, a description and a forward model, which simulation, fitting and the effects of a claim
+//! share. Its description for readers (physical cause, signature, the experiment
 //! that would confirm it, source) stands under `effect.<kind>` of the locale tables, not here.
 //!
-//! | file | what it has |
+//! | file | contents |
 //! |---|---|
-//! | `model` | [`Effect`], what every effect says of itself; [`Model`], the three classes |
-//! | `mean`, `spectral`; `Samples` in `model` | what an effect of each class implements |
+//! | `model` | [`Effect`], the description of an effect; [`Model`], the three classes |
+//! | `mean`, `spectral`; `Samples` in `model` | the trait of each class |
 //! | `param`, `domain`, `drivers` | parameters and their values; where an effect shows; the recorded columns |
-//! | `sizing` | what the size of an effect is, and where it is asked for |
+//! | `sizing` | the size of an effect, and the places where it is asked for |
 //! | `shared` | physics and searches that several effects use |
 //! | `kinds` | one file an effect, and [`EFFECTS`], the list of them |
 
@@ -30,13 +30,13 @@ mod spectral;
 pub use column::{Column, OtherColumn};
 pub use domain::{Domain, Place};
 pub use drivers::{ClaimedMean, Drivers, Earth, OtherDriver, StatedLine, Temperature, averages};
-pub use kinds::{EFFECTS, find, parameter};
+pub use kinds::{EFFECTS, any_column_driver, find, parameter};
 pub use mean::{MeanModel, Nuisance, Regressors, Resolution, SearchContext, Starts, Unmodelled};
 pub use model::{
     Background, Detection, Detector, FlatResidual, JumpDetector, Jumps, Knot, Law, Level, LevelDetector,
     LevelLaw, OutlierDetector, Outliers, Pulses, Reported, Rounding, RowDetector, Rows, RowsFound, Samples,
 };
-pub use model::{Effect, Family, Later, Model, StatedByCourse, UNKNOWN, plausible, stateable};
+pub use model::{ClaimedByCourse, Effect, Family, Later, Model, UNKNOWN, plausible, stateable};
 pub use param::{Param, Value, Values, list, number, text};
 pub use shared::low_pass::LowPass;
 pub use shared::response::ResponseLaw;

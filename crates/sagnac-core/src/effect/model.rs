@@ -4,15 +4,30 @@
 //! The search for a mismatch knows no effect by name. It asks an effect on samples for its [`Detector`], whose class says on
 //! what the effect is looked for and what is done with the record where it is found.
 
-use super::{ClaimedMean, Column, Domain, Drivers, MeanModel, Param, Place, Spectrum, Value, Values};
+use super::{
+    ClaimedMean, Column, Domain, Drivers, MeanModel, Param, Place, ResponseLaw, Spectrum, Value, Values,
+};
 
 /// Kind, in `explain.json`, of a cause that the format has no kind for.
 pub const UNKNOWN: &str = "unknown";
 
 /// One piece of physics that a simulation can leave out.
+///
+/// The defaults are those of a plain effect. A search, a claim or a report that treats some effects differently asks for one of
+/// these properties and never for a name.
 pub trait Effect: Sync {
     /// Its id in files, on the command line and in the locale tables.
     fn kind(&self) -> &'static str;
+    /// Its parameters, in the order in which reports list them.
+    fn params(&self) -> &'static [Param];
+    /// The view in which it is clearest.
+    fn domain(&self) -> Domain;
+    /// Recorded columns without which it cannot be found.
+    fn needs(&self) -> &'static [Column];
+    /// Effects that it is most easily confused with, the nearest first.
+    fn confusers(&self) -> &'static [&'static dyn Effect];
+    /// Its class and forward model.
+    fn model(&self) -> Model;
     /// Whether format `explain/1` has a kind for it. It is named only where nothing that has one explains nearly as much.
     fn in_format(&self) -> bool {
         true
@@ -21,8 +36,6 @@ pub trait Effect: Sync {
     fn reported_kind(&self) -> &'static str {
         if self.in_format() { self.kind() } else { UNKNOWN }
     }
-    /// Its parameters, in the order in which reports list them.
-    fn params(&self) -> &'static [Param];
     /// Lists that a claim may state beside the numbers; the bounds are those of every value.
     fn list_params(&self) -> &'static [Param] {
         &[]
@@ -31,22 +44,25 @@ pub trait Effect: Sync {
     fn text_params(&self) -> &'static [&'static str] {
         &[]
     }
-    /// For a response that is described by terms: the kinds whose laws give the finding its name. Empty for an effect that
+    /// True for an effect that a claim carries over from the recording that it was identified in: a property of the unit, which
+    /// its other recordings show too, and no event or state of one recording.
+    fn is_carried_over(&self) -> bool {
+        false
+    }
+    /// The law by which the bias follows a column with a role, as reports name it; `None` for an effect of another form.
+    fn law(&self) -> Option<ResponseLaw> {
+        None
+    }
+    /// For a response that is described by terms: the effects whose laws give the finding its name. Empty for an effect that
     /// has a name of its own.
-    fn named_by_law(&self) -> &'static [&'static str] {
+    fn named_by_law(&self) -> &'static [&'static dyn Effect] {
         &[]
     }
-    /// Recorded columns without which it cannot be found.
-    fn needs(&self) -> &'static [Column] {
-        &[]
+    /// True for the effect by which the bias follows any column without a role of its own, whatever the law.
+    fn follows_any_column(&self) -> bool {
+        false
     }
-    /// The view in which it is clearest.
-    fn domain(&self) -> Domain;
-    /// Effects that it is most easily taken for, the nearest first.
-    fn confusers(&self) -> &'static [&'static str];
-    /// Its class and forward model.
-    fn model(&self) -> Model;
-    /// How it is found in single samples; `None` for an effect that is fitted to the whole record.
+    /// Detector in single samples; `None` for an effect that is fitted to the whole record.
     fn detector(&self) -> Option<Detector> {
         match self.model() {
             Model::Samples(samples) => Some(samples.detector()),
@@ -61,7 +77,7 @@ pub trait Effect: Sync {
     fn is_short_events(&self) -> bool {
         false
     }
-    /// For an effect that rounds the output: how the step is stated and found.
+    /// For an effect that rounds the output: how the step is claimed and found.
     fn rounding(&self) -> Option<&'static dyn Rounding> {
         None
     }
@@ -69,37 +85,37 @@ pub trait Effect: Sync {
     fn family(&self) -> Option<Family> {
         None
     }
-    /// The effect that two of this kind are together, where the second takes back what the first brought.
+    /// The effect that two of this kind are together, where the second reverses the first.
     fn reversed_pair(&self) -> Option<&'static dyn Effect> {
         None
     }
-    /// For an effect that oscillates at `frequency_hz`: what a record of few cycles cannot tell it from.
+    /// For an effect that oscillates at `frequency_hz`: the effect that a record of few cycles cannot distinguish from it.
     fn if_few_cycles(&self) -> Option<&'static dyn Effect> {
         None
     }
-    /// For an effect that is fitted as a process and stated as the course that the process took.
-    fn stated_by_course(&self) -> Option<&'static dyn StatedByCourse> {
+    /// For an effect that is fitted as a process and claimed as the course that the process took.
+    fn claimed_by_course(&self) -> Option<&'static dyn ClaimedByCourse> {
         None
     }
-    /// The course of stated parameters of an effect that is no [`MeanModel`], deg/h, one value a sample; `None` where they
+    /// The course of claimed parameters of an effect that is no [`MeanModel`], deg/h, one value a sample; `None` where they
     /// determine none.
-    fn stated_course(&self, _values: &Values, _drivers: &Drivers) -> Option<Vec<f64>> {
+    fn claimed_course(&self, _values: &Values, _drivers: &Drivers) -> Option<Vec<f64>> {
         None
     }
-    /// What a later recording of the same unit shows of it. `claim` is the mean that the unit is stated to have.
+    /// Trace of it in a later recording of the same unit. `claim` is the mean that the unit is claimed to have.
     fn later(&self, _values: &Values, _claim: &ClaimedMean) -> Later {
         Later::Same
     }
 }
 
-/// What a later recording of a unit shows of an effect.
+/// Trace of an effect in a later recording of the unit.
 #[derive(Clone)]
 pub enum Later {
     /// The same effect: its cause is still there.
     Same,
     /// Nothing: it happened once, and the bias holds it.
     Nothing,
-    /// Another effect, which is what it left behind.
+    /// Another effect, the state in which it left the unit.
     As(&'static dyn Effect, Values),
 }
 
@@ -115,13 +131,13 @@ pub enum Family {
     Jump,
 }
 
-/// An effect that is fitted as a process, and stated as the course that the process took.
-pub trait StatedByCourse: Sync {
-    /// What a claim states of a course through knots of `time_s` and deg/h.
+/// An effect that is fitted as a process, and claimed as the course that the process took.
+pub trait ClaimedByCourse: Sync {
+    /// Values by which a claim states a course through knots of `time_s` and deg/h.
     fn values(&self, knots: &[Knot]) -> Values;
 
-    /// The fitted parameters of a process of the size and pace of a stated course; `None` for a course of few knots.
-    fn process(&self, stated: &Values) -> Option<Vec<f64>>;
+    /// Fitted parameters of a process with the rms and the rate of change of a claimed course; `None` for a course of few knots.
+    fn process(&self, claimed: &Values) -> Option<Vec<f64>>;
 }
 
 /// The class of an effect, with its forward model.

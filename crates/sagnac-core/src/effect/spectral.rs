@@ -1,6 +1,7 @@
 //! Effects that change the spectrum of the noise.
 
-use super::{LowPass, Place, SpectralSizing, Values};
+use super::shared::power_law::power_law_places;
+use super::{Effect, LowPass, Place, SpectralSizing, Values, number};
 use crate::noise::composite::{Composite, Damped};
 use crate::noise::data::NoiseType;
 use crate::numeric::range::Bounds;
@@ -23,7 +24,7 @@ pub struct ModeBin {
     pub even_ends: bool,
 }
 
-/// What a search for spectral effects may use.
+/// Data for a search of spectral effects.
 pub struct SpectralContext<'a> {
     /// The bins, by frequency.
     pub bins: &'a [ModeBin],
@@ -35,40 +36,77 @@ pub struct SpectralContext<'a> {
     pub grid_step_arcsec: Option<f64>,
 }
 
-/// How an effect changes the spectrum.
+/// The way in which an effect changes the spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SpectrumAct {
     /// Adds a density.
     Adds,
     /// Multiplies the density of everything else.
     Filters,
-    /// Sets N, B or K of the claim free; its parameter is the whole coefficient.
-    Frees(NoiseType),
+    /// Unconstrains N, B or K of the claim; its parameter is the whole coefficient.
+    Unconstrains(NoiseType),
 }
 
 /// An effect that changes the spectrum of the noise. Its parameters are positive and are fitted by their logarithms.
-pub trait Spectrum: Sync {
-    /// How it acts.
-    fn act(&self) -> SpectrumAct;
-
-    /// Two-sided density of a bin, (deg/h)²/Hz, or the factor of a filter, for fitted parameters. Unused for
-    /// [`SpectrumAct::Frees`].
-    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64;
-
-    /// [`Spectrum::density`] of many bins.
-    fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
-        bins.iter().map(|b| self.density(fitted, b)).collect()
+///
+/// The defaults are those of the plainest effect, an unconstrained coefficient of the claim, which has only its `act`. A density
+/// or a filter has its own `densities`, `starts`, `bounds`, `trials`, `compose` and `places`.
+pub trait Spectrum: Effect {
+    /// The way in which it acts.
+    fn act(&self) -> SpectrumAct {
+        SpectrumAct::Adds
     }
 
-    /// Samples at either end of a record that a filter makes unlike noise that is even about the ends. They leak into the modes
-    /// that the filter leaves next to nothing, the same few samples into all of them.
-    fn unlike_at_ends(&self, _fitted: &[f64], _dt_s: f64) -> usize {
-        0
+    /// Two-sided density of each bin, (deg/h)²/Hz, or the factor of a filter, for fitted parameters. Unused for
+    /// [`SpectrumAct::Unconstrains`].
+    fn densities(&self, _fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
+        vec![0.0; bins.len()]
     }
 
-    /// Frequencies below the Nyquist frequency at which a filter of samples leaves nothing, Hz.
-    fn zeros_hz(&self, _fitted: &[f64], _dt_s: f64) -> Vec<f64> {
+    /// [`Spectrum::densities`] of one bin.
+    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        self.densities(fitted, &[*bin]).first().copied().unwrap_or(0.0)
+    }
+
+    /// Adds the effect to a noise model for simulation of samples of `dt_s`: an unconstrained coefficient replaces that of the
+    /// model.
+    fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
+        if let (SpectrumAct::Unconstrains(term), [coefficient]) = (self.act(), fitted) {
+            noise.terms = noise.terms.with(term, *coefficient);
+        }
+    }
+
+    /// Intervals in which it shows, principal one first, at most three: those of its term, for an unconstrained coefficient.
+    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
+        match self.act() {
+            SpectrumAct::Unconstrains(term) => power_law_places(term, fitted, context),
+            SpectrumAct::Adds | SpectrumAct::Filters => vec![],
+        }
+    }
+
+    /// Parameters that a fit begins from, several.
+    fn starts(&self, _context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
+        vec![vec![]]
+    }
+
+    /// Bounds of the fitted parameters.
+    fn bounds(&self, _context: &SpectralContext<'_>) -> Vec<Bounds> {
         vec![]
+    }
+
+    /// Independent points that the search looks at: the p-value is multiplied by their number.
+    fn trials(&self, _context: &SpectralContext<'_>) -> f64 {
+        1.0
+    }
+
+    /// The parameters in the order of [`Effect::params`](super::Effect::params); NaN for one not determined.
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+        fitted.to_vec()
+    }
+
+    /// The fitted parameters of claimed ones; `None` where one is missing.
+    fn claimed_parameters(&self, values: &Values) -> Option<Vec<f64>> {
+        self.params().iter().map(|p| number(values, p.name)).collect()
     }
 
     /// The power of a parameter that the whole density is proportional to; `None` for one that changes its shape.
@@ -76,8 +114,8 @@ pub trait Spectrum: Sync {
         None
     }
 
-    /// Whether a fit moves a parameter from where it began.
-    fn moves(&self, _fitted: &[f64], _parameter: usize) -> bool {
+    /// False for a parameter that a fit leaves where it began.
+    fn is_refined(&self, _fitted: &[f64], _parameter: usize) -> bool {
         true
     }
 
@@ -86,39 +124,29 @@ pub trait Spectrum: Sync {
         true
     }
 
-    /// Parameters that a fit begins from, several.
-    fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>>;
+    /// Samples at either end of a record that a filter makes different from noise that is even about the ends. They leak into
+    /// the modes that the filter suppresses, the same few samples into all of them.
+    fn edge_effect(&self, _fitted: &[f64], _dt_s: f64) -> usize {
+        0
+    }
 
-    /// Bounds of the fitted parameters.
-    fn bounds(&self, context: &SpectralContext<'_>) -> Vec<Bounds>;
-
-    /// Independent points that the search looks at: the p-value is multiplied by their number.
-    fn trials(&self, context: &SpectralContext<'_>) -> f64;
-
-    /// The parameters in the order of [`super::Effect::params`]; NaN for one not determined.
-    fn parameters(&self, fitted: &[f64]) -> Vec<f64>;
-
-    /// The fitted parameters of stated ones; `None` where one is missing.
-    fn stated(&self, values: &Values) -> Option<Vec<f64>>;
-
-    /// Adds the effect to a noise model for simulation of samples of `dt_s`.
-    fn compose(&self, fitted: &[f64], dt_s: f64, noise: &mut Composite);
+    /// Frequencies below the Nyquist frequency at which a filter of samples leaves nothing, Hz.
+    fn zeros_hz(&self, _fitted: &[f64], _dt_s: f64) -> Vec<f64> {
+        vec![]
+    }
 
     /// The filter that simulated samples go through, where the noise model has none for it.
     fn low_pass(&self, _fitted: &[f64], _dt_s: f64) -> Option<LowPass> {
         None
     }
 
-    /// Where it shows, principal place first, at most three.
-    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place>;
-
-    /// How large it is and where that is asked, to tell which size would have been noticed; `None` for one whose size no
-    /// single number tells.
+    /// Size to ask for when it is determined which size would have been noticed; `None` for an effect whose size no single
+    /// number tells.
     fn sizing(&self, _context: &SpectralContext<'_>) -> Option<SpectralSizing> {
         None
     }
 
-    /// True for one of which a record can hold several, each with parameters of its own.
+    /// True for an effect of which a record can hold several, each with parameters of its own.
     fn repeats(&self) -> bool {
         false
     }
@@ -128,7 +156,7 @@ pub trait Spectrum: Sync {
         false
     }
 
-    /// What a claim states of a process that was identified in samples of `dt_s`; `None` for one of another kind.
+    /// Values by which a claim states a process that was identified in samples of `dt_s`; `None` for one of another kind.
     fn values_of(&self, _process: &Damped, _dt_s: f64) -> Option<Values> {
         None
     }

@@ -62,7 +62,7 @@ fn candidate(fitted: &Candidate, problem: &Problem) -> Stated {
 
 fn stated(effect: &'static dyn Effect, slot: Slot, tried: &Tried, problem: &Problem) -> Stated {
     let mut values = estimates::of(effect, slot, tried, &problem.spectra).stated;
-    if let (Some(by_course), Slot::Spectrum(i)) = (effect.stated_by_course(), slot) {
+    if let (Some(by_course), Slot::Spectrum(i)) = (effect.claimed_by_course(), slot) {
         values = by_course.values(&drawn_course(tried, i, problem));
     }
     Stated { effect, values: stateable(effect, values) }

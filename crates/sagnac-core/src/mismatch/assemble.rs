@@ -202,7 +202,7 @@ fn causes(
     } else if let Some(mut unknown) = departs {
         unnamed::absorb(&mut unknown, &mut out);
         // What repeats without being a sinusoid has lines for its parts: they are no causes beside it.
-        if after.iter().any(|d| d.test == "comb" && d.below(unnamed::DEPARTED, after.len())) {
+        if after.iter().any(|d| d.is_periodic() && d.below(unnamed::DEPARTED, after.len())) {
             out.retain(|f| find(&f.kind).and_then(|e| e.family()) != Some(Family::Line));
         }
         out.push(unknown);
@@ -258,7 +258,7 @@ fn findings(named: &[Named], allowed: usize) -> Vec<Finding> {
 /// A chosen effect with its parameters and places.
 fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) -> Named {
     let mut estimated = estimates::of(chosen.effect, chosen.slot, best, &problem.spectra);
-    if let (Some(by_course), Slot::Spectrum(i)) = (chosen.effect.stated_by_course(), chosen.slot) {
+    if let (Some(by_course), Slot::Spectrum(i)) = (chosen.effect.claimed_by_course(), chosen.slot) {
         estimated.stated = by_course.values(&contribution::drawn_course(best, i, problem));
     }
     let mut places = places(chosen.effect, chosen.slot, best, chosen, problem);

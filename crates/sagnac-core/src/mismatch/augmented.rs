@@ -56,7 +56,7 @@ pub(super) fn augmented(
 }
 
 fn frees_white_noise(effect: &dyn Effect) -> bool {
-    let frees = SpectrumAct::Frees(NoiseType::AngleRandomWalk);
+    let frees = SpectrumAct::Unconstrains(NoiseType::AngleRandomWalk);
     matches!(effect.model(), Model::Spectrum(s) if s.act() == frees)
 }
 

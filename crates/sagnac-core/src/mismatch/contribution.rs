@@ -139,7 +139,7 @@ pub fn added_rms(
     if let Some(part) = noise.spectra.get_mut(index) {
         part.fitted = fitted.to_vec();
         if let Model::Spectrum(s) = part.effect.model()
-            && let SpectrumAct::Frees(term) = s.act()
+            && let SpectrumAct::Unconstrains(term) = s.act()
         {
             base = base_index(term);
         }

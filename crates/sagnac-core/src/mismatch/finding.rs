@@ -1,7 +1,7 @@
 //! What an explanation says, as `explain.json` has it.
 
 use super::noticeable_record::{NotComputed, NoticeableSize};
-use crate::effect::{Domain, Place};
+use crate::effect::{Domain, Place, UNKNOWN, find};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
@@ -132,13 +132,14 @@ impl Finding {
     /// Its equivalents that are another cause: that a column without a role is followed is the same cause by another name, where
     /// the finding says which column it is.
     pub fn other_causes(&self) -> impl Iterator<Item = &String> {
-        let same = self.column.is_some() && self.kind != "column_driver";
-        self.equivalents.iter().filter(move |kind| !(same && *kind == "column_driver"))
+        let any_column = |kind: &str| find(kind).is_some_and(|e| e.follows_any_column());
+        let same = self.column.is_some() && !any_column(&self.kind);
+        self.equivalents.iter().filter(move |kind| !(same && any_column(kind)))
     }
 
     /// True for a cause that nothing in the catalogue describes.
     pub fn is_unnamed(&self) -> bool {
-        self.effect_id() == "unknown"
+        self.effect_id() == UNKNOWN
     }
 }
 

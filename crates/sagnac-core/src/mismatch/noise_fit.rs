@@ -73,9 +73,11 @@ impl Noise {
         let base = [terms.n, terms.b, terms.k];
         let u = &claim.uncertainty;
         let spectra = claim.effects.iter().filter_map(|stated| match stated.effect.model() {
-            Model::Spectrum(s) => {
-                Some(SpectrumIn { effect: stated.effect, fitted: s.stated(&stated.values)?, stated: true })
-            }
+            Model::Spectrum(s) => Some(SpectrumIn {
+                effect: stated.effect,
+                fitted: s.claimed_parameters(&stated.values)?,
+                stated: true,
+            }),
             _ => None,
         });
         let mut out = Noise {
@@ -90,7 +92,7 @@ impl Noise {
         for stated in spectra {
             let frees = stated.spectrum().map(|s| s.act());
             match (frees, stated.fitted.first()) {
-                (Some(SpectrumAct::Frees(term)), Some(value)) => {
+                (Some(SpectrumAct::Unconstrains(term)), Some(value)) => {
                     if let Some(i) = base_index(term) {
                         out.base[i] = *value;
                         out.claimed[i] = *value;
@@ -158,7 +160,7 @@ impl Noise {
         let Some(spectrum) = part.spectrum() else { return vec![0.0; spectral.bins.len()] };
         match spectrum.act() {
             SpectrumAct::Adds => spectrum.densities(&part.fitted, &spectral.bins),
-            SpectrumAct::Frees(term) => {
+            SpectrumAct::Unconstrains(term) => {
                 let i = base_index(term).unwrap_or(0);
                 spectral.units.iter().map(|u| self.base[i].powi(2) * u[i]).collect()
             }
@@ -171,7 +173,7 @@ impl Noise {
     pub fn added_densities(&self, index: usize, spectral: &SpectralData) -> Vec<f64> {
         let mut out = self.part_densities(index, spectral);
         let act = self.spectra.get(index).and_then(|p| p.spectrum()).map(|s| s.act());
-        if let Some(SpectrumAct::Frees(term)) = act
+        if let Some(SpectrumAct::Unconstrains(term)) = act
             && let Some(i) = base_index(term)
         {
             let stated = self.claimed[i].powi(2);
@@ -189,8 +191,8 @@ impl Noise {
             })
             .map(Which::Base);
         let effects = self.spectra.iter().enumerate().filter(|(_, s)| !s.stated).flat_map(|(e, s)| {
-            let spectrum = s.spectrum().filter(|x| !matches!(x.act(), SpectrumAct::Frees(_)));
-            let moves = move |p: &usize| spectrum.is_some_and(|x| x.moves(&s.fitted, *p));
+            let spectrum = s.spectrum().filter(|x| !matches!(x.act(), SpectrumAct::Unconstrains(_)));
+            let moves = move |p: &usize| spectrum.is_some_and(|x| x.is_refined(&s.fitted, *p));
             (0..s.fitted.len()).filter(moves).map(move |p| Which::Effect(e, p))
         });
         base.chain(effects).collect()
@@ -210,7 +212,7 @@ impl Noise {
             Which::Base(i) => {
                 self.base[i] = value;
                 for part in &mut self.spectra {
-                    if let Some(SpectrumAct::Frees(term)) = part.spectrum().map(|s| s.act())
+                    if let Some(SpectrumAct::Unconstrains(term)) = part.spectrum().map(|s| s.act())
                         && base_index(term) == Some(i)
                     {
                         part.fitted = vec![value];

@@ -65,7 +65,7 @@ impl Problem {
         for stated in &claim.effects {
             let course = match stated.effect.model() {
                 Model::Mean(c) => c.course(&stated.values, &drivers),
-                _ => stated.effect.stated_course(&stated.values, &drivers),
+                _ => stated.effect.claimed_course(&stated.values, &drivers),
             };
             if let Some(course) = course {
                 residual.iter_mut().zip(&course).for_each(|(r, c)| *r -= c);
@@ -75,7 +75,7 @@ impl Problem {
         for stated in &claim.effects {
             let named = |p: &Param| number(&stated.values, p.name).unwrap_or(f64::NAN);
             let parameters: Vec<f64> = stated.effect.params().iter().map(named).collect();
-            let aside = bends_within(stated.effect, &parameters, &drivers);
+            let aside = curvature_within_average(stated.effect, &parameters, &drivers);
             aside.into_iter().for_each(|i| usable[i] = false);
         }
         let rows = usable.iter().filter(|u| **u).count();
@@ -121,7 +121,7 @@ impl Problem {
             _ => None,
         };
         let (detector, stated) = self.claim.effects.iter().find_map(|e| Some((of(e)?, e)))?;
-        let known = stated.effect.stated_course(&stated.values, &self.drivers).is_some();
+        let known = stated.effect.claimed_course(&stated.values, &self.drivers).is_some();
         (!known).then_some((detector, &stated.values))
     }
 
@@ -241,7 +241,7 @@ impl Problem {
             let Model::Mean(model) = course.effect.model() else { return vec![] };
             let parameters =
                 model.parameters(&course.nonlinear_parameters, &course.coefficients, &self.drivers);
-            bends_within(course.effect, &parameters, &self.drivers)
+            curvature_within_average(course.effect, &parameters, &self.drivers)
         };
         let aside: Vec<usize> = tried.hypothesis.courses.iter().flat_map(of).collect();
         if aside.is_empty() {
@@ -272,29 +272,29 @@ impl Problem {
 }
 
 /// Samples of which averaged columns do not tell the course of an effect; none where that would be a good part of the record.
-fn bends_within(effect: &dyn Effect, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
+fn curvature_within_average(effect: &dyn Effect, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
     const MAX_SHARE: f64 = 0.05;
     let Model::Mean(course) = effect.model() else { return vec![] };
-    let samples = course.bends_within(parameters, drivers);
+    let samples = course.curvature_within_average(parameters, drivers);
     if samples.len() as f64 > MAX_SHARE * drivers.samples as f64 { vec![] } else { samples }
 }
 
 /// Samples at either end that filters make unlike noise that is even about the ends.
-fn unlike_at_ends(filters: &[SpectrumIn], dt_s: f64) -> usize {
+fn edge_effect(filters: &[SpectrumIn], dt_s: f64) -> usize {
     let of = |filter: &SpectrumIn| match filter.effect.model() {
-        Model::Spectrum(s) => s.unlike_at_ends(&filter.fitted, dt_s),
+        Model::Spectrum(s) => s.edge_effect(&filter.fitted, dt_s),
         _ => 0,
     };
     filters.iter().map(of).max().unwrap_or(0)
 }
 
 fn has_ends_aside(filters: &[SpectrumIn], dt_s: f64) -> bool {
-    unlike_at_ends(filters, dt_s) > 0
+    edge_effect(filters, dt_s) > 0
 }
 
 /// Sets the samples aside that filters make unlike the rest; true where there are any.
 fn set_ends_aside(usable: &mut [bool], filters: &[SpectrumIn], dt_s: f64) -> bool {
-    let (n, ends) = (usable.len(), unlike_at_ends(filters, dt_s));
+    let (n, ends) = (usable.len(), edge_effect(filters, dt_s));
     usable[..ends.min(n)].fill(false);
     usable[n.saturating_sub(ends)..].fill(false);
     ends > 0

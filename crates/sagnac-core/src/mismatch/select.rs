@@ -113,7 +113,7 @@ fn course_parameters(course: &CourseIn, spectra: &SpectralDataSet) -> usize {
     let spectral = spectra.of(c.resolution());
     let parts = c.regressors(&course.nonlinear_parameters, &spectral.drivers);
     let nonlinear_parameters = LocalSearch::of(c, &spectral.drivers).free();
-    c.counted(parts.columns.len()) + parts.nuisance.len() + nonlinear_parameters
+    c.bic_parameters(parts.columns.len()) + parts.nuisance.len() + nonlinear_parameters
 }
 
 /// BIC of an addition with what it lets free beside its own parameters, as the state of a delay before the record, charged
@@ -148,7 +148,7 @@ fn bic_excess(candidate: &Candidate, best: &Tried, modes: Option<f64>, rows: usi
 /// Puts a freed coefficient back under its prior; the number of parameters that go.
 fn restore(noise: &mut Noise, part: &SpectrumIn) -> usize {
     if let Model::Spectrum(s) = part.effect.model()
-        && let SpectrumAct::Frees(term) = s.act()
+        && let SpectrumAct::Unconstrains(term) = s.act()
         && let Some(i) = base_index(term)
     {
         noise.freed[i] = false;
@@ -292,8 +292,8 @@ fn laws<'a>(effect: &dyn Effect, rivals: &'a [Candidate]) -> Vec<&'a Candidate> 
     /// Share of the best law's gain from which another is no worse a name.
     const NEAR: f64 = 0.7;
     let worth = |c: &&Candidate| worth_of_law(c);
-    let kinds = effect.named_by_law();
-    let mut laws: Vec<&Candidate> = rivals.iter().filter(|c| kinds.contains(&c.effect.kind())).collect();
+    let by_law = |c: &&Candidate| effect.named_by_law().iter().any(|law| law.kind() == c.effect.kind());
+    let mut laws: Vec<&Candidate> = rivals.iter().filter(by_law).collect();
     laws.sort_descending_by(|a| worth(a));
     let best = laws.first().map_or(0.0, worth);
     laws.retain(|c| worth(c) >= NEAR * best);

@@ -94,7 +94,7 @@ fn reversible_step_pair(named: &[Named]) -> Option<[usize; 2]> {
 pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem, options: &Options) {
     let Some([first, second]) = reversible_step_pair(named) else { return };
     let pair = named[first].effect.reversed_pair().filter(|e| options.allows(e.kind()));
-    let Some((effect, by_course)) = pair.and_then(|e| Some((e, e.stated_by_course()?))) else { return };
+    let Some((effect, by_course)) = pair.and_then(|e| Some((e, e.claimed_by_course()?))) else { return };
     let value = |i: usize, name: &str| named[i].estimated.reported.get(name).cloned();
     let (Some(up), Some(down)) = (value(first, STEP), value(second, STEP)) else { return };
     let (Some(from), Some(to)) = (named[first].instant().cloned(), named[second].instant().cloned()) else {

@@ -123,8 +123,8 @@ fn take(claim: &mut Claim, effects: Vec<Stated>, augmented: &Claim) {
                 (augmented.noise.n, augmented.noise.b, augmented.noise.k);
         }
         if let Model::Spectrum(spectrum) = stated.effect.model()
-            && let SpectrumAct::Frees(term) = spectrum.act()
-            && let Some(value) = spectrum.stated(&stated.values).and_then(|v| v.first().copied())
+            && let SpectrumAct::Unconstrains(term) = spectrum.act()
+            && let Some(value) = spectrum.claimed_parameters(&stated.values).and_then(|v| v.first().copied())
         {
             let (noise, u) = (&mut claim.noise, &mut claim.uncertainty);
             let (slot, known) = match term {

@@ -84,7 +84,7 @@ impl Witness<'_> {
             Model::Mean(_) => self.by_course(stated, claim),
             Model::Samples(_) => None,
         };
-        let by_findings = stated.effect.detector().is_some() || stated.effect.stated_by_course().is_some();
+        let by_findings = stated.effect.detector().is_some() || stated.effect.claimed_by_course().is_some();
         let own = if by_findings { own() } else { None };
         let by_kind = own.map(|own| self.by_kind(stated.effect.kind(), found, &own));
         by_model.unwrap_or(0.0).max(by_kind.unwrap_or(0.0))
@@ -93,10 +93,10 @@ impl Witness<'_> {
     fn by_spectrum(&self, spectrum: &'static dyn Spectrum, stated: &Stated, claim: &Claim) -> Option<f64> {
         let mut with = free(claim);
         // A driver is stated as a course; in another record the same quantity takes another one of the same size and pace.
-        let driver = stated.effect.stated_by_course().and_then(|s| s.process(&stated.values));
+        let driver = stated.effect.claimed_by_course().and_then(|s| s.process(&stated.values));
         let parameters = match &driver {
             Some(driver) => driver.len(),
-            None => spectrum.stated(&stated.values)?.len(),
+            None => spectrum.claimed_parameters(&stated.values)?.len(),
         };
         if driver.is_none() {
             with.effects.push(stated.clone());
@@ -116,7 +116,7 @@ impl Witness<'_> {
             fitted,
             stated: false,
         }));
-        let (held, best) = if let SpectrumAct::Frees(term) = spectrum.act() {
+        let (held, best) = if let SpectrumAct::Unconstrains(term) = spectrum.act() {
             let mut held = noise.clone();
             held.deviation[base_index(term)?] = 0.0;
             (worth(held), worth(noise))
@@ -210,7 +210,7 @@ fn unlike(here: &Finding, there: &Finding, share: f64) -> f64 {
 fn course(stated: &Stated, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
     match stated.effect.model() {
         Model::Mean(c) => c.course(values, drivers),
-        _ => stated.effect.stated_course(values, drivers),
+        _ => stated.effect.claimed_course(values, drivers),
     }
 }
 

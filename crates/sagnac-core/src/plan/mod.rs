@@ -126,7 +126,7 @@ fn follows(questions: &[Question]) -> BTreeSet<Column> {
 
 /// Columns worth recording where an explanation follows something that was not recorded.
 fn to_record(claim: &Claim, causes: &[Cause<'_>]) -> Vec<String> {
-    let unrecorded = |s: &&Stated| s.effect.stated_by_course().is_some();
+    let unrecorded = |s: &&Stated| s.effect.claimed_by_course().is_some();
     if !causes.iter().flat_map(|c| &c.stated).any(unrecorded) {
         return vec![];
     }

@@ -77,10 +77,10 @@ impl Shown {
                 out.dof = (columns + free_parameters(course, spectral)) as f64;
             }
             Model::Spectrum(spectrum) => {
-                let process = || stated.effect.stated_by_course()?.process(&stated.values);
-                let fitted = spectrum.stated(&stated.values).or_else(process)?;
+                let process = || stated.effect.claimed_by_course()?.process(&stated.values);
+                let fitted = spectrum.claimed_parameters(&stated.values).or_else(process)?;
                 out.dof = fitted.len() as f64;
-                if let SpectrumAct::Frees(term) = spectrum.act()
+                if let SpectrumAct::Unconstrains(term) = spectrum.act()
                     && let (Some(i), Some(value)) = (base_index(term), fitted.first())
                 {
                     (out.noise.base[i], out.noise.freed[i]) = (*value, true);

@@ -17,7 +17,7 @@ pub(super) fn composed(claim: &Claim) -> Result<Composite, SimulateError> {
     let mut noise = Composite::from(claim.noise);
     for stated in &claim.effects {
         let Model::Spectrum(spectrum) = stated.effect.model() else { continue };
-        match spectrum.stated(&stated.values) {
+        match spectrum.claimed_parameters(&stated.values) {
             Some(fitted) => spectrum.compose(&fitted, 1.0 / claim.sample_rate_hz, &mut noise),
             // It is stated as a course.
             None if course_of(stated) => {}
@@ -34,14 +34,14 @@ pub(super) fn composed(claim: &Claim) -> Result<Composite, SimulateError> {
 pub(super) fn low_pass(claim: &Claim) -> Option<LowPass> {
     claim.effects.iter().find_map(|stated| {
         let Model::Spectrum(spectrum) = stated.effect.model() else { return None };
-        spectrum.low_pass(&spectrum.stated(&stated.values)?, 1.0 / claim.sample_rate_hz)
+        spectrum.low_pass(&spectrum.claimed_parameters(&stated.values)?, 1.0 / claim.sample_rate_hz)
     })
 }
 
 /// True for an effect that changes the spectrum where it is fitted, and is a course where it is stated.
 fn course_of(stated: &Stated) -> bool {
     let one = Drivers { samples: 1, dt_s: 1.0, ..Drivers::default() };
-    stated.effect.stated_course(&stated.values, &one).is_some()
+    stated.effect.claimed_course(&stated.values, &one).is_some()
 }
 
 /// A running noise, without the rounding of the angle.

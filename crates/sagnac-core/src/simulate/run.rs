@@ -245,7 +245,7 @@ fn needs(order: &Order<'_>) -> Result<(), SimulateError> {
 fn course(stated: &Stated, drivers: &Drivers) -> Result<Option<Vec<f64>>, SimulateError> {
     let model = match stated.effect.model() {
         Model::Mean(model) => model,
-        Model::Spectrum(_) => return Ok(stated.effect.stated_course(&stated.values, drivers)),
+        Model::Spectrum(_) => return Ok(stated.effect.claimed_course(&stated.values, drivers)),
         Model::Samples(_) => return Ok(None),
     };
     match model.course(&stated.values, drivers) {

@@ -27,14 +27,19 @@ fn mean(figures: &mut Figures, effect: &dyn Effect, course: &dyn MeanModel) {
     powers[0] = f64::INFINITY;
     let context = SearchContext { score: &score, modes: &modes, powers: &powers };
     let starts = course.starts(&drivers, &context);
-    let properties =
-        (course.resolution(), course.replaces(), course.whole(), course.steps(&drivers), course.counted(3));
+    let properties = (
+        course.resolution(),
+        course.replaces(),
+        course.whole(),
+        course.steps(&drivers),
+        course.bic_parameters(3),
+    );
     figures.add(format!("{kind} search"), &(&starts, course.bounds(&drivers), properties));
     for (at, point) in starts.points.iter().enumerate().take(2) {
         let parts = course.regressors(point, &drivers);
         let coefficients: Vec<f64> = (0..parts.columns.len()).map(|k| 0.7 - 0.4 * k as f64).collect();
         let numbers = course.parameters(point, &coefficients, &drivers);
-        let bends = course.bends_within(&numbers, &drivers);
+        let bends = course.curvature_within_average(&numbers, &drivers);
         let told = (
             course.lists(point, &coefficients, &drivers),
             course.texts(point, &drivers),
@@ -101,7 +106,7 @@ fn spectrum(figures: &mut Figures, kind: &str, spectrum: &dyn Spectrum) {
     figures.add(format!("{kind} density"), &(spectrum.act(), spectrum.densities(&fitted, &bins)));
     let density = |b: &ModeBin| match spectrum.act() {
         SpectrumAct::Filters => white * spectrum.density(&fitted, b),
-        SpectrumAct::Frees(_) => 2.0 * white,
+        SpectrumAct::Unconstrains(_) => 2.0 * white,
         SpectrumAct::Adds => white + spectrum.density(&fitted, b),
     };
     let scatter = noise(5, bins.len(), 0.5);
@@ -120,8 +125,8 @@ fn spectrum(figures: &mut Figures, kind: &str, spectrum: &dyn Spectrum) {
     figures.add(format!("{kind} model"), &(composite, spectrum.low_pass(&fitted, 0.1)));
     let parameters = spectrum.parameters(&fitted);
     let of: Vec<_> =
-        (0..fitted.len()).map(|p| (spectrum.scales_with(p), spectrum.moves(&fitted, p))).collect();
-    let ends = (spectrum.unlike_at_ends(&fitted, 0.1), spectrum.zeros_hz(&fitted, 0.1));
+        (0..fitted.len()).map(|p| (spectrum.scales_with(p), spectrum.is_refined(&fitted, p))).collect();
+    let ends = (spectrum.edge_effect(&fitted, 0.1), spectrum.zeros_hz(&fitted, 0.1));
     let flags =
         (spectrum.repeats(), spectrum.is_relaxation(), spectrum.has_course(), spectrum.plausible(&fitted));
     let damped = |frequency_hz: f64, decay_time_s: f64| Damped { rms_deg_h: 0.2, frequency_hz, decay_time_s };
@@ -283,7 +288,8 @@ fn properties() {
     for effect in EFFECTS {
         let other = |e: Option<&'static dyn Effect>| e.map(|e| e.kind());
         let kinds = (effect.kind(), effect.reported_kind(), effect.in_format(), effect.domain());
-        let relations = (effect.needs(), effect.named_by_law(), effect.family());
+        let laws: Vec<&str> = effect.named_by_law().iter().map(|e| e.kind()).collect();
+        let relations = (effect.needs(), laws, effect.family());
         let others = (other(effect.reversed_pair()), other(effect.if_few_cycles()), effect.is_short_events());
         let names: Vec<_> =
             effect.params().iter().map(|p| (p.name, p.unit, p.lower, p.upper, p.signed, p.whole)).collect();
@@ -295,7 +301,7 @@ fn properties() {
             _ => stated(effect.kind()),
         };
         figures.add(format!("{} later", effect.kind()), &later(*effect, &values));
-        if let Some(by_course) = effect.stated_by_course() {
+        if let Some(by_course) = effect.claimed_by_course() {
             let knots: Vec<sagnac_core::effect::Knot> = (0..12)
                 .map(|i| sagnac_core::effect::Knot {
                     at: 1000.0 + 200.0 * f64::from(i),
@@ -303,7 +309,7 @@ fn properties() {
                 })
                 .collect();
             let values = by_course.values(&knots);
-            let course = effect.stated_course(&values, &drivers());
+            let course = effect.claimed_course(&values, &drivers());
             figures.add(format!("{} by course", effect.kind()), &(by_course.process(&values), course));
         }
         if let Some(rounding) = effect.rounding() {

@@ -2,8 +2,8 @@
 
 use crate::effect::shared::search::log_grid;
 use crate::effect::{
-    Domain, Family, LowPass, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct,
-    Values, number,
+    Domain, LowPass, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct, Values,
+    number,
 };
 use crate::noise::composite::{Bandwidth, Composite, Sampling, averaged_white_mode, filtered_white};
 use crate::numeric::optimize::bisect;
@@ -38,12 +38,12 @@ const FORMS: [Form; 7] = [
     Form::BilinearFirst,
     Form::BilinearSecond,
 ];
-/// Least power that is let through: below it is what rounding leaves.
+/// Least factor of a power: a smaller one is rounding.
 const MIN_POWER: f64 = 1e-9;
 /// Observed over expected power, times the samples, below which bins hold the ends of the record and not what a filter does.
-const FAINT: f64 = 30.0;
-/// Rounds in which the beginning of a cutoff is brought nearer.
-const CLOSER: i32 = 3;
+const MIN_OBSERVED_RATIO: f64 = 30.0;
+/// Number of rounds in which the first cutoff of a fit is refined.
+const CUTOFF_REFINEMENTS: i32 = 3;
 /// Longest moving average that is tried, samples.
 const MAX_AVERAGE_SAMPLES: usize = 64;
 
@@ -84,24 +84,20 @@ fn average_samples(cutoff_hz: f64, dt_s: f64) -> usize {
 
 describe! {
     BandwidthFilter, "bandwidth_filter", Spectrum in Frequency, needs [],
-    confusers ["markov_short", "excess_arw", "time_offset"],
-    with {
-        fn family(&self) -> Option<Family> {
-            Some(Family::Spectrum)
-        }
-    }
+    confusers [MarkovShort, ExcessArw, TimeOffset],
+    properties [carried_over, family Spectrum]
 }
 
 /// Offsets in half widths of a bin, and weights, that average a density within it: about the zeros of a moving average it
 /// is a parabola, which three points of Gauss do exactly.
-const WITHIN: [(f64, f64); 3] =
+const GAUSS_POINTS: [(f64, f64); 3] =
     [(-0.774_596_669_241_483_4, 5.0 / 18.0), (0.0, 8.0 / 18.0), (0.774_596_669_241_483_4, 5.0 / 18.0)];
 
 /// Mean over the modes of a bin of a function of the order of a mode.
 fn mean_within(bin: &ModeBin, of: impl Fn(f64) -> f64) -> f64 {
     let half = 0.5 * (bin.modes.max(1) - 1) as f64;
     let middle = bin.mode as f64 + half;
-    if bin.modes < 3 { of(middle) } else { WITHIN.iter().map(|(x, w)| w * of(middle + x * half)).sum() }
+    if bin.modes < 3 { of(middle) } else { GAUSS_POINTS.iter().map(|(x, w)| w * of(middle + x * half)).sum() }
 }
 
 /// Power of white noise behind a moving average in a bin.
@@ -127,11 +123,7 @@ impl Spectrum for BandwidthFilter {
         SpectrumAct::Filters
     }
 
-    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
-        self.densities(fitted, &[*bin])[0]
-    }
-
-    /// What the filter leaves of white noise: slower noise lies where it leaves everything.
+    /// Factors for white noise: slower noise lies where the filter passes everything.
     fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
         let Some(first) = bins.first() else { return vec![] };
         let cutoff = fitted.first().copied().unwrap_or(1e9).max(1e-12);
@@ -156,7 +148,7 @@ impl Spectrum for BandwidthFilter {
         }
     }
 
-    fn unlike_at_ends(&self, fitted: &[f64], dt_s: f64) -> usize {
+    fn edge_effect(&self, fitted: &[f64], dt_s: f64) -> usize {
         // The covariance of noise that is even about an end differs from that of filtered noise where two distances
         // from the end add up to less than the memory.
         let memory = match of_samples(fitted, dt_s) {
@@ -178,7 +170,7 @@ impl Spectrum for BandwidthFilter {
     }
 
     /// The form is chosen among the starts, and the cutoff of a whole number of samples with it.
-    fn moves(&self, fitted: &[f64], parameter: usize) -> bool {
+    fn is_refined(&self, fitted: &[f64], parameter: usize) -> bool {
         parameter == 0 && form(fitted) != Form::MovingAverage
     }
 
@@ -190,7 +182,7 @@ impl Spectrum for BandwidthFilter {
             let factors = self.densities(start, context.bins);
             let (mut logarithms, mut ratios, mut modes) = (0.0, 0.0, 0.0);
             for (i, (bin, factor)) in context.bins.iter().zip(factors).enumerate() {
-                if context.observed[i] * (bin.samples as f64) < FAINT * context.expected[i] {
+                if context.observed[i] * (bin.samples as f64) < MIN_OBSERVED_RATIO * context.expected[i] {
                     continue;
                 }
                 let s = (context.expected[i] * factor).max(1e-300);
@@ -212,7 +204,7 @@ impl Spectrum for BandwidthFilter {
                 best(cutoffs.into_iter().filter(|c| within(*c, number)).map(|c| vec![c, number]).collect())
             };
             // Steep filters of a long record are fitted from nearby alone.
-            (0..CLOSER).fold(of(grid.clone()), |found, round| {
+            (0..CUTOFF_REFINEMENTS).fold(of(grid.clone()), |found, round| {
                 let step = 0.2 * 0.3f64.powi(round);
                 let near = |c: f64| (-2..=2).map(|i| c * (f64::from(i) * step).exp()).collect();
                 of(near(found?[0]))
@@ -237,11 +229,7 @@ impl Spectrum for BandwidthFilter {
         (high / low).ln().max(1.0)
     }
 
-    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
-        fitted.to_vec()
-    }
-
-    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
+    fn claimed_parameters(&self, values: &Values) -> Option<Vec<f64>> {
         let form = number(values, PARAMS[1].name).unwrap_or(1.0);
         number(values, PARAMS[0].name).filter(|c| *c > 0.0).map(|c| vec![c, form])
     }

@@ -1,10 +1,9 @@
 //! One jump of the bias.
 
-use super::unobserved_driver::UnobservedDriver;
-use crate::effect::shared::step::{instants, sizing, step};
+use crate::effect::shared::step::{around, instant_bounds, instants, sizing, step};
 use crate::effect::{
-    ClaimedMean, Domain, Drivers, Effect, Family, Later, MeanModel, Param, Place, Regressors, SearchContext,
-    Sizing, Starts, Values, number,
+    ClaimedMean, Drivers, Later, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values,
+    number,
 };
 use crate::numeric::range::Bounds;
 
@@ -17,14 +16,9 @@ static PARAMS: [Param; 2] = [
 
 describe! {
     BiasStep, "bias_step", Mean in Time, needs [],
-    confusers ["heading_change", "random_telegraph", "excess_rrw"],
+    confusers [HeadingChange, RandomTelegraph, ExcessRrw],
+    properties [family Jump, reversed_pair UnobservedDriver],
     with {
-        fn family(&self) -> Option<Family> {
-            Some(Family::Jump)
-        }
-        fn reversed_pair(&self) -> Option<&'static dyn Effect> {
-            Some(&UnobservedDriver)
-        }
         fn later(&self, _values: &Values, _claim: &ClaimedMean) -> Later {
             Later::Nothing
         }
@@ -41,14 +35,11 @@ impl MeanModel for BiasStep {
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
-        vec![Bounds::new(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
+        vec![instant_bounds(drivers)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        Regressors {
-            columns: nonlinear_parameters.iter().map(|at| step(drivers, *at)).collect(),
-            ..Regressors::default()
-        }
+        Regressors::columns(nonlinear_parameters.iter().map(|at| step(drivers, *at)))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
@@ -63,13 +54,11 @@ impl MeanModel for BiasStep {
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let (size, at) = (number(values, "step_deg_h")?, number(values, "time_s")? - drivers.start_s);
+        let (size, at) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)? - drivers.start_s);
         Some(step(drivers, at).into_iter().map(|s| size * s).collect())
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some(at) = nonlinear_parameters.first().map(|at| drivers.start_s + at) else { return vec![] };
-        let half = (0.01 * drivers.length_s()).max(2.0 * drivers.dt_s);
-        vec![Place { domain: Domain::Time, from: at - half, to: at + half }]
+        nonlinear_parameters.first().map(|at| around(*at, drivers)).into_iter().collect()
     }
 }

@@ -1,7 +1,9 @@
 //! A delay between the gyro and the columns beside it that grows: its clock runs at another rate. A line that the claim states,
 //! as that of the mains, shows it too, at another frequency.
 
-use crate::effect::shared::delay::{follow, moves, regressors, shifted};
+use crate::effect::mean::first;
+use crate::effect::shared::delay::{claimed_mean_varies, follow, regressors, shifted};
+use crate::effect::shared::reach::{beginning_s, record};
 use crate::effect::shared::search::best_of;
 use crate::effect::shared::stated_lines;
 use crate::effect::{
@@ -16,22 +18,22 @@ pub struct ClockDrift;
 static PARAMS: [Param; 1] = [Param::reported("drift_ppm", "ppm", -1e5, 1e5).signed()];
 
 /// Amplitudes of the lines of the claim as the drifting clock shows them.
-const AMPLITUDES: &str = "line_amplitudes_deg_h";
+const LINE_AMPLITUDES: &str = "line_amplitudes_deg_h";
 /// Their phases at `time_s` = 0, with the frequencies as they are shown.
-const PHASES: &str = "line_phases_deg";
+const LINE_PHASES: &str = "line_phases_deg";
 
 describe! {
     ClockDrift, "clock_drift", Mean in Lag, needs [],
-    confusers ["time_offset", "sf_error", "dropped_samples", "line"],
+    confusers [TimeOffset, SfError, DroppedSamples, Line],
     lists [
-        Param::inner(AMPLITUDES, "deg/h", 0.0, 1e6),
-        Param::inner(PHASES, "deg", -360.0, 360.0)
+        Param::inner(LINE_AMPLITUDES, "deg/h", 0.0, 1e6),
+        Param::inner(LINE_PHASES, "deg", -360.0, 360.0)
     ]
 }
 
 /// Lag of a sample in samples, for 1 ppm.
 fn per_ppm(i: usize, drivers: &Drivers) -> f64 {
-    1e-6 * (drivers.time_s(i) - crate::effect::shared::reach::beginning_s(drivers)) / drivers.dt_s
+    1e-6 * (drivers.time_s(i) - beginning_s(drivers)) / drivers.dt_s
 }
 
 impl MeanModel for ClockDrift {
@@ -40,19 +42,19 @@ impl MeanModel for ClockDrift {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        moves(drivers) || stated_lines::any(drivers)
+        claimed_mean_varies(drivers) || stated_lines::any(drivers)
     }
 
     /// A drift is found by following it: from a stretch at the beginning, where the delay is still small, to the whole
     /// record. Or by a line as large as the stated one at another place.
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if !self.applies(drivers) || context.modes.len() != n || context.powers.len() != n {
-            return Starts { points: vec![], trials: 1.0 };
+        if !self.applies(drivers) || !context.is_of(n) {
+            return Starts::none();
         }
         let Bounds { low, high } = self.bounds(drivers)[0];
         let (by_lines, places) = stated_lines::starts(drivers, context);
-        if !moves(drivers) {
+        if !claimed_mean_varies(drivers) {
             let points = by_lines.into_iter().map(|d| vec![d]);
             return Starts { points: best_of(self, points, 3, drivers, context), trials: places.max(1.0) };
         }
@@ -86,7 +88,7 @@ impl MeanModel for ClockDrift {
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         let Some(drift) = nonlinear_parameters.first() else { return Regressors::default() };
         let mut parts = Regressors::default();
-        if moves(drivers) {
+        if claimed_mean_varies(drivers) {
             parts = regressors(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers));
         }
         if stated_lines::any(drivers) {
@@ -108,7 +110,7 @@ impl MeanModel for ClockDrift {
             return vec![];
         }
         let (amplitudes, phases) = stated_lines::polars(coefficients);
-        vec![(AMPLITUDES, amplitudes), (PHASES, phases)]
+        vec![(LINE_AMPLITUDES, amplitudes), (LINE_PHASES, phases)]
     }
 
     fn parameters(
@@ -117,12 +119,12 @@ impl MeanModel for ClockDrift {
         _coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<f64> {
-        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
+        vec![first(nonlinear_parameters)]
     }
 
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
         // Of lines alone its size says nothing: one place is as far as another.
-        if !moves(drivers) {
+        if !claimed_mean_varies(drivers) {
             return vec![];
         }
         let Bounds { low, high } = self.bounds(drivers)[0];
@@ -135,7 +137,8 @@ impl MeanModel for ClockDrift {
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let drift = number(values, PARAMS[0].name)?;
         let mut course = shifted(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers)).0;
-        let lines = stated_lines::course(drift, list(values, AMPLITUDES), list(values, PHASES), drivers);
+        let lines =
+            stated_lines::course(drift, list(values, LINE_AMPLITUDES), list(values, LINE_PHASES), drivers);
         course.iter_mut().zip(lines).for_each(|(c, l)| *c += l);
         Some(course)
     }
@@ -150,7 +153,7 @@ impl MeanModel for ClockDrift {
         };
         let lag = Place { domain: Domain::Lag, from: last.min(0.0), to: last.max(0.0) };
         let line = nonlinear_parameters.first().and_then(|d| stated_lines::place(*d, drivers));
-        [vec![lag], crate::effect::shared::reach::record(drivers), line.into_iter().collect()].concat()
+        [vec![lag], record(drivers), line.into_iter().collect()].concat()
     }
 
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {

@@ -1,8 +1,10 @@
 //! A bent dependence on a column whose bends have no kind of their own in the format of explanations.
 
+use crate::effect::mean::first;
 use crate::effect::shared::polynomial::{Scale, powers, sum};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::search::gain_of;
+use crate::effect::shared::thermal;
 use crate::effect::{
     Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
     list, number,
@@ -22,21 +24,17 @@ const COEFFICIENTS: &str = "coefficients_deg_h";
 
 describe! {
     ColumnCurve, "column_curve", Mean in Supply, needs [],
-    confusers ["supply_sensitivity", "cross_axis", "temp_rate", "sf_asymmetry"],
+    confusers [SupplySensitivity, CrossAxis, TempRate, SfAsymmetry],
     lists [
         Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
     ],
-    with {
-        fn in_format(&self) -> bool {
-            false
-        }
-    }
+    properties [carried_over, outside_format]
 }
 
-/// What the curve may follow: supply, rate of the other axis, rate of change of temperature, rate of the table.
+/// Quantities that the curve may follow: supply, rate of the other axis, rate of change of temperature, rate of the table.
 const DOMAINS: [Domain; 4] = [Domain::Supply, Domain::OuterRate, Domain::TemperatureRate, Domain::InputRate];
 /// Highest power.
-const HIGHEST: usize = 4;
+const MAX_ORDER: usize = 4;
 
 fn values(domain: Domain, drivers: &Drivers) -> Option<Vec<f64>> {
     let column = |c: Column| drivers.column(c).filter(|x| varies(Some(x))).map(<[f64]>::to_vec);
@@ -44,17 +42,17 @@ fn values(domain: Domain, drivers: &Drivers) -> Option<Vec<f64>> {
         Domain::Supply => column(Column::Supply),
         Domain::OuterRate => column(Column::OuterRate),
         Domain::InputRate => column(Column::TableRate),
-        Domain::TemperatureRate => varies(drivers.temperature.as_deref())
-            .then(|| crate::effect::shared::thermal::rate(drivers))
-            .flatten(),
+        Domain::TemperatureRate => {
+            varies(drivers.temperature.as_deref()).then(|| thermal::rate(drivers)).flatten()
+        }
         _ => None,
     }
 }
 
-/// Column and highest power that a shape stands for.
-fn meant(nonlinear_parameters: &[f64]) -> Option<(Domain, usize)> {
+/// Column and highest power of a shape.
+fn decode(nonlinear_parameters: &[f64]) -> Option<(Domain, usize)> {
     let [column, order] = nonlinear_parameters else { return None };
-    Some((*DOMAINS.get(column.round() as usize)?, (order.round() as usize).clamp(2, HIGHEST)))
+    Some((*DOMAINS.get(column.round() as usize)?, (order.round() as usize).clamp(2, MAX_ORDER)))
 }
 
 impl MeanModel for ColumnCurve {
@@ -69,47 +67,33 @@ impl MeanModel for ColumnCurve {
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         // Each further order has to be worth its parameter.
         let price = 0.5 * (drivers.samples.max(2) as f64).ln();
-        let mut rated: Vec<(f64, Vec<f64>)> = vec![];
-        for (i, domain) in DOMAINS.into_iter().enumerate() {
-            if values(domain, drivers).is_none() {
-                continue;
-            }
-            for order in 2..=HIGHEST {
-                let nonlinear_parameters = vec![i as f64, order as f64];
-                let gain = gain_of(self.regressors(&nonlinear_parameters, drivers), context);
-                rated.push((gain - price * order as f64, nonlinear_parameters));
+        let mut scored: Vec<(f64, Vec<f64>)> = vec![];
+        for (i, _) in DOMAINS.iter().enumerate().filter(|(_, d)| values(**d, drivers).is_some()) {
+            for order in 2..=MAX_ORDER {
+                let point = vec![i as f64, order as f64];
+                let gain = gain_of(self.regressors(&point, drivers), context);
+                scored.push((gain - price * order as f64, point));
             }
         }
-        let trials = rated.len() as f64;
-        let best = rated.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        Starts { points: best.map(|(_, s)| s).into_iter().collect(), trials }
+        let trials = scored.len() as f64;
+        Starts::best(scored, trials)
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
-        vec![Bounds::new(0.0, (DOMAINS.len() - 1) as f64), Bounds::new(2.0, HIGHEST as f64)]
+        vec![Bounds::new(0.0, (DOMAINS.len() - 1) as f64), Bounds::new(2.0, MAX_ORDER as f64)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let free = meant(nonlinear_parameters)
-            .and_then(|(domain, order)| Some((values(domain, drivers)?, order)))
-            .map_or_else(Vec::new, |(v, order)| powers(&v, Scale::of(&v), order));
-        Regressors { columns: free, ..Regressors::default() }
+        let shape = decode(nonlinear_parameters);
+        let values = shape.and_then(|(domain, order)| Some((values(domain, drivers)?, order)));
+        Regressors::columns(values.into_iter().flat_map(|(v, order)| powers(&v, Scale::of(&v), order)))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
         let scale =
-            meant(nonlinear_parameters).and_then(|(domain, _)| Some(Scale::of(&values(domain, drivers)?)));
+            decode(nonlinear_parameters).and_then(|(domain, _)| Some(Scale::of(&values(domain, drivers)?)));
         let Scale { center, half } = scale.unwrap_or(Scale { center: f64::NAN, half: f64::NAN });
-        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN), center, half]
-    }
-
-    fn lists(
-        &self,
-        _shape: &[f64],
-        coefficients: &[f64],
-        _drivers: &Drivers,
-    ) -> Vec<(&'static str, Vec<f64>)> {
-        vec![(COEFFICIENTS, coefficients.to_vec())]
+        vec![first(nonlinear_parameters), center, half]
     }
 
     fn linear_list(&self) -> Option<&'static str> {
@@ -119,14 +103,14 @@ impl MeanModel for ColumnCurve {
     fn course(&self, given: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let of = |i: usize| number(given, PARAMS[i].name);
         let coefficients = list(given, COEFFICIENTS);
-        let order = coefficients.len().clamp(1, HIGHEST);
-        let (domain, _) = meant(&[of(0)?, order as f64])?;
+        let order = coefficients.len().clamp(1, MAX_ORDER);
+        let (domain, _) = decode(&[of(0)?, order as f64])?;
         let half = of(2).filter(|h| *h > 0.0)?;
         Some(sum(coefficients, &powers(&values(domain, drivers)?, Scale { center: of(1)?, half }, order)))
     }
 
     fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some((domain, _)) = meant(nonlinear_parameters) else { return vec![] };
+        let Some((domain, _)) = decode(nonlinear_parameters) else { return vec![] };
         let Some(values) = values(domain, drivers) else { return vec![] };
         reach(domain, &values, &sum(coefficients, &self.regressors(nonlinear_parameters, drivers).columns))
     }

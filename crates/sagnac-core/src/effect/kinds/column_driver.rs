@@ -28,30 +28,27 @@ const LAW: &str = "law";
 
 describe! {
     ColumnDriver, "column_driver", Mean in Driver, needs [],
-    confusers ["unobserved_driver", "excess_rrw", "temp_response"],
+    confusers [UnobservedDriver, ExcessRrw, TempResponse],
     lists [
         Param::inner(TERMS_LIST, "", 1.0, 13.0),
         Param::inner(SCALES_LIST, "", 0.0, 1e9),
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
-    with {
-        fn text_params(&self) -> &'static [&'static str] {
-            &[COLUMN, LAW]
-        }
-    }
+    texts [COLUMN, LAW],
+    properties [carried_over, follows_any_column]
 }
 
-/// What the nonlinear parameters stand for: a column, terms, a law.
-struct Meant<'a> {
+/// A shape, from its nonlinear parameters: a column, terms, a law.
+struct Shape<'a> {
     driver: &'a OtherDriver,
     mask: u32,
     law: ResponseLaw,
 }
 
-fn meant<'a>(nonlinear_parameters: &[f64], drivers: &'a Drivers) -> Option<Meant<'a>> {
+fn decode<'a>(nonlinear_parameters: &[f64], drivers: &'a Drivers) -> Option<Shape<'a>> {
     let [column, mask, law] = nonlinear_parameters else { return None };
     let driver = drivers.others.get(*column as usize)?;
-    Some(Meant { driver, mask: *mask as u32, law: *ResponseLaw::ALL.get(*law as usize)? })
+    Some(Shape { driver, mask: *mask as u32, law: *ResponseLaw::ALL.get(*law as usize)? })
 }
 
 impl MeanModel for ColumnDriver {
@@ -67,7 +64,7 @@ impl MeanModel for ColumnDriver {
             (!follows_by_chance(&found, &other.smooth, drivers, context)).then_some((i, found))
         });
         let Some((i, best)) = found.max_by(|a, b| a.1.worth().total_cmp(&b.1.worth())) else {
-            return Starts { points: vec![], trials: columns.max(1.0) };
+            return Starts { trials: columns.max(1.0), ..Starts::none() };
         };
         let law = ResponseLaw::ALL.iter().position(|l| *l == best.law).unwrap_or(0);
         let point = vec![i as f64, f64::from(best.mask), law as f64];
@@ -83,12 +80,12 @@ impl MeanModel for ColumnDriver {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        meant(nonlinear_parameters, drivers)
+        decode(nonlinear_parameters, drivers)
             .map_or_else(Regressors::default, |m| response::regressors(m.mask, &m.driver.smooth, drivers))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        let Some(m) = meant(nonlinear_parameters, drivers) else { return vec![f64::NAN; 3] };
+        let Some(m) = decode(nonlinear_parameters, drivers) else { return vec![f64::NAN; 3] };
         let [center, half] = response::stated_range(&m.driver.smooth);
         // A single term of a linear law or of a rate is a coefficient a unit of the column, or a unit of it an hour.
         let per_unit = response::per_unit(m.mask, m.law).map(|scale| scale / half);
@@ -97,7 +94,7 @@ impl MeanModel for ColumnDriver {
     }
 
     fn unmodelled(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Unmodelled {
-        meant(nonlinear_parameters, drivers).map_or_else(Unmodelled::default, |m| {
+        decode(nonlinear_parameters, drivers).map_or_else(Unmodelled::default, |m| {
             response::unmodelled(m.mask, m.law, &m.driver.smooth, drivers)
         })
     }
@@ -108,12 +105,12 @@ impl MeanModel for ColumnDriver {
         coefficients: &[f64],
         drivers: &Drivers,
     ) -> Vec<(&'static str, Vec<f64>)> {
-        meant(nonlinear_parameters, drivers)
+        decode(nonlinear_parameters, drivers)
             .map_or_else(Vec::new, |m| response::stated_lists(m.mask, coefficients))
     }
 
     fn texts(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<(&'static str, String)> {
-        meant(nonlinear_parameters, drivers).map_or_else(Vec::new, |m| {
+        decode(nonlinear_parameters, drivers).map_or_else(Vec::new, |m| {
             vec![(COLUMN, m.driver.column.name().to_owned()), (LAW, m.law.id().to_owned())]
         })
     }
@@ -147,7 +144,7 @@ impl MeanModel for ColumnDriver {
     }
 
     /// The curve of first order in the units of the column.
-    fn stated_size(&self, _sizing: &Sizing, place: &Values, size: f64, drivers: &Drivers) -> Values {
+    fn claimed_size(&self, _sizing: &Sizing, place: &Values, size: f64, drivers: &Drivers) -> Values {
         let column = text(place, COLUMN).map(Column::of_name);
         let driver = drivers.others.iter().find(|o| Some(o.column) == column);
         let [center, half] = driver.map_or([0.0, 1.0], |d| response::stated_range(&d.smooth));
@@ -174,7 +171,7 @@ impl MeanModel for ColumnDriver {
     }
 
     fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some(m) = meant(nonlinear_parameters, drivers) else { return vec![] };
+        let Some(m) = decode(nonlinear_parameters, drivers) else { return vec![] };
         let course = sum(coefficients, &self.regressors(nonlinear_parameters, drivers).columns);
         reach(Domain::Driver, &m.driver.smooth, &course)
     }

@@ -3,9 +3,10 @@
 
 use crate::effect::shared::law::{self, Columns, Factor, Form, MAX_TERMS, Term};
 use crate::effect::shared::polynomial::sum;
+use crate::effect::shared::pursuit::choices;
 use crate::effect::shared::reach::reach;
 use crate::effect::{
-    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, text,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, text,
 };
 use crate::numeric::range::Bounds;
 
@@ -14,43 +15,29 @@ pub struct ColumnLaw;
 static PARAMS: [Param; 0] = [];
 
 /// Name of the text of the terms.
-const TERMS: &str = "terms";
+const TERMS_TEXT: &str = "terms";
 /// Names of the lists: middle and half width of the range of each factor, coefficient of each term, deg/h.
-const CENTERS: &str = "centers";
-const HALVES: &str = "half_ranges";
-const COEFFICIENTS: &str = "coefficients_deg_h";
+const CENTERS_LIST: &str = "centers";
+const HALF_RANGES_LIST: &str = "half_ranges";
+const COEFFICIENTS_LIST: &str = "coefficients_deg_h";
 
 describe! {
     ColumnLaw, "column_law", Mean in Driver, needs [],
-    confusers ["column_driver", "temp_response", "column_product", "unobserved_driver"],
+    confusers [ColumnDriver, TempResponse, ColumnProduct, UnobservedDriver],
     lists [
-        Param::inner(CENTERS, "", -1e12, 1e12),
-        Param::inner(HALVES, "", 1e-12, 1e12),
-        Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
+        Param::inner(CENTERS_LIST, "", -1e12, 1e12),
+        Param::inner(HALF_RANGES_LIST, "", 1e-12, 1e12),
+        Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
-    with {
-        fn in_format(&self) -> bool {
-            false
-        }
-        fn text_params(&self) -> &'static [&'static str] {
-            &[TERMS]
-        }
-    }
+    texts [TERMS_TEXT],
+    properties [carried_over, outside_format]
 }
 
-/// The terms that nonlinear parameters stand for: positions among the terms of the columns, −1 for none.
-fn meant(nonlinear_parameters: &[f64], columns: &Columns<'_>, drivers: &Drivers) -> Vec<Term> {
+/// Terms of nonlinear parameters: positions among the terms of the columns, −1 for none.
+fn decode(nonlinear_parameters: &[f64], columns: &Columns<'_>, drivers: &Drivers) -> Vec<Term> {
     let all = columns.terms(drivers);
     let there = nonlinear_parameters.iter().filter(|i| **i >= 0.0);
     there.filter_map(|i| all.get(*i as usize).copied()).collect()
-}
-
-fn domain(column: Column) -> Domain {
-    match column {
-        Column::Temperature => Domain::Temperature,
-        Column::Supply => Domain::Supply,
-        _ => Domain::Driver,
-    }
 }
 
 /// A number for a formula: three digits, the sign of mathematics.
@@ -127,11 +114,10 @@ impl MeanModel for ColumnLaw {
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        let nothing = Starts { points: vec![], trials: 1.0 };
-        if Columns::of(drivers).len() < 2 || context.modes.len() != drivers.samples {
-            return nothing;
+        if Columns::of(drivers).len() < 2 || !context.is_of(drivers.samples) {
+            return Starts::none();
         }
-        let Some(found) = law::search(drivers, context) else { return nothing };
+        let Some(found) = law::search(drivers, context) else { return Starts::none() };
         let mut point: Vec<f64> = found.terms.iter().map(|i| *i as f64).collect();
         point.resize(MAX_TERMS, -1.0);
         Starts { points: vec![point], trials: found.trials }
@@ -143,7 +129,7 @@ impl MeanModel for ColumnLaw {
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         let columns = Columns::of(drivers);
-        let terms = meant(nonlinear_parameters, &columns, drivers);
+        let terms = decode(nonlinear_parameters, &columns, drivers);
         Regressors {
             offset: None,
             columns: terms.iter().filter_map(|t| t.course(&columns, drivers)).collect(),
@@ -151,7 +137,12 @@ impl MeanModel for ColumnLaw {
         }
     }
 
-    fn parameters(&self, _shape: &[f64], _coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+    fn parameters(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
         vec![]
     }
 
@@ -162,15 +153,15 @@ impl MeanModel for ColumnLaw {
         drivers: &Drivers,
     ) -> Vec<(&'static str, Vec<f64>)> {
         let columns = Columns::of(drivers);
-        let terms = meant(nonlinear_parameters, &columns, drivers);
+        let terms = decode(nonlinear_parameters, &columns, drivers);
         let scales = terms.iter().flat_map(|t| t.factors()).filter_map(|f| columns.scale(f.column));
         let (centers, halves) = scales.map(|s| (s.center, s.half)).unzip();
-        vec![(CENTERS, centers), (HALVES, halves), (COEFFICIENTS, coefficients.to_vec())]
+        vec![(CENTERS_LIST, centers), (HALF_RANGES_LIST, halves), (COEFFICIENTS_LIST, coefficients.to_vec())]
     }
 
     fn texts(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<(&'static str, String)> {
-        let terms = meant(nonlinear_parameters, &Columns::of(drivers), drivers);
-        if terms.is_empty() { vec![] } else { vec![(TERMS, law::stated(&terms))] }
+        let terms = decode(nonlinear_parameters, &Columns::of(drivers), drivers);
+        if terms.is_empty() { vec![] } else { vec![(TERMS_TEXT, law::stated(&terms))] }
     }
 
     fn formula(
@@ -180,7 +171,7 @@ impl MeanModel for ColumnLaw {
         drivers: &Drivers,
     ) -> Option<String> {
         let columns = Columns::of(drivers);
-        let terms = meant(nonlinear_parameters, &columns, drivers);
+        let terms = decode(nonlinear_parameters, &columns, drivers);
         let merged = merged(&terms, coefficients, &columns)?;
         let mut out = String::new();
         for (i, m) in merged.iter().enumerate() {
@@ -200,37 +191,39 @@ impl MeanModel for ColumnLaw {
     fn odds(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
         let all = Columns::of(drivers).terms(drivers).len();
         let chosen = nonlinear_parameters.iter().filter(|i| **i >= 0.0).count();
-        -crate::effect::shared::pursuit::choices(all, chosen).max(1.0).ln()
+        -choices(all, chosen).max(1.0).ln()
     }
 
     fn linear_list(&self) -> Option<&'static str> {
-        Some(COEFFICIENTS)
+        Some(COEFFICIENTS_LIST)
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let terms = law::of_stated(text(values, TERMS)?)?;
-        let coefficients = list(values, COEFFICIENTS);
+        let terms = law::of_stated(text(values, TERMS_TEXT)?)?;
+        let coefficients = list(values, COEFFICIENTS_LIST);
         if terms.len() != coefficients.len() {
             return None;
         }
-        let columns = Columns::stated(drivers, &terms, list(values, CENTERS), list(values, HALVES))?;
+        let columns =
+            Columns::stated(drivers, &terms, list(values, CENTERS_LIST), list(values, HALF_RANGES_LIST))?;
         let courses: Option<Vec<Vec<f64>>> = terms.iter().map(|t| t.course(&columns, drivers)).collect();
         Some(sum(coefficients, &courses?))
     }
 
     fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
-        let Some(terms) = text(values, TERMS).and_then(law::of_stated) else { return vec![] };
-        let columns = Columns::stated(drivers, &terms, list(values, CENTERS), list(values, HALVES));
+        let Some(terms) = text(values, TERMS_TEXT).and_then(law::of_stated) else { return vec![] };
+        let columns =
+            Columns::stated(drivers, &terms, list(values, CENTERS_LIST), list(values, HALF_RANGES_LIST));
         columns.map_or_else(Vec::new, |c| terms.iter().flat_map(|t| t.initial(&c, drivers)).collect())
     }
 
     fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let columns = Columns::of(drivers);
-        let terms = meant(nonlinear_parameters, &columns, drivers);
+        let terms = decode(nonlinear_parameters, &columns, drivers);
         let course = sum(coefficients, &self.regressors(nonlinear_parameters, drivers).columns);
         let mut out: Vec<Place> = vec![];
         for factor in terms.iter().flat_map(|t| t.factors()) {
-            let domain = domain(factor.column);
+            let domain = factor.column.domain();
             if let Some(values) = columns.values(factor.column)
                 && !out.iter().any(|p| p.domain == domain)
             {
@@ -249,6 +242,7 @@ impl MeanModel for ColumnLaw {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Column;
     use crate::effect::OtherDriver;
 
     #[test]

@@ -1,8 +1,9 @@
 //! A contribution that goes with the product of two columns, or of one with the time. It has no kind of its own in the
 //! format of explanations.
 
+use crate::effect::mean;
 use crate::effect::shared::polynomial::{Scale, sum};
-use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::reach::{reach, record, varies};
 use crate::effect::shared::search::gain_of;
 use crate::effect::{
     Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
@@ -25,15 +26,11 @@ const COEFFICIENTS: &str = "coefficients_deg_h";
 
 describe! {
     ColumnProduct, "column_product", Mean in Temperature, needs [],
-    confusers ["supply_sensitivity", "temp_polynomial", "sf_temperature", "unobserved_driver"],
+    confusers [SupplySensitivity, TempPolynomial, SfTemperature, UnobservedDriver],
     lists [
         Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
     ],
-    with {
-        fn in_format(&self) -> bool {
-            false
-        }
-    }
+    properties [outside_format]
 }
 
 /// A factor of a product.
@@ -67,12 +64,7 @@ fn values(factor: Factor, drivers: &Drivers) -> Option<Vec<f64>> {
 
 fn domain(factor: Factor) -> Domain {
     match factor {
-        Factor::Of(Temperature) => Domain::Temperature,
-        Factor::Of(TableRate) => Domain::InputRate,
-        Factor::Of(OuterRate) => Domain::OuterRate,
-        Factor::Of(Supply) => Domain::Supply,
-        Factor::Of(Column::TableAngle) => Domain::Angle,
-        Factor::Of(Column::Other(_)) => Domain::Driver,
+        Factor::Of(column) => column.domain(),
         Factor::Time => Domain::Time,
     }
 }
@@ -120,12 +112,10 @@ impl MeanModel for ColumnProduct {
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let points = (0..PAIRS.len()).map(|i| vec![i as f64]);
-        let gain = |s: &Vec<f64>| gain_of(self.regressors(s, drivers), context);
-        let rated: Vec<(f64, Vec<f64>)> =
-            points.map(|s| (gain(&s), s)).filter(|(gain, _)| *gain > 0.0).collect();
-        let trials = rated.len() as f64;
-        let best = rated.into_iter().max_by(|a, b| a.0.total_cmp(&b.0));
-        Starts { points: best.map(|(_, s)| s).into_iter().collect(), trials }
+        let scored = points.map(|point| (gain_of(self.regressors(&point, drivers), context), point));
+        let scored: Vec<(f64, Vec<f64>)> = scored.filter(|(gain, _)| *gain > 0.0).collect();
+        let trials = scored.len() as f64;
+        Starts::best(scored, trials)
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
@@ -133,26 +123,14 @@ impl MeanModel for ColumnProduct {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let free = pair(nonlinear_parameters)
-            .and_then(|p| columns(p, own_scales(p, drivers)?, drivers))
-            .map_or_else(Vec::new, |c| c.to_vec());
-        Regressors { columns: free, ..Regressors::default() }
+        let columns = pair(nonlinear_parameters).and_then(|p| columns(p, own_scales(p, drivers)?, drivers));
+        Regressors::columns(columns.into_iter().flatten())
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
         let scales = pair(nonlinear_parameters).and_then(|p| own_scales(p, drivers));
         let [first, second] = scales.unwrap_or([Scale { center: f64::NAN, half: f64::NAN }; 2]);
-        let pair = nonlinear_parameters.first().copied().unwrap_or(f64::NAN);
-        vec![pair, first.center, first.half, second.center, second.half]
-    }
-
-    fn lists(
-        &self,
-        _shape: &[f64],
-        coefficients: &[f64],
-        _drivers: &Drivers,
-    ) -> Vec<(&'static str, Vec<f64>)> {
-        vec![(COEFFICIENTS, coefficients.to_vec())]
+        vec![mean::first(nonlinear_parameters), first.center, first.half, second.center, second.half]
     }
 
     fn linear_list(&self) -> Option<&'static str> {
@@ -176,7 +154,7 @@ impl MeanModel for ColumnProduct {
         let mut out = vec![];
         for factor in [first, second] {
             if factor == Factor::Time {
-                out.extend(crate::effect::shared::reach::record(drivers));
+                out.extend(record(drivers));
             } else if let Some(values) = values(factor, drivers) {
                 out.extend(reach(domain(factor), &values, &product));
             }

@@ -1,5 +1,6 @@
 //! A periodic disturbance with harmonics, of one cause; or one that repeats with the phase of a recorded ramp.
 
+use crate::effect::mean::first;
 use crate::effect::shared::periodogram::LineGains;
 use crate::effect::shared::phase::Phase;
 use crate::effect::shared::polynomial::{Scale, sum};
@@ -29,39 +30,38 @@ const HARMONICS: &str = "harmonics";
 
 describe! {
     Comb, "comb", Mean in Frequency, needs [],
-    confusers ["line", "quasi_periodic", "reset_ripple", "table_harmonic"],
+    confusers [Line, QuasiPeriodic, ResetRipple, TableHarmonic],
     lists [
         Param::inner(HARMONICS, "", 1.0, 24.0),
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
-    with {
-        fn text_params(&self) -> &'static [&'static str] {
-            &[COLUMN]
-        }
-    }
+    texts [COLUMN],
+    properties [carried_over]
 }
 
 /// Highest harmonic.
-const HIGHEST: usize = 24;
-/// Of the lowest harmonics, as many must be there: two lines far up have many fundamentals in common by chance.
-const LOWEST: usize = 3;
-const PRESENT: usize = 2;
-/// Share of the strongest harmonic's gain that a line has left some tens of cells away.
-const LEAKAGE: f64 = 1e-3;
-/// Fewest periods in the record: slower ones are slow courses.
-const PERIODS: f64 = 8.0;
-/// Fewest samples.
-const FEWEST: usize = 256;
+const MAX_HARMONIC: usize = 24;
+/// Number of the lowest harmonics of which [`MIN_LOW_HARMONICS`] must be present: two lines far up have many fundamentals in common
+/// by chance.
+const LOW_HARMONICS: usize = 3;
+/// Fewest of the lowest harmonics.
+const MIN_LOW_HARMONICS: usize = 2;
+/// Gain of a line some tens of frequency cells away, as a share of its own.
+const LEAKAGE_SHARE: f64 = 1e-3;
+/// Fewest periods in the record: slower ones are slow processes.
+const MIN_PERIODS: f64 = 8.0;
+/// Fewest samples of a record in which a comb is sought.
+const MIN_SAMPLES: usize = 256;
 
 /// Harmonics, one bit each, the fundamental in the lowest.
 fn harmonics(mask: f64) -> impl Iterator<Item = u32> {
     let mask = mask as u32;
-    (0..HIGHEST as u32).filter(move |h| mask & (1 << h) != 0).map(|h| h + 1)
+    (0..MAX_HARMONIC as u32).filter(move |h| mask & (1 << h) != 0).map(|h| h + 1)
 }
 
-/// Whether a set of harmonics is one fundamental's, and no line alone.
+/// True where a set of harmonics belongs to one fundamental and is no line alone.
 fn is_comb(mask: u32) -> bool {
-    (mask & ((1 << LOWEST) - 1)).count_ones() as usize >= PRESENT
+    (mask & ((1 << LOW_HARMONICS) - 1)).count_ones() as usize >= MIN_LOW_HARMONICS
 }
 
 /// The phase of a column that is a ramp which is reset.
@@ -75,28 +75,28 @@ fn columns(fundamental_hz: f64, orders: &[u32], drivers: &Drivers) -> Vec<Vec<f6
     orders.iter().flat_map(|h| sinusoid::columns(f64::from(*h) * fundamental_hz, drivers)).collect()
 }
 
-/// What the nonlinear parameters stand for.
-enum Meant {
+/// A shape, from its nonlinear parameters.
+enum Shape {
     /// A period in time.
     Time { fundamental_hz: f64, orders: Vec<u32> },
     /// The period of a recorded ramp.
     Ramp { column: usize, orders: Vec<u32> },
 }
 
-impl Meant {
-    fn of(nonlinear_parameters: &[f64]) -> Option<Meant> {
+impl Shape {
+    fn of(nonlinear_parameters: &[f64]) -> Option<Shape> {
         let [fundamental_hz, mask, column] = *nonlinear_parameters else { return None };
         let orders = harmonics(mask).collect();
         Some(match column as usize {
-            0 => Meant::Time { fundamental_hz, orders },
-            i => Meant::Ramp { column: i - 1, orders },
+            0 => Shape::Time { fundamental_hz, orders },
+            i => Shape::Ramp { column: i - 1, orders },
         })
     }
 
     fn columns(&self, drivers: &Drivers) -> Vec<Vec<f64>> {
         match self {
-            Meant::Time { fundamental_hz, orders } => columns(*fundamental_hz, orders, drivers),
-            Meant::Ramp { column, orders } => phase(*column, drivers)
+            Shape::Time { fundamental_hz, orders } => columns(*fundamental_hz, orders, drivers),
+            Shape::Ramp { column, orders } => phase(*column, drivers)
                 .map_or_else(Vec::new, |(p, _)| orders.iter().flat_map(|h| p.harmonic(*h)).collect()),
         }
     }
@@ -108,59 +108,59 @@ fn price(drivers: &Drivers) -> f64 {
 }
 
 /// A comb with its gain less the price of its harmonics.
-struct Found {
+struct Candidate {
     point: Vec<f64>,
-    worth: f64,
+    score: f64,
 }
 
 /// The best comb in time: at each fundamental, the harmonics that are worth their price.
-fn in_time(drivers: &Drivers, context: &SearchContext<'_>, bounds: Bounds) -> Option<Found> {
+fn in_time(drivers: &Drivers, context: &SearchContext<'_>, bounds: Bounds) -> Option<Candidate> {
     let LineGains { gains, step_hz } = LineGains::of(drivers, context);
     let price = price(drivers);
-    let worth: Vec<f64> = gains.iter().map(|g| (g - price).max(0.0)).collect();
+    let score: Vec<f64> = gains.iter().map(|g| (g - price).max(0.0)).collect();
     // A fundamental is met to half a cell of its highest harmonic.
-    let fine = step_hz / HIGHEST as f64;
+    let fine = step_hz / MAX_HARMONIC as f64;
     let (first, last) = ((bounds.low / fine).ceil() as usize, (bounds.high / fine) as usize);
-    let cell = |i: usize, h: usize| (h * i + HIGHEST / 2) / HIGHEST;
+    let cell = |i: usize, h: usize| (h * i + MAX_HARMONIC / 2) / MAX_HARMONIC;
     let mut best = (0.0, 0);
     for i in first..=last {
-        let lowest = (1..=LOWEST).filter(|h| worth.get(cell(i, *h)).is_some_and(|w| *w > 0.0)).count();
-        if lowest < PRESENT {
+        let lowest = (1..=LOW_HARMONICS).filter(|h| score.get(cell(i, *h)).is_some_and(|w| *w > 0.0)).count();
+        if lowest < MIN_LOW_HARMONICS {
             continue;
         }
-        let total = (1..=HIGHEST).map_while(|h| worth.get(cell(i, h))).sum::<f64>();
+        let total = (1..=MAX_HARMONIC).map_while(|h| score.get(cell(i, h))).sum::<f64>();
         if total > best.0 {
             best = (total, i);
         }
     }
-    let (worth_of_best, i) = best;
+    let (best_score, i) = best;
     let gain = |h: usize| gains.get(cell(i, h)).copied().unwrap_or(0.0);
-    let largest = (1..=HIGHEST).map(gain).fold(0.0, f64::max);
+    let largest = (1..=MAX_HARMONIC).map(gain).fold(0.0, f64::max);
     // A strong line leaks into every cell, by less the farther it is.
-    let present = |h: &usize| gain(*h) > price.max(LEAKAGE * largest);
-    let mask = (1..=HIGHEST).filter(present).fold(0u32, |mask, h| mask | 1 << (h - 1));
+    let present = |h: &usize| gain(*h) > price.max(LEAKAGE_SHARE * largest);
+    let mask = (1..=MAX_HARMONIC).filter(present).fold(0u32, |mask, h| mask | 1 << (h - 1));
     let point = vec![(i as f64 * fine).clamp(bounds.low, bounds.high), f64::from(mask), 0.0];
-    (worth_of_best > 0.0 && is_comb(mask)).then_some(Found { point, worth: worth_of_best })
+    (best_score > 0.0 && is_comb(mask)).then_some(Candidate { point, score: best_score })
 }
 
 /// The comb over the phase of a recorded ramp.
-fn over_ramp(column: usize, drivers: &Drivers, context: &SearchContext<'_>) -> Option<Found> {
+fn over_ramp(column: usize, drivers: &Drivers, context: &SearchContext<'_>) -> Option<Candidate> {
     let (phase, _) = phase(column, drivers)?;
     let price = price(drivers);
     // Beyond half a period a sample a harmonic is another one's alias.
-    let highest = ((0.5 / phase.typical_step().max(1e-9)) as usize).min(HIGHEST);
-    let (mut mask, mut worth) = (0u32, 0.0);
+    let highest = ((0.5 / phase.typical_step().max(1e-9)) as usize).min(MAX_HARMONIC);
+    let (mut mask, mut score) = (0u32, 0.0);
     for order in 1..=highest as u32 {
         let columns = phase.harmonic(order);
-        let gain = gain_of(Regressors { columns, ..Regressors::default() }, context);
+        let gain = gain_of(Regressors::columns(columns), context);
         if gain > price {
             mask |= 1 << (order - 1);
-            worth += gain - price;
+            score += gain - price;
         }
     }
     let fundamental = phase.periods() / drivers.length_s();
     let point = vec![fundamental, f64::from(mask), (column + 1) as f64];
-    is_comb(mask).then_some(Found { point, worth })
+    is_comb(mask).then_some(Candidate { point, score })
 }
 
 impl MeanModel for Comb {
@@ -169,28 +169,28 @@ impl MeanModel for Comb {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        drivers.samples >= FEWEST
+        drivers.samples >= MIN_SAMPLES
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if n < FEWEST || context.score.len() != n || context.powers.len() != n {
-            return Starts { points: vec![], trials: 1.0 };
+        if n < MIN_SAMPLES || !context.is_of(n) {
+            return Starts::none();
         }
         let ramps = (0..drivers.others.len()).filter(|i| varies(Some(&drivers.others[*i].values)));
-        let mut found: Vec<Found> = ramps.filter_map(|i| over_ramp(i, drivers, context)).collect();
+        let mut found: Vec<Candidate> = ramps.filter_map(|i| over_ramp(i, drivers, context)).collect();
         found.extend(in_time(drivers, context, self.bounds(drivers)[0]));
-        found.sort_descending_by(|a| a.worth);
-        let within = |f: &Found| f.point.iter().zip(self.bounds(drivers)).all(|(x, b)| b.contains(*x));
+        found.sort_descending_by(|a| a.score);
+        let within = |f: &Candidate| f.point.iter().zip(self.bounds(drivers)).all(|(x, b)| b.contains(*x));
         let points = found.into_iter().filter(within).take(2).map(|f| f.point).collect();
-        Starts { points, trials: (n * HIGHEST) as f64 }
+        Starts { points, trials: (n * MAX_HARMONIC) as f64 }
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
-        let slowest = PERIODS / drivers.length_s();
+        let slowest = MIN_PERIODS / drivers.length_s();
         // The second harmonic is below half the sample rate.
         let fastest = (0.25 / drivers.dt_s - 0.5 / drivers.length_s()).max(slowest);
-        let masks = (1u64 << HIGHEST) as f64;
+        let masks = (1u64 << MAX_HARMONIC) as f64;
         vec![
             Bounds::new(slowest, fastest),
             Bounds::new(0.0, masks),
@@ -199,17 +199,20 @@ impl MeanModel for Comb {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let columns = Meant::of(nonlinear_parameters).map_or_else(Vec::new, |m| m.columns(drivers));
-        Regressors { columns, ..Regressors::default() }
+        let shape = Shape::of(nonlinear_parameters);
+        Regressors::columns(shape.into_iter().flat_map(|shape| shape.columns(drivers)))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        let scale = match Meant::of(nonlinear_parameters) {
-            Some(Meant::Ramp { column, .. }) => phase(column, drivers).map(|(_, scale)| scale),
+        let scale = match Shape::of(nonlinear_parameters) {
+            Some(Shape::Ramp { column, .. }) => phase(column, drivers).map(|(_, scale)| scale),
             _ => None,
         };
-        let fundamental = nonlinear_parameters.first().copied().unwrap_or(f64::NAN);
-        vec![fundamental, scale.map_or(f64::NAN, |s| s.center), scale.map_or(f64::NAN, |s| s.half)]
+        vec![
+            first(nonlinear_parameters),
+            scale.map_or(f64::NAN, |s| s.center),
+            scale.map_or(f64::NAN, |s| s.half),
+        ]
     }
 
     fn lists(
@@ -226,7 +229,7 @@ impl MeanModel for Comb {
     }
 
     fn texts(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<(&'static str, String)> {
-        let Some(Meant::Ramp { column, .. }) = Meant::of(nonlinear_parameters) else { return vec![] };
+        let Some(Shape::Ramp { column, .. }) = Shape::of(nonlinear_parameters) else { return vec![] };
         drivers.others.get(column).map(|o| (COLUMN, o.column.name().to_owned())).into_iter().collect()
     }
 
@@ -261,8 +264,8 @@ impl MeanModel for Comb {
         vec![0.05 / drivers.length_s(), 1.0, 1.0]
     }
 
-    // The amplitudes of harmonics are of one size, and only their phases are free: two modes tell of each, not all rows.
-    fn counted(&self, columns: usize) -> usize {
+    /// The amplitudes of harmonics are of one size, and only their phases are free: two modes tell of each, not all rows.
+    fn bic_parameters(&self, columns: usize) -> usize {
         columns.div_ceil(2)
     }
 

@@ -1,7 +1,7 @@
 //! Sensitivity to the rate about the other axis.
 
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::{Domain, Drivers, Param, Place};
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place, Resolution};
 
 pub struct CrossAxis;
 
@@ -9,22 +9,26 @@ static PARAMS: [Param; 1] = [Param::reported("misalignment_mrad", "mrad", -200.0
 
 describe! {
     CrossAxis, "cross_axis", Mean in OuterRate, needs [OuterRate],
-    confusers ["sf_error", "earth_rate_projection"]
+    confusers [SfError, EarthRateProjection]
 }
 
-fn column(drivers: &Drivers) -> Option<Vec<f64>> {
-    Some(drivers.outer_rate.as_ref()?.iter().map(|r| 3.6 * r).collect())
-}
+impl MeanModel for CrossAxis {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
+    }
 
-fn places(drivers: &Drivers) -> Vec<Place> {
-    let outer = drivers.outer_rate.as_deref().unwrap_or(&[]);
-    reach(Domain::OuterRate, outer, outer)
-}
+    fn applies(&self, drivers: &Drivers) -> bool {
+        varies(drivers.outer_rate.as_deref())
+    }
 
-linear! { CrossAxis, replaces None, places places }
+    fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        Some(drivers.outer_rate.as_ref()?.iter().map(|r| 3.6 * r).collect())
+    }
 
-fn applies(drivers: &Drivers) -> bool {
-    varies(drivers.outer_rate.as_deref())
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let outer = drivers.outer_rate.as_deref().unwrap_or(&[]);
+        reach(Domain::OuterRate, outer, outer)
+    }
 }
 
 #[cfg(test)]

@@ -1,17 +1,16 @@
 //! No or reduced response around zero input rate.
 
 use crate::effect::shared::search::{best_of, fast_level, log_grid, peaks};
-use crate::numeric::order::SortByNumber;
-
 use crate::effect::sizing::numbers;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values,
     number,
 };
+use crate::numeric::order::SortByNumber;
 use crate::numeric::range::Bounds;
 
-/// Widths that are tried of a zone beyond which the response stays behind.
-const BEHIND: usize = 16;
+/// Number of widths that are tried of a zone beyond which the response stays behind.
+const STAYS_BEHIND_WIDTHS: usize = 16;
 
 pub struct DeadZone;
 
@@ -24,10 +23,11 @@ static PARAMS: [Param; 3] = [
 
 describe! {
     DeadZone, "dead_zone", Mean in InputRate, needs [TableRate],
-    confusers ["sf_nonlinearity", "sf_error", "quantization"]
+    confusers [SfNonlinearity, SfError, Quantization],
+    properties [carried_over]
 }
 
-/// What is lost of the rate by a zone whose response beyond is whole, or stays behind by its half width.
+/// Rate that is lost, deg/h, by a zone whose response beyond is whole, or stays behind by its half width.
 fn column(half_width: f64, stays_behind: bool, drivers: &Drivers) -> Option<Vec<f64>> {
     let rate = drivers.table_rate.as_ref()?;
     let lost = |r: &f64| {
@@ -50,8 +50,8 @@ fn by_size(drivers: &Drivers) -> Vec<(f64, usize)> {
     sizes
 }
 
-/// Share of the largest rate up to which a zone is one around zero.
-const AROUND: f64 = 0.8;
+/// Largest half width of a zone around zero, as a share of the largest rate.
+const MAX_HALF_WIDTH_SHARE: f64 = 0.8;
 
 /// Smallest and largest rate but zero, deg/h, and how many sizes there are.
 fn sizes(drivers: &Drivers) -> Option<(f64, f64, usize)> {
@@ -94,11 +94,11 @@ impl MeanModel for DeadZone {
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        if context.score.len() != drivers.samples || context.modes.len() != drivers.samples {
-            return Starts { points: vec![], trials: 1.0 };
+        if !context.is_of(drivers.samples) {
+            return Starts::none();
         }
         let whole = widths(drivers, context, 5).into_iter().map(|w| vec![w, 0.0]);
-        let grid = sizes(drivers).map_or(vec![], |(low, high, _)| log_grid(low, high, BEHIND));
+        let grid = sizes(drivers).map_or(vec![], |(low, high, _)| log_grid(low, high, STAYS_BEHIND_WIDTHS));
         let points = whole.chain(grid.into_iter().map(|w| vec![w, 1.0]));
         // Widths inside one another share their samples: about as many as ratios of e are apart.
         let trials = sizes(drivers).map_or(1.0, |(_, _, between)| (between as f64).clamp(1.0, 64.0));
@@ -107,7 +107,7 @@ impl MeanModel for DeadZone {
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         // What holds at nearly every rate is no zone around zero.
-        let around_zero = |high: f64, low: f64| (AROUND * high).max(low);
+        let around_zero = |high: f64, low: f64| (MAX_HALF_WIDTH_SHARE * high).max(low);
         sizes(drivers).map_or(vec![Bounds::new(1e-9, 1e-9), Bounds::new(0.0, 1.0)], |(low, high, _)| {
             vec![Bounds::new(low, around_zero(high, low)), Bounds::new(0.0, 1.0)]
         })
@@ -119,10 +119,7 @@ impl MeanModel for DeadZone {
             [width, form] if *form > 0.5 => {
                 Regressors { offset: column(*width, true, drivers), ..Regressors::default() }
             }
-            [width, _] => Regressors {
-                columns: column(*width, false, drivers).into_iter().collect(),
-                ..Regressors::default()
-            },
+            [width, _] => Regressors::columns(column(*width, false, drivers)),
             _ => Regressors::default(),
         }
     }

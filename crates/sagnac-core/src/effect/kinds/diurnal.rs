@@ -1,5 +1,7 @@
 //! A period of one day.
 
+use crate::effect::mean::first;
+use crate::effect::shared::reach::record;
 use crate::effect::shared::search::{best_of, log_grid};
 use crate::effect::shared::sinusoid::{columns, polar, wave};
 use crate::effect::sizing::numbers;
@@ -18,9 +20,10 @@ static PARAMS: [Param; 3] = [
 
 describe! {
     Diurnal, "diurnal", Mean in Frequency, needs [],
-    confusers ["line", "temp_linear", "unobserved_driver", "rate_ramp"]
+    confusers [Line, TempLinear, UnobservedDriver, RateRamp]
 }
 
+/// Length of a day, s.
 const DAY_S: f64 = 86_400.0;
 
 impl MeanModel for Diurnal {
@@ -46,13 +49,12 @@ impl MeanModel for Diurnal {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let free = nonlinear_parameters.first().map_or_else(Vec::new, |p| columns(1.0 / p, drivers));
-        Regressors { columns: free, ..Regressors::default() }
+        Regressors::columns(nonlinear_parameters.iter().flat_map(|period| columns(1.0 / period, drivers)))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
-        vec![amplitude, nonlinear_parameters.first().copied().unwrap_or(f64::NAN), phase]
+        vec![amplitude, first(nonlinear_parameters), phase]
     }
 
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
@@ -73,7 +75,7 @@ impl MeanModel for Diurnal {
     }
 
     /// A line of just this period is seldom anything else.
-    fn odds(&self, _shape: &[f64], _drivers: &Drivers) -> f64 {
+    fn odds(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> f64 {
         3.0
     }
 
@@ -81,7 +83,7 @@ impl MeanModel for Diurnal {
         let Some(f) = nonlinear_parameters.first().map(|p| 1.0 / p) else { return vec![] };
         let half = 0.5 / drivers.length_s();
         let frequency = Place { domain: Domain::Frequency, from: (f - half).max(0.0), to: f + half };
-        [vec![frequency], crate::effect::shared::reach::record(drivers)].concat()
+        [vec![frequency], record(drivers)].concat()
     }
 }
 

@@ -1,5 +1,6 @@
 //! A sinusoid whose frequency changes steadily. It has no kind of its own in the format of explanations.
 
+use crate::effect::shared::reach::record;
 use crate::effect::shared::sinusoid::{Sweep, polar, wave};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
@@ -19,25 +20,21 @@ static PARAMS: [Param; 5] = [
 
 describe! {
     DriftingLine, "drifting_line", Mean in Frequency, needs [],
-    confusers ["line", "quasi_periodic", "excess_arw"],
-    with {
-        fn in_format(&self) -> bool {
-            false
-        }
-    }
+    confusers [Line, QuasiPeriodic, ExcessArw],
+    properties [outside_format]
 }
 
 /// Samples times sweeps that a search may take: a tenth of a second.
-const BUDGET: f64 = 4e6;
+const SEARCH_BUDGET: f64 = 4e6;
 /// Samples that a sweep is taken out of at a time.
-const BLOCK: usize = 4096;
-/// Fewest samples.
-const FEWEST: usize = 256;
+const BLOCK_SAMPLES: usize = 4096;
+/// Fewest samples of a record in which a drifting line is sought.
+const MIN_SAMPLES: usize = 256;
 
 /// Rates of change on either side of 0 that are tried: steps of 2/T², which turn the phase at the ends by a quarter.
 fn rates(samples: usize) -> usize {
     let most = 0.1 * samples as f64;
-    (BUDGET / samples.max(1) as f64).clamp(16.0, most.max(16.0)) as usize
+    (SEARCH_BUDGET / samples.max(1) as f64).clamp(16.0, most.max(16.0)) as usize
 }
 
 fn step(drivers: &Drivers) -> f64 {
@@ -63,20 +60,20 @@ impl MeanModel for DriftingLine {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        drivers.samples >= FEWEST
+        drivers.samples >= MIN_SAMPLES
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if n < FEWEST || context.score.len() != n || context.powers.len() != n {
-            return Starts { points: vec![], trials: 1.0 };
+        if n < MIN_SAMPLES || !context.is_of(n) {
+            return Starts::none();
         }
         let rates = rates(n);
         let padded = n.next_power_of_two();
         let plan = real_forward(padded);
         let (mut even, mut odd) = (plan.make_input_vec(), plan.make_input_vec());
         let (mut with_cos, mut with_sin) = (plan.make_output_vec(), plan.make_output_vec());
-        let (mut cosine, mut sine) = ([0.0; BLOCK], [0.0; BLOCK]);
+        let (mut cosine, mut sine) = ([0.0; BLOCK_SAMPLES], [0.0; BLOCK_SAMPLES]);
         let (middle, step) = (middle_s(drivers), step(drivers));
         let cell = 1.0 / (padded as f64 * drivers.dt_s);
         let Bounds { low, high } = self.bounds(drivers)[0];
@@ -87,11 +84,13 @@ impl MeanModel for DriftingLine {
             even[n..].fill(0.0);
             odd[n..].fill(0.0);
             let swept = sweep(0.0, drift, middle, drivers);
-            let blocks =
-                even[..n].chunks_mut(BLOCK).zip(odd[..n].chunks_mut(BLOCK)).zip(context.score.chunks(BLOCK));
+            let blocks = even[..n]
+                .chunks_mut(BLOCK_SAMPLES)
+                .zip(odd[..n].chunks_mut(BLOCK_SAMPLES))
+                .zip(context.score.chunks(BLOCK_SAMPLES));
             for (b, ((even, odd), score)) in blocks.enumerate() {
                 let (cosine, sine) = (&mut cosine[..score.len()], &mut sine[..score.len()]);
-                swept.turns(b * BLOCK, cosine, sine);
+                swept.turns(b * BLOCK_SAMPLES, cosine, sine);
                 for (i, (x, (c, s))) in score.iter().zip(cosine.iter().zip(&*sine)).enumerate() {
                     (even[i], odd[i]) = (x * c, x * s);
                 }
@@ -131,11 +130,8 @@ impl MeanModel for DriftingLine {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let free = match nonlinear_parameters {
-            [frequency, drift] => columns(*frequency, *drift, middle_s(drivers), drivers),
-            _ => vec![],
-        };
-        Regressors { columns: free, ..Regressors::default() }
+        let [frequency, drift] = nonlinear_parameters else { return Regressors::default() };
+        Regressors::columns(columns(*frequency, *drift, middle_s(drivers), drivers))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
@@ -154,7 +150,7 @@ impl MeanModel for DriftingLine {
         let half = 0.5 * drift.abs() * drivers.length_s() + 0.5 / drivers.length_s();
         let band =
             Place { domain: Domain::Frequency, from: (frequency - half).max(0.0), to: frequency + half };
-        [vec![band], crate::effect::shared::reach::record(drivers)].concat()
+        [vec![band], record(drivers)].concat()
     }
 
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {
@@ -191,7 +187,7 @@ mod tests {
 
     #[test]
     fn the_shortest_record_is_searched_and_a_shorter_one_is_not() {
-        for (n, lines) in [(FEWEST, 1), (FEWEST - 1, 0)] {
+        for (n, lines) in [(MIN_SAMPLES, 1), (MIN_SAMPLES - 1, 0)] {
             let drivers = Drivers { dt_s: 1.0, samples: n, averaged: 1, ..Drivers::default() };
             let score: Vec<f64> = (0..n).map(|i| (0.9 * i as f64).sin()).collect();
             let context = SearchContext { score: &score, modes: &score, powers: &vec![1.0; n] };

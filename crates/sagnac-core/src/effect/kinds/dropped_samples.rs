@@ -18,7 +18,7 @@ const ROWS: &str = "gaps_rows";
 
 describe! {
     DroppedSamples, "dropped_samples", Samples in Timestamps, needs [],
-    confusers ["clock_drift", "time_offset"],
+    confusers [ClockDrift, TimeOffset],
     lists [
         Param::inner(TIMES, "s", f64::MIN, f64::MAX),
         Param::inner(ROWS, "", 0.0, 1e7)

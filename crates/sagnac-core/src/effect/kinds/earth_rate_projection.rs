@@ -4,11 +4,7 @@ use crate::effect::shared::reach::varies;
 use crate::effect::shared::sinusoid::{polar, wave};
 use crate::effect::shared::table_angle::{columns, visited};
 use crate::effect::sizing::numbers;
-use crate::effect::{
-    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Value, Values,
-    number,
-};
-use crate::numeric::range::Bounds;
+use crate::effect::{Drivers, MeanModel, Param, Place, Regressors, Resolution, Sizing, Values, number};
 
 pub struct EarthRateProjection;
 
@@ -17,15 +13,14 @@ static PARAMS: [Param; 2] =
 
 describe! {
     EarthRateProjection, "earth_rate_projection", Mean in Angle, needs [TableAngle],
-    confusers ["table_harmonic", "heading_change", "line"]
+    confusers [TableHarmonic, HeadingChange, Line]
 }
 
 impl EarthRateProjection {
-    /// What a claim states of cos·cos(angle) + sin·sin(angle), deg/h.
-    pub(super) fn stated(cos: f64, sin: f64) -> Values {
+    /// Values by which a claim states cos·cos(angle) + sin·sin(angle), deg/h.
+    pub(super) fn claimed(cos: f64, sin: f64) -> Values {
         let (amplitude, phase) = polar(&[cos, sin]);
-        let values = [(PARAMS[0].name, amplitude), (PARAMS[1].name, phase)];
-        values.map(|(name, value)| (name.to_owned(), Value::Number(value))).into()
+        numbers([(PARAMS[0].name, amplitude), (PARAMS[1].name, phase)])
     }
 }
 
@@ -38,19 +33,16 @@ impl MeanModel for EarthRateProjection {
         varies(drivers.table_angle.as_deref())
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
-        Starts::linear()
+    fn regressors(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors::columns(columns(1.0, drivers))
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
-        vec![]
-    }
-
-    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
-        Regressors { columns: columns(1.0, drivers), ..Regressors::default() }
-    }
-
-    fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
+    fn parameters(
+        &self,
+        _nonlinear_parameters: &[f64],
+        coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
         vec![amplitude, phase]
     }
@@ -66,13 +58,13 @@ impl MeanModel for EarthRateProjection {
         Some(wave(number(values, PARAMS[0].name)?, phase, &columns(1.0, drivers)))
     }
 
-    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         visited(drivers)
     }
 
     /// A table that turns is no heading: what repeats with its angle is more likely the table's own, or that of the gyro
     /// on it.
-    fn odds(&self, _shape: &[f64], drivers: &Drivers) -> f64 {
+    fn odds(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
         let turns = drivers.table_rate.as_ref().is_some_and(|r| r.iter().any(|r| r.abs() > 1e-6));
         if drivers.claim.earth.is_none() && turns { -2.0 } else { 2.0 }
     }
@@ -81,6 +73,7 @@ impl MeanModel for EarthRateProjection {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Value;
 
     #[test]
     fn a_resting_table_shows_the_projection_at_its_angle() {

@@ -2,10 +2,10 @@
 
 use super::earth_rate_projection::EarthRateProjection;
 use crate::effect::shared::search::gain_of;
-use crate::effect::shared::step::{instants, sizing, step};
+use crate::effect::shared::step::{around, instant_bounds, instants, sizing, step};
 use crate::effect::{
-    ClaimedMean, Domain, Drivers, Earth, Family, Later, MeanModel, Param, Place, Regressors, Resolution,
-    SearchContext, Sizing, Starts, Values, number,
+    ClaimedMean, Drivers, Earth, Later, MeanModel, Param, Place, Regressors, Resolution, SearchContext,
+    Sizing, Starts, Values, number,
 };
 use crate::numeric::order::{SortByNumber, SortNumbers};
 use crate::numeric::range::Bounds;
@@ -33,11 +33,9 @@ fn turning(drivers: &Drivers) -> Option<&[f64]> {
 
 describe! {
     HeadingChange, "heading_change", Mean in Time, needs [],
-    confusers ["bias_step", "earth_rate_projection", "random_telegraph"],
+    confusers [BiasStep, EarthRateProjection, RandomTelegraph],
+    properties [family Jump],
     with {
-        fn family(&self) -> Option<Family> {
-            Some(Family::Jump)
-        }
         fn later(&self, values: &Values, claim: &ClaimedMean) -> Later {
             let number = |i: usize| number(values, PARAMS[i].name);
             let (cos, sin) = match (number(2), number(3), number(0)) {
@@ -45,7 +43,7 @@ describe! {
                 (_, _, Some(step)) => projection_of(step, claim.earth),
                 _ => return Later::Same,
             };
-            Later::As(&EarthRateProjection, EarthRateProjection::stated(cos, sin))
+            Later::As(&EarthRateProjection, EarthRateProjection::claimed(cos, sin))
         }
     }
 }
@@ -63,7 +61,7 @@ fn projection_of(step: f64, earth: Option<Earth>) -> (f64, f64) {
     (horizontal * (after.cos() - before.cos()), -horizontal * (after.sin() - before.sin()))
 }
 
-/// How far the table's angle changes at an instant, deg, against how far it moves in as long a time elsewhere.
+/// Change of the table's angle at an instant, and the usual one in as long a time elsewhere, deg.
 fn turned(at_s: f64, drivers: &Drivers) -> Option<(f64, f64)> {
     let angle = drivers.table_angle.as_ref()?;
     let n = angle.len();
@@ -77,14 +75,14 @@ fn turned(at_s: f64, drivers: &Drivers) -> Option<(f64, f64)> {
     Some((apart(*a, *b), usual.get(usual.len() / 2).copied().unwrap_or(0.0)))
 }
 
-/// Instants looked at.
-const INSTANTS: usize = 128;
+/// Number of instants at which the search looks for a change of heading.
+const HEADING_INSTANTS: usize = 128;
 
 /// Instants from which on another projection gains most, s after the first sample; the best first. Looked at on a grid:
 /// the gain falls off slowly from the right one, and the fit of the shape goes on from there.
 fn turned_instants(drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
     let n = drivers.samples;
-    let points = INSTANTS.min(n / 4);
+    let points = HEADING_INSTANTS.min(n / 4);
     let mut rated: Vec<(f64, Vec<f64>)> = (1..points)
         .map(|p| {
             let nonlinear_parameters = vec![((n * p / points) as f64 - 0.5) * drivers.dt_s];
@@ -113,23 +111,17 @@ impl MeanModel for HeadingChange {
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
-        vec![Bounds::new(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)]
+        vec![instant_bounds(drivers)]
     }
 
     /// A step; with a table that turns, the projection as a function of its angle from then on.
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         let Some(at) = nonlinear_parameters.first() else { return Regressors::default() };
         let step = step(drivers, *at);
-        let mut free = vec![];
-        match turning(drivers) {
-            Some(angle) => {
-                for part in [f64::cos, f64::sin] {
-                    free.push(step.iter().zip(angle).map(|(s, a)| s * part(a.to_radians())).collect());
-                }
-            }
-            None => free.push(step),
-        }
-        Regressors { columns: free, ..Regressors::default() }
+        let Some(angle) = turning(drivers) else { return Regressors::columns([step]) };
+        let projected =
+            |part: fn(f64) -> f64| step.iter().zip(angle).map(|(s, a)| s * part(a.to_radians())).collect();
+        Regressors::columns([f64::cos, f64::sin].map(projected))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
@@ -160,9 +152,7 @@ impl MeanModel for HeadingChange {
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let Some(at) = nonlinear_parameters.first().map(|at| drivers.start_s + at) else { return vec![] };
-        let half = (0.01 * drivers.length_s()).max(2.0 * drivers.dt_s);
-        vec![Place { domain: Domain::Time, from: at - half, to: at + half }]
+        nonlinear_parameters.first().map(|at| around(*at, drivers)).into_iter().collect()
     }
 
     /// For it where the table's angle changes then and seldom else, or where the claim speaks of the heading; against it

@@ -1,14 +1,13 @@
 //! A coherent sinusoid.
 
-use super::unobserved_driver::UnobservedDriver;
+use crate::effect::mean::first;
 use crate::effect::shared::periodogram::LineGains;
-use crate::effect::shared::search::log_grid;
-use crate::effect::shared::search::peaks;
+use crate::effect::shared::search::{log_grid, peaks};
 use crate::effect::shared::sinusoid::{averaged, columns, polar, wave};
 use crate::effect::sizing::numbers;
 use crate::effect::{
-    Domain, Drivers, Effect, Family, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing,
-    Starts, StatedLine, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts,
+    StatedLine, Values, number,
 };
 use crate::numeric::cosine::sinusoid_modes;
 use crate::numeric::optimize::parabolic_peak;
@@ -25,19 +24,12 @@ static PARAMS: [Param; 3] = [
 
 describe! {
     Line, "line", Mean in Frequency, needs [],
-    confusers ["quasi_periodic", "diurnal", "table_harmonic", "reset_ripple"],
-    with {
-        fn family(&self) -> Option<Family> {
-            Some(Family::Line)
-        }
-        fn if_few_cycles(&self) -> Option<&'static dyn Effect> {
-            Some(&UnobservedDriver)
-        }
-    }
+    confusers [QuasiPeriodic, Diurnal, TableHarmonic, ResetRipple],
+    properties [carried_over, family Line, if_few_cycles UnobservedDriver]
 }
 
-/// Fewest cycles in the record: of fewer, nothing that is slow can be told from a line.
-const CYCLES: f64 = 2.5;
+/// Fewest cycles of a line in the record: a slow process with fewer looks the same.
+const MIN_CYCLES: f64 = 2.5;
 
 impl MeanModel for Line {
     fn resolution(&self) -> Resolution {
@@ -50,8 +42,8 @@ impl MeanModel for Line {
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if n < 32 || context.score.len() != n || context.powers.len() != n {
-            return Starts { points: vec![], trials: 1.0 };
+        if n < 32 || !context.is_of(n) {
+            return Starts::none();
         }
         let LineGains { mut gains, step_hz: step } = LineGains::of(drivers, context);
         let Bounds { low, high } = self.bounds(drivers)[0];
@@ -67,13 +59,12 @@ impl MeanModel for Line {
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         let resolution = 1.0 / drivers.length_s();
-        let low = CYCLES * resolution;
+        let low = MIN_CYCLES * resolution;
         vec![Bounds::new(low, (0.5 / drivers.dt_s - 0.5 * resolution).max(low))]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let free = nonlinear_parameters.first().map_or_else(Vec::new, |f| columns(*f, drivers));
-        Regressors { columns: free, ..Regressors::default() }
+        Regressors::columns(nonlinear_parameters.iter().flat_map(|frequency| columns(*frequency, drivers)))
     }
 
     fn modes(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<Vec<f64>>> {
@@ -91,7 +82,7 @@ impl MeanModel for Line {
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
-        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN), amplitude, phase]
+        vec![first(nonlinear_parameters), amplitude, phase]
     }
 
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
@@ -102,11 +93,11 @@ impl MeanModel for Line {
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let StatedLine { frequency_hz, amplitude_deg_h, phase_deg } = self.stated_line(values)?;
+        let StatedLine { frequency_hz, amplitude_deg_h, phase_deg } = self.claimed_line(values)?;
         Some(wave(amplitude_deg_h, phase_deg, &columns(frequency_hz, drivers)))
     }
 
-    fn stated_line(&self, values: &Values) -> Option<StatedLine> {
+    fn claimed_line(&self, values: &Values) -> Option<StatedLine> {
         Some(StatedLine {
             frequency_hz: number(values, PARAMS[0].name)?,
             amplitude_deg_h: number(values, PARAMS[1].name)?,

@@ -1,12 +1,13 @@
 //! The level of the noise follows a recorded column.
 
 use crate::effect::shared::chance::{is_chance, moved};
-use crate::effect::shared::knots::Knots;
+use crate::effect::shared::knots::{Knots, values_of_knots};
+use crate::effect::shared::noise_level::scale;
 use crate::effect::shared::variance::{
     GammaFit, Group, between, by_value, contrast, fit, overdispersion, raised, thinned,
 };
 use crate::effect::{
-    Column, Detector, Domain, Drivers, FlatResidual, Knot, Law, Level, LevelDetector, LevelLaw, Param, Place,
+    Column, Detector, Drivers, FlatResidual, Knot, Law, Level, LevelDetector, LevelLaw, Param, Place,
     Samples, Value, Values, list, text,
 };
 use crate::numeric::range::{Bounds, ends};
@@ -17,22 +18,19 @@ static PARAMS: [Param; 1] = [Param::reported("ratio", "", 1.0, 1e3)];
 
 /// Name of the text that says which column.
 const COLUMN: &str = "column";
-/// Scale at values of the column, against the claimed level.
+/// Names of the lists of values of the column and of the ratios to the claimed level there.
 const KNOT_VALUES: &str = "knots_value";
 const KNOT_RATIOS: &str = "knots_ratio";
 
 describe! {
     NoiseVarianceDriver, "noise_variance_driver", Samples in Driver, needs [],
-    confusers ["noise_variance_time", "outlier_bursts", "column_driver"],
+    confusers [NoiseVarianceTime, OutlierBursts, ColumnDriver],
     lists [
         Param::inner(KNOT_VALUES, "", f64::MIN, f64::MAX),
         Param::inner(KNOT_RATIOS, "", 0.0, 1e3)
     ],
-    with {
-        fn text_params(&self) -> &'static [&'static str] {
-            &[COLUMN]
-        }
-    }
+    texts [COLUMN],
+    properties [carried_over]
 }
 
 impl Samples for NoiseVarianceDriver {
@@ -42,7 +40,7 @@ impl Samples for NoiseVarianceDriver {
         };
         if let Some(knots) = Knots::new(list(values, KNOT_VALUES), list(values, KNOT_RATIOS)) {
             let at = |i: usize| column.get(i).map_or(1.0, |v| knots.at(*v).max(0.0));
-            crate::effect::shared::noise_level::scale(drivers, rate, at);
+            scale(drivers, rate, at);
         }
     }
 
@@ -66,24 +64,20 @@ impl LevelDetector for NoiseVarianceDriver {
 
     fn stated(&self, level: &Level, _drivers: &Drivers) -> Values {
         let Law::Column(column, knots) = &level.law else { return Values::new() };
-        let of = |part: fn(&Knot) -> f64| Value::List(knots.iter().map(part).collect());
-        Values::from([
-            (COLUMN.to_owned(), Value::Text(column.name().to_owned())),
-            (KNOT_VALUES.to_owned(), of(|k| k.at)),
-            (KNOT_RATIOS.to_owned(), of(|k| k.value)),
-        ])
+        let named = (COLUMN.to_owned(), Value::Text(column.name().to_owned()));
+        values_of_knots(knots, KNOT_VALUES, KNOT_RATIOS).into_iter().chain([named]).collect()
     }
 }
 
 /// Gain of a shifted column, nats, over the dispersion of the groups, up to which it is that of an even level.
-const NOTHING: f64 = 8.0;
+const MAX_EVEN_GAIN: f64 = 8.0;
 
 /// A level fitted over the values of a column.
 struct Over {
     groups: Vec<Group>,
     /// Mean value of each group.
     means: Vec<f64>,
-    /// What the logarithm of the level is linear in.
+    /// Columns in which the logarithm of the level is linear.
     columns: Vec<Vec<f64>>,
     best: GammaFit,
 }
@@ -116,14 +110,10 @@ fn over_column(
     residual: &FlatResidual<'_>,
     samples: &[usize],
 ) -> Option<LevelLaw> {
-    let domain = match column {
-        Column::Temperature => Domain::Temperature,
-        Column::Supply => Domain::Supply,
-        Column::OuterRate => Domain::OuterRate,
-        Column::Other(_) => Domain::Driver,
-        // The input rate is an effect of its own, and averages hold no angles.
-        Column::TableRate | Column::TableAngle => return None,
-    };
+    // The input rate is an effect of its own, and averages hold no angles.
+    if matches!(column, Column::TableRate | Column::TableAngle) {
+        return None;
+    }
     let Over { groups, means, columns, best } = over(values, &residual.flat, samples)?;
     let (ratio, ci95) = contrast(&best.log_squares, &best.covariance, &columns);
     let knots: Vec<Knot> =
@@ -132,10 +122,10 @@ fn over_column(
     let free = columns.len();
     let profile: Vec<f64> = values.iter().map(|v| between(&knots, *v)).collect();
     let left: Vec<f64> = residual.flat.iter().zip(&profile).map(|(e, g)| e / g).collect();
-    let worth = |o: &Over| o.best.gain / overdispersion(&o.groups, &o.best.log_squares, o.columns.len() + 1);
-    let of_slide = |slide: usize| over(&moved(values, slide), &left, samples).as_ref().map_or(0.0, worth);
+    let score = |o: &Over| o.best.gain / overdispersion(&o.groups, &o.best.log_squares, o.columns.len() + 1);
+    let of_slide = |slide: usize| over(&moved(values, slide), &left, samples).as_ref().map_or(0.0, score);
     let own = Over { groups, means, columns, best };
-    if is_chance(worth(&own), NOTHING, of_slide) {
+    if is_chance(score(&own), MAX_EVEN_GAIN, of_slide) {
         return None;
     }
     let Over { groups, best, .. } = own;
@@ -149,7 +139,7 @@ fn over_column(
         dispersion: overdispersion(&groups, &best.log_squares, free + 1),
         ratio,
         ci95,
-        place: Place { domain, from, to },
+        place: Place { domain: column.domain(), from, to },
     })
 }
 

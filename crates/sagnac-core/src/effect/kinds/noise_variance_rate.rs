@@ -1,5 +1,7 @@
 //! The level of the noise depends on the input rate.
 
+use crate::effect::shared::noise_level::scale;
+use crate::effect::shared::reach::largest_rate;
 use crate::effect::shared::variance::{Group, by_value, mean_square, overdispersion};
 use crate::effect::{
     Detector, Domain, Drivers, FlatResidual, Law, Level, LevelDetector, LevelLaw, Param, Place, Samples,
@@ -14,7 +16,8 @@ static PARAMS: [Param; 2] = [Param::reported("ratio", "", 1e-3, 1e3), Param::inn
 
 describe! {
     NoiseVarianceRate, "noise_variance_rate", Samples in InputRate, needs [TableRate],
-    confusers ["noise_variance_time", "sf_nonlinearity", "reset_ripple"]
+    confusers [NoiseVarianceTime, SfNonlinearity, ResetRipple],
+    properties [carried_over]
 }
 
 impl Samples for NoiseVarianceRate {
@@ -22,7 +25,7 @@ impl Samples for NoiseVarianceRate {
         let (Some(ratio), Some(table)) = (number(values, PARAMS[0].name), &drivers.table_rate) else {
             return;
         };
-        let largest = table.iter().map(|r| r.abs()).fold(0.0, f64::max);
+        let largest = largest_rate(drivers);
         if largest <= 0.0 {
             return;
         }
@@ -31,7 +34,7 @@ impl Samples for NoiseVarianceRate {
             let share = table.get(i).map_or(0.0, |r| (r.abs() / largest).powf(exponent));
             (1.0 + (ratio * ratio - 1.0) * share).max(0.0).sqrt()
         };
-        crate::effect::shared::noise_level::scale(drivers, rate, gain);
+        scale(drivers, rate, gain);
     }
 
     fn detector(&self) -> Detector {
@@ -100,8 +103,8 @@ struct RateLaw {
     gain: f64,
 }
 
-/// Bound of ln ratio.
-const WIDEST: f64 = 5.0;
+/// Bound of the logarithm of the ratio, either way.
+const MAX_LOG_RATIO: f64 = 5.0;
 
 /// Fits the law to groups with mean |Ω| in `sizes`.
 fn rate_law(groups: &[Group], sizes: &[f64], largest: f64) -> Option<RateLaw> {
@@ -111,12 +114,12 @@ fn rate_law(groups: &[Group], sizes: &[f64], largest: f64) -> Option<RateLaw> {
     let one = |exponent: u8| {
         let shares: Vec<f64> = sizes.iter().map(|s| (s / largest).powi(i32::from(exponent))).collect();
         let value = |log_ratio: f64| likelihood(groups, &shares, log_ratio);
-        let steps = (0..=40).map(|i| WIDEST * (f64::from(i) / 20.0 - 1.0));
+        let steps = (0..=40).map(|i| MAX_LOG_RATIO * (f64::from(i) / 20.0 - 1.0));
         let start = steps.max_by(|a, b| value(*a).total_cmp(&value(*b)))?;
         let at = golden_section(start - 0.25, start + 0.25, 40, |x| -value(x));
         let top = value(at);
         // χ²₁ at 95 % is 3.841.
-        let end = |side: f64| crossing(value, at, side * 2.0 * WIDEST, top - 0.5 * 3.841_459);
+        let end = |side: f64| crossing(value, at, side * 2.0 * MAX_LOG_RATIO, top - 0.5 * 3.841_459);
         let ci95 = [end(-1.0).exp(), end(1.0).exp()];
         Some(RateLaw { ratio: at.exp(), exponent, ci95, gain: top - value(0.0) })
     };

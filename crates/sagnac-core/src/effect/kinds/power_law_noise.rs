@@ -1,7 +1,7 @@
 //! Noise whose density falls with a power of the frequency that is neither of white, flicker nor random walk. It has no
 //! kind of its own in the format of explanations.
 
-use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum, SpectrumAct, Values, number};
+use crate::effect::{Domain, ModeBin, Param, Place, SpectralContext, Spectrum};
 use crate::noise::composite::{Composite, Damped};
 use crate::numeric::range::Bounds;
 
@@ -15,12 +15,8 @@ static PARAMS: [Param; 3] = [
 
 describe! {
     PowerLawNoise, "power_law_noise", Spectrum in Frequency, needs [],
-    confusers ["excess_flicker", "markov_short", "markov_long", "excess_arw"],
-    with {
-        fn in_format(&self) -> bool {
-            false
-        }
-    }
+    confusers [ExcessFlicker, MarkovShort, MarkovLong, ExcessArw],
+    properties [carried_over, outside_format]
 }
 
 /// S₀, α, f₀.
@@ -31,7 +27,7 @@ fn law(fitted: &[f64]) -> [f64; 3] {
     }
 }
 
-/// What means over the sampling interval have of the law at `x` cycles a sample, aliases included:
+/// Factor by which means over the sampling interval change the law at `x` cycles a sample, aliases included:
 /// sin²(πx)/π² Σ_k x^α |x + k|^(−2−α).
 fn averaged(exponent: f64, x: f64) -> f64 {
     if x <= 1e-9 {
@@ -53,20 +49,20 @@ fn averaged(exponent: f64, x: f64) -> f64 {
 }
 
 impl Spectrum for PowerLawNoise {
-    fn act(&self) -> SpectrumAct {
-        SpectrumAct::Adds
-    }
-
     fn scales_with(&self, parameter: usize) -> Option<f64> {
         (parameter == 0).then_some(1.0)
     }
 
-    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+    fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
         let [density, exponent, at] = law(fitted);
-        density * (bin.frequency_hz / at).powf(-exponent) * averaged(exponent, bin.frequency_hz * bin.dt_s)
+        let one = |bin: &ModeBin| {
+            let averaged = averaged(exponent, bin.frequency_hz * bin.dt_s);
+            density * (bin.frequency_hz / at).powf(-exponent) * averaged
+        };
+        bins.iter().map(one).collect()
     }
 
-    fn moves(&self, _fitted: &[f64], parameter: usize) -> bool {
+    fn is_refined(&self, _fitted: &[f64], parameter: usize) -> bool {
         parameter < 2
     }
 
@@ -84,20 +80,16 @@ impl Spectrum for PowerLawNoise {
         [0.4, 0.7, 1.4].map(|exponent| vec![density, exponent, middle]).to_vec()
     }
 
-    fn bounds(&self, _look: &SpectralContext<'_>) -> Vec<Bounds> {
+    fn bounds(&self, _context: &SpectralContext<'_>) -> Vec<Bounds> {
         vec![Bounds::new(1e-30, 1e30), Bounds::new(0.1, 1.9), Bounds::new(1e-12, 1e9)]
     }
 
-    fn trials(&self, _look: &SpectralContext<'_>) -> f64 {
+    fn trials(&self, _context: &SpectralContext<'_>) -> f64 {
         3.0
     }
 
     fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
         law(fitted).to_vec()
-    }
-
-    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
-        PARAMS.iter().map(|p| number(values, p.name)).collect()
     }
 
     /// Relaxations of which each octave of time has one: their sum follows a power law to a few per cent.

@@ -1,8 +1,8 @@
 //! The output is quantised in angle.
 
 use crate::effect::{
-    Detection, Domain, Family, ModeBin, Param, Place, Reported, Rounding, SpectralContext, SpectralSizing,
-    Spectrum, SpectrumAct, Value, Values, number,
+    Detection, Domain, ModeBin, Param, Place, Reported, Rounding, SpectralContext, SpectralSizing, Spectrum,
+    Value, Values, number,
 };
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
@@ -15,13 +15,11 @@ static PARAMS: [Param; 1] = [Param::reported("lsb_arcsec", "arcsec", 0.0, 1e6)];
 
 describe! {
     Quantization, "quantization", Spectrum in Amplitude, needs [],
-    confusers ["excess_arw", "dead_zone"],
+    confusers [ExcessArw, DeadZone],
+    properties [carried_over, family Spectrum],
     with {
         fn rounding(&self) -> Option<&'static dyn Rounding> {
             Some(&Quantization)
-        }
-        fn family(&self) -> Option<Family> {
-            Some(Family::Spectrum)
         }
     }
 }
@@ -50,22 +48,21 @@ impl Rounding for Quantization {
 }
 
 impl Spectrum for Quantization {
-    fn act(&self) -> SpectrumAct {
-        SpectrumAct::Adds
-    }
-
     fn scales_with(&self, parameter: usize) -> Option<f64> {
         (parameter == 0).then_some(2.0)
     }
 
-    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+    fn densities(&self, fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
         let lsb = fitted.first().copied().unwrap_or(0.0);
-        lsb * lsb / 12.0 * unit_density(NoiseType::Quantization, bin.frequency_hz, bin.dt_s)
+        let one = |bin: &ModeBin| {
+            lsb * lsb / 12.0 * unit_density(NoiseType::Quantization, bin.frequency_hz, bin.dt_s)
+        };
+        bins.iter().map(one).collect()
     }
 
     fn starts(&self, context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
-        if let Some(quantization_grid) = context.grid_step_arcsec.filter(|l| *l > 0.0) {
-            return vec![vec![quantization_grid]];
+        if let Some(grid_step) = context.grid_step_arcsec.filter(|l| *l > 0.0) {
+            return vec![vec![grid_step]];
         }
         // Least squares of the excess on the shape, weighted by the expected scatter.
         let (mut both, mut square, mut level) = (0.0, 0.0, f64::INFINITY);
@@ -84,20 +81,8 @@ impl Spectrum for Quantization {
         vec![vec![(12.0 * (both / square).max(0.01 * level)).sqrt()]]
     }
 
-    fn bounds(&self, _look: &SpectralContext<'_>) -> Vec<Bounds> {
+    fn bounds(&self, _context: &SpectralContext<'_>) -> Vec<Bounds> {
         vec![Bounds::new(1e-9, 1e6)]
-    }
-
-    fn trials(&self, _look: &SpectralContext<'_>) -> f64 {
-        1.0
-    }
-
-    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
-        fitted.to_vec()
-    }
-
-    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
-        number(values, PARAMS[0].name).map(|lsb| vec![lsb])
     }
 
     fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {

@@ -1,10 +1,8 @@
 //! A narrow-band disturbance of finite coherence.
 
-use super::unobserved_driver::UnobservedDriver;
 use crate::effect::shared::search::{log_grid, peaks};
 use crate::effect::{
-    Domain, Effect, Family, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct,
-    Value, Values, number,
+    Domain, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, Value, Values,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
 use crate::numeric::order::SortByNumber;
@@ -21,15 +19,8 @@ static PARAMS: [Param; 3] = [
 
 describe! {
     QuasiPeriodic, "quasi_periodic", Spectrum in Frequency, needs [],
-    confusers ["line", "markov_long", "table_harmonic"],
-    with {
-        fn family(&self) -> Option<Family> {
-            Some(Family::Spectrum)
-        }
-        fn if_few_cycles(&self) -> Option<&'static dyn Effect> {
-            Some(&UnobservedDriver)
-        }
-    }
+    confusers [Line, MarkovLong, TableHarmonic],
+    properties [carried_over, family Spectrum, if_few_cycles UnobservedDriver]
 }
 
 fn process(fitted: &[f64]) -> Damped {
@@ -49,10 +40,6 @@ fn edges(bin: &ModeBin) -> Bounds {
 }
 
 impl Spectrum for QuasiPeriodic {
-    fn act(&self) -> SpectrumAct {
-        SpectrumAct::Adds
-    }
-
     fn scales_with(&self, parameter: usize) -> Option<f64> {
         (parameter == 1).then_some(2.0)
     }
@@ -65,10 +52,6 @@ impl Spectrum for QuasiPeriodic {
         let values = [process.frequency_hz, process.rms_deg_h, process.decay_time_s].map(Value::Number);
         let own = process.frequency_hz > 0.0;
         own.then(|| PARAMS.iter().map(|p| p.name.to_owned()).zip(values).collect())
-    }
-
-    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
-        self.densities(fitted, &[*bin])[0]
     }
 
     /// Exact in single modes. A wide bin has the mean over it, which a resonance inside it needs.
@@ -157,14 +140,6 @@ impl Spectrum for QuasiPeriodic {
         context.bins.first().map_or(1.0, |b| b.samples as f64)
     }
 
-    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
-        fitted.to_vec()
-    }
-
-    fn stated(&self, values: &Values) -> Option<Vec<f64>> {
-        PARAMS.iter().map(|p| number(values, p.name)).collect()
-    }
-
     fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
         noise.quasi_periodic.push(process(fitted));
     }
@@ -215,7 +190,7 @@ mod tests {
     #[test]
     fn an_identified_oscillation_is_stated_by_its_numbers() {
         let values = QuasiPeriodic.values_of(&process(&[2.0, 0.5, 30.0]), 0.1).unwrap();
-        assert_eq!(QuasiPeriodic.stated(&values), Some(vec![2.0, 0.5, 30.0]));
+        assert_eq!(QuasiPeriodic.claimed_parameters(&values), Some(vec![2.0, 0.5, 30.0]));
         assert!(QuasiPeriodic.values_of(&process(&[0.0, 0.5, 30.0]), 0.1).is_none());
     }
 }

@@ -20,16 +20,12 @@ const ROWS: &str = "repeats_rows";
 
 describe! {
     RepeatedSamples, "repeated_samples", Samples in Time, needs [],
-    confusers ["markov_short", "quantization", "saturation"],
+    confusers [MarkovShort, Quantization, Saturation],
     lists [
         Param::inner(TIMES, "s", f64::MIN, f64::MAX),
         Param::inner(ROWS, "", 0.0, 1e7)
     ],
-    with {
-        fn in_format(&self) -> bool {
-            false
-        }
-    }
+    properties [outside_format]
 }
 
 impl Samples for RepeatedSamples {

@@ -1,5 +1,6 @@
 //! A contribution that is periodic in the sensed angle.
 
+use crate::effect::shared::reach::varies;
 use crate::effect::shared::search::{best_of, fast_level, peaks};
 use crate::effect::shared::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
@@ -24,7 +25,7 @@ static PARAMS: [Param; 4] = [
 
 describe! {
     ResetRipple, "reset_ripple", Mean in Angle, needs [TableRate],
-    confusers ["line", "table_harmonic", "noise_variance_rate"]
+    confusers [Line, TableHarmonic, NoiseVarianceRate]
 }
 
 /// Shortest period that is looked for, arcsec.
@@ -32,11 +33,11 @@ const MIN_PERIOD_ARCSEC: f64 = 0.5;
 /// Most periods of angle in a search.
 const MAX_PERIODS: usize = 1 << 18;
 /// Cells and samples that a search of one octave of periods may go through.
-const EFFORT: f64 = 4e7;
-/// What a bias may be off from the claimed one, deg/h.
-const WIDE: f64 = 100.0;
-/// Deviations of the fitted bias within which the true one is looked for.
-const SURE: f64 = 3.0;
+const OCTAVE_BUDGET: f64 = 4e7;
+/// Largest departure of the bias from the claimed one, deg/h.
+const MAX_BIAS_ERROR_DEG_H: f64 = 100.0;
+/// Standard deviations of the fitted bias within which the true one is sought.
+const BIAS_SEARCH_SIGMAS: f64 = 3.0;
 
 /// Sensed angle at the middle of each sample since the first began, and its change over the sample, arcsec.
 fn sensed(bias: f64, drivers: &Drivers) -> Option<(Vec<f64>, Vec<f64>)> {
@@ -88,9 +89,9 @@ struct Sample {
     score: Complex<f64>,
 }
 
-/// What one bias needs room for.
+/// Buffers of the search for one bias.
 #[derive(Default)]
-struct Room {
+struct Buffers {
     grid: Vec<Complex<f64>>,
     scratch: Vec<Complex<f64>>,
     gains: Vec<f64>,
@@ -107,7 +108,7 @@ fn quick_size(least: usize) -> usize {
 
 impl Octave {
     /// Middle of the frequencies that are looked at, in cycles a period.
-    const MIDDLE: f64 = 0.75;
+    const MIDDLE_FREQUENCY: f64 = 0.75;
 
     /// `margin` is what biases turn the angle by, arcsec.
     fn new(
@@ -120,7 +121,7 @@ impl Octave {
         let used = (0..middles.len()).filter(|i| steps[*i].abs() < period);
         let sample = |number: usize| {
             let angle_arcsec = middles[number];
-            let turned = Complex::cis(-2.0 * PI * (Octave::MIDDLE * angle_arcsec / period).fract());
+            let turned = Complex::cis(-2.0 * PI * (Octave::MIDDLE_FREQUENCY * angle_arcsec / period).fract());
             Sample { number, angle_arcsec, score: turned * context.score[number] }
         };
         let samples: Vec<Sample> = used.map(sample).collect();
@@ -138,39 +139,39 @@ impl Octave {
         Some(Octave { period, samples, low, range: high - low, dt_s, plan })
     }
 
-    /// Gains for one bias by their frequency into `room`; the frequency of the first and the step, cycles an arcsec.
+    /// Gains for one bias by their frequency into `buffers`; the frequency of the first and the step, cycles an arcsec.
     /// `level` is that of the noise.
-    fn gains(&self, bias_deg_h: f64, level: f64, room: &mut Room) -> (f64, f64) {
+    fn gains(&self, bias_deg_h: f64, level: f64, buffers: &mut Buffers) -> (f64, f64) {
         let size = self.plan.len();
-        room.grid.clear();
-        room.grid.resize(size, Complex::default());
+        buffers.grid.clear();
+        buffers.grid.resize(size, Complex::default());
         // A degree an hour is an arcsecond a second.
         let a_sample = bias_deg_h * self.dt_s;
         let turn = |samples: f64| {
-            Complex::cis(-2.0 * PI * (Octave::MIDDLE * a_sample * samples / self.period).fract())
+            Complex::cis(-2.0 * PI * (Octave::MIDDLE_FREQUENCY * a_sample * samples / self.period).fract())
         };
         let (next, mut turned, mut expected) = (turn(1.0), Complex::default(), usize::MAX);
         for sample in &self.samples {
             turned = if sample.number == expected { turned * next } else { turn(sample.number as f64) };
             expected = sample.number + 1;
             let at = (sample.angle_arcsec + a_sample * sample.number as f64 - self.low) / self.period;
-            if let Some(cell) = room.grid.get_mut(at as usize) {
+            if let Some(cell) = buffers.grid.get_mut(at as usize) {
                 *cell += sample.score * turned;
             }
         }
-        room.scratch.resize(self.plan.get_inplace_scratch_len(), Complex::default());
-        self.plan.process_with_scratch(&mut room.grid, &mut room.scratch);
+        buffers.scratch.resize(self.plan.get_inplace_scratch_len(), Complex::default());
+        self.plan.process_with_scratch(&mut buffers.grid, &mut buffers.scratch);
         let step = 1.0 / (size as f64 * self.period);
-        let (quarter, middle) = (size / 4, Octave::MIDDLE / self.period);
+        let (quarter, middle) = (size / 4, Octave::MIDDLE_FREQUENCY / self.period);
         let scale = level / self.samples.len() as f64;
         let first = middle - quarter as f64 * step;
         let gain = |j: usize| {
             let f = first + j as f64 * step;
-            let w = room.grid[(j + size - quarter) % size];
+            let w = buffers.grid[(j + size - quarter) % size];
             if f * self.range >= 3.0 { w.norm_sqr() * scale } else { 0.0 }
         };
-        room.gains.clear();
-        room.gains.extend((0..=2 * quarter).map(gain));
+        buffers.gains.clear();
+        buffers.gains.extend((0..=2 * quarter).map(gain));
         (first, step)
     }
 }
@@ -182,28 +183,27 @@ impl MeanModel for ResetRipple {
 
     fn applies(&self, drivers: &Drivers) -> bool {
         let slow = |r: &&f64| (3600.0 * **r * drivers.dt_s).abs() < 3600.0;
-        crate::effect::shared::reach::varies(drivers.table_rate.as_deref())
+        varies(drivers.table_rate.as_deref())
             && drivers.table_rate.iter().flatten().filter(slow).count() >= 64
     }
 
     /// An error of the bias turns the phase along the record: biases within a few turns of the fitted one are tried.
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        let none = Starts { points: vec![], trials: 1.0 };
-        if n < 64 || context.score.len() != n || context.powers.len() != n {
-            return none;
+        if n < 64 || !context.is_of(n) {
+            return Starts::none();
         }
         let fitted = drivers.claim.bias_deg_h;
         // The mean of a random walk is off from where it began by π²/3 times the variance of its slowest wave.
         let deviation = PI * (context.powers[1] / (3.0 * n as f64)).sqrt();
-        let Some(angles) = sensed(fitted, drivers) else { return none };
+        let Some(angles) = sensed(fitted, drivers) else { return Starts::none() };
         let Bounds { low, high } = ends(&angles.0);
         let level = fast_level(context);
         let (mut period, mut found, mut trials) = (MIN_PERIOD_ARCSEC, vec![], 1.0);
         while period < (high - low) / 3.0 {
             // Half turns of the phase over the record that the uncertainty of the bias amounts to.
-            let uncertain = SURE * deviation * drivers.length_s() / (0.5 * period);
-            let affordable = 0.5 * EFFORT / (8.0 * (high - low) / period + n as f64);
+            let uncertain = BIAS_SEARCH_SIGMAS * deviation * drivers.length_s() / (0.5 * period);
+            let affordable = 0.5 * OCTAVE_BUDGET / (8.0 * (high - low) / period + n as f64);
             let turns = uncertain.min(affordable).clamp(1.0, 1e4).ceil() as i32;
             let per_turn = 0.5 * period / drivers.length_s();
             let margin = f64::from(turns) * 0.5 * period;
@@ -211,17 +211,17 @@ impl MeanModel for ResetRipple {
                 period *= 2.0;
                 continue;
             };
-            let of_bias = |room: &mut Room, k: i32| {
+            let of_bias = |buffers: &mut Buffers, k: i32| {
                 let other = f64::from(k) * per_turn;
-                let (first, step) = octave.gains(other, level, room);
+                let (first, step) = octave.gains(other, level, buffers);
                 let nonlinear_parameters = |j: usize| {
-                    let f = first + (j as f64 + parabolic_peak(&room.gains, j)) * step;
-                    (room.gains[j], vec![1.0 / f, fitted + other])
+                    let f = first + (j as f64 + parabolic_peak(&buffers.gains, j)) * step;
+                    (buffers.gains[j], vec![1.0 / f, fitted + other])
                 };
-                peaks(&room.gains, 2, 6).into_iter().map(nonlinear_parameters).collect::<Vec<_>>()
+                peaks(&buffers.gains, 2, 6).into_iter().map(nonlinear_parameters).collect::<Vec<_>>()
             };
             let seen: Vec<Vec<_>> =
-                (-turns..=turns).into_par_iter().map_init(Room::default, of_bias).collect();
+                (-turns..=turns).into_par_iter().map_init(Buffers::default, of_bias).collect();
             trials += seen.len() as f64 * (high - low) / period * 0.5;
             found.extend(seen.into_iter().flatten());
             period *= 2.0;
@@ -236,13 +236,13 @@ impl MeanModel for ResetRipple {
         let range = extent(bias, drivers);
         vec![
             Bounds::new(0.5 * MIN_PERIOD_ARCSEC, (0.5 * range).max(MIN_PERIOD_ARCSEC)),
-            Bounds::new(bias - WIDE, bias + WIDE),
+            Bounds::new(bias - MAX_BIAS_ERROR_DEG_H, bias + MAX_BIAS_ERROR_DEG_H),
         ]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         let [period, bias] = nonlinear_parameters else { return Regressors::default() };
-        Regressors { columns: columns(*period, *bias, drivers), ..Regressors::default() }
+        Regressors::columns(columns(*period, *bias, drivers))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {

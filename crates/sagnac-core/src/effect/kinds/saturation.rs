@@ -1,7 +1,8 @@
 //! A response that is limited at large rates.
 
-use crate::effect::shared::reach::varies;
-use crate::effect::shared::search::{best_of, shortlist};
+use crate::effect::mean::first;
+use crate::effect::shared::reach::{largest_rate, varies};
+use crate::effect::shared::search::{best_of, log_grid, shortlist};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
 };
@@ -13,16 +14,12 @@ static PARAMS: [Param; 1] = [Param::reported("limit_deg_s", "deg/s", 1e-9, 1e6)]
 
 describe! {
     Saturation, "saturation", Mean in InputRate, needs [TableRate],
-    confusers ["sf_nonlinearity", "sf_error"]
+    confusers [SfNonlinearity, SfError]
 }
 
 fn beyond(limit: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     let rate = drivers.table_rate.as_ref()?;
     (limit > 0.0).then(|| rate.iter().map(|r| -3600.0 * r.signum() * (r.abs() - limit).max(0.0)).collect())
-}
-
-fn largest(drivers: &Drivers) -> f64 {
-    drivers.table_rate.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max)
 }
 
 impl MeanModel for Saturation {
@@ -31,13 +28,13 @@ impl MeanModel for Saturation {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.table_rate.as_deref()) && largest(drivers) > 0.0
+        varies(drivers.table_rate.as_deref()) && largest_rate(drivers) > 0.0
     }
 
     /// Limits that fall short of the largest rate by shares from a billionth, which is what the best units resolve, to three quarters.
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        let most = largest(drivers);
-        let shares = crate::effect::shared::search::log_grid(1e-9, 0.75, 60);
+        let most = largest_rate(drivers);
+        let shares = log_grid(1e-9, 0.75, 60);
         let limits = shares.into_iter().map(|s| vec![most * (1.0 - s)]);
         let limits = shortlist(self, limits, 6, drivers, context);
         let points = best_of(self, limits, 3, drivers, context);
@@ -45,7 +42,7 @@ impl MeanModel for Saturation {
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
-        let most = largest(drivers).max(1e-12);
+        let most = largest_rate(drivers).max(1e-12);
         vec![Bounds::new(0.2 * most, most)]
     }
 
@@ -62,7 +59,7 @@ impl MeanModel for Saturation {
         _coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<f64> {
-        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
+        vec![first(nonlinear_parameters)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
@@ -90,12 +87,12 @@ impl MeanModel for Saturation {
     }
 
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {
-        vec![1e-3 * largest(drivers)]
+        vec![1e-3 * largest_rate(drivers)]
     }
 
     /// Where the rate passes the limit on its way from one neighbour to the other: how long it was beyond within the sample,
     /// its mean does not say. None where too few samples lie beyond altogether to do without them.
-    fn bends_within(&self, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
+    fn curvature_within_average(&self, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
         let (Some(limit), Some(rate)) = (parameters.first(), &drivers.table_rate) else { return vec![] };
         let passes = |i: &usize| {
             let around = &rate[i.saturating_sub(1)..(i + 2).min(rate.len())];
@@ -141,7 +138,7 @@ mod tests {
             rate.extend([5.0; 20]);
             let samples = rate.len();
             let drivers = Drivers { dt_s: 1.0, samples, table_rate: Some(rate), ..Drivers::default() };
-            Saturation.bends_within(&[limit], &drivers)
+            Saturation.curvature_within_average(&[limit], &drivers)
         };
         let steps = vec![0.0, 2.0, 4.0, 5.0, 5.0, 5.0, 3.0, -3.0, -5.0, -5.0, -5.0];
         assert_eq!(told(steps.clone(), 4.5), [2, 3, 5, 6, 7, 8, 10, 11]);

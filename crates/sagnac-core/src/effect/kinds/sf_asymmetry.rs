@@ -1,7 +1,7 @@
 //! Different scale factors for positive and negative rate.
 
 use crate::effect::shared::reach::large_rates;
-use crate::effect::{Drivers, Param};
+use crate::effect::{Drivers, MeanModel, Param, Place, Resolution};
 use crate::numeric::range::{Bounds, ends};
 
 pub struct SfAsymmetry;
@@ -10,20 +10,29 @@ static PARAMS: [Param; 1] = [Param::reported("asymmetry_ppm", "ppm", -1e5, 1e5).
 
 describe! {
     SfAsymmetry, "sf_asymmetry", Mean in InputRate, needs [TableRate],
-    confusers ["sf_error", "sf_nonlinearity", "temp_linear"]
+    confusers [SfError, SfNonlinearity, TempLinear],
+    properties [carried_over]
 }
 
-fn column(drivers: &Drivers) -> Option<Vec<f64>> {
-    Some(drivers.table_rate.as_ref()?.iter().map(|r| 1800e-6 * r.abs()).collect())
-}
+impl MeanModel for SfAsymmetry {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
+    }
 
-linear! { SfAsymmetry, replaces None, places large_rates }
+    /// Rates of one sign alone cannot show it.
+    fn applies(&self, drivers: &Drivers) -> bool {
+        let Some(rate) = &drivers.table_rate else { return false };
+        let Bounds { low, high } = ends(rate);
+        low.is_finite() && high.is_finite() && low < -0.01 * high.abs() && high > 0.01 * low.abs()
+    }
 
-/// Rates of one sign alone cannot show it.
-fn applies(drivers: &Drivers) -> bool {
-    let Some(rate) = &drivers.table_rate else { return false };
-    let Bounds { low, high } = ends(rate);
-    low.is_finite() && high.is_finite() && low < -0.01 * high.abs() && high > 0.01 * low.abs()
+    fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        Some(drivers.table_rate.as_ref()?.iter().map(|r| 1800e-6 * r.abs()).collect())
+    }
+
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        large_rates(drivers)
+    }
 }
 
 #[cfg(test)]
@@ -41,7 +50,7 @@ mod tests {
         for (got, expected) in course.iter().zip([0.36, 0.0, 0.36]) {
             assert!((got - expected).abs() < 1e-12, "{course:?}");
         }
-        assert!(applies(&drivers));
-        assert!(!applies(&Drivers { table_rate: Some(vec![0.0, 2.0]), ..Drivers::default() }));
+        assert!(SfAsymmetry.applies(&drivers));
+        assert!(!SfAsymmetry.applies(&Drivers { table_rate: Some(vec![0.0, 2.0]), ..Drivers::default() }));
     }
 }

@@ -1,10 +1,12 @@
 //! A scale factor that follows a recorded column other than temperature.
 
+use crate::effect::mean::first;
 use crate::effect::shared::reach::{large_rates, reach, varies};
+use crate::effect::shared::scale_factor;
 use crate::effect::sizing::numbers;
 use crate::effect::{
-    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts,
-    Value, Values, number, text,
+    Column, Drivers, MeanModel, Param, Place, Resolution, SearchContext, Sizing, Starts, Value, Values,
+    number, text,
 };
 use crate::numeric::range::Bounds;
 
@@ -20,12 +22,9 @@ const COLUMN: &str = "column";
 
 describe! {
     SfDriver, "sf_driver", Mean in InputRate, needs [TableRate],
-    confusers ["sf_temperature", "sf_error", "column_product"],
-    with {
-        fn text_params(&self) -> &'static [&'static str] {
-            &[COLUMN]
-        }
-    }
+    confusers [SfTemperature, SfError, ColumnProduct],
+    texts [COLUMN],
+    properties [carried_over]
 }
 
 /// Columns that the scale factor may follow.
@@ -34,8 +33,8 @@ fn columns(drivers: &Drivers) -> Vec<Column> {
     drivers.columns().filter(follows).collect()
 }
 
-/// The column that a nonlinear parameter stands for.
-fn meant(nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Column> {
+/// The column that a nonlinear parameter selects.
+fn decode(nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Column> {
     let index = nonlinear_parameters.first()?.round() as usize;
     drivers.columns().nth(index)
 }
@@ -44,10 +43,9 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// Rate times the departure of the column from a reference, deg/h for 1 ppm a unit.
+/// The product that a column makes with the rate, deg/h for 1 ppm a unit.
 fn product(column: Column, reference: f64, drivers: &Drivers) -> Option<Vec<f64>> {
-    let (rate, values) = (drivers.table_rate.as_ref()?, drivers.column(column)?);
-    Some(rate.iter().zip(values).map(|(r, v)| 3600e-6 * r * (v - reference)).collect())
+    scale_factor::product(drivers.column(column)?, reference, drivers)
 }
 
 impl MeanModel for SfDriver {
@@ -56,39 +54,36 @@ impl MeanModel for SfDriver {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        let moving = drivers.table_rate.as_ref().is_some_and(|r| r.iter().any(|r| *r != 0.0));
-        moving && !columns(drivers).is_empty()
+        scale_factor::is_moving(drivers) && !columns(drivers).is_empty()
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let candidates = columns(drivers);
         let trials = candidates.len() as f64;
-        let gain = |column: Column| {
+        let scored = |column: Column| {
             let reference = mean(drivers.column(column)?);
             let index = drivers.columns().position(|c| c == column)?;
-            Some((index, context.gain(&product(column, reference, drivers)?)))
+            Some((context.gain(&product(column, reference, drivers)?), vec![index as f64]))
         };
-        let best = candidates.into_iter().filter_map(gain).max_by(|a, b| a.1.total_cmp(&b.1));
-        Starts { points: best.map(|(i, _)| vec![i as f64]).into_iter().collect(), trials }
+        Starts::best(candidates.into_iter().filter_map(scored), trials)
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         vec![Bounds::new(0.0, drivers.columns().count().saturating_sub(1) as f64)]
     }
 
-    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let column = meant(nonlinear_parameters, drivers);
-        let product = column.and_then(|c| product(c, mean(drivers.column(c)?), drivers));
-        Regressors { columns: product.into_iter().collect(), ..Regressors::default() }
+    fn column(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        let column = decode(nonlinear_parameters, drivers)?;
+        product(column, mean(drivers.column(column)?), drivers)
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        let reference = meant(nonlinear_parameters, drivers).and_then(|c| Some(mean(drivers.column(c)?)));
-        vec![coefficients.first().copied().unwrap_or(f64::NAN), reference.unwrap_or(f64::NAN)]
+        let reference = decode(nonlinear_parameters, drivers).and_then(|c| Some(mean(drivers.column(c)?)));
+        vec![first(coefficients), reference.unwrap_or(f64::NAN)]
     }
 
     fn texts(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<(&'static str, String)> {
-        let column = meant(nonlinear_parameters, drivers);
+        let column = decode(nonlinear_parameters, drivers);
         column.map(|c| (COLUMN, c.name().to_owned())).into_iter().collect()
     }
 
@@ -114,11 +109,10 @@ impl MeanModel for SfDriver {
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let mut out = large_rates(drivers);
-        if let Some(column) = meant(nonlinear_parameters, drivers) {
-            let domain = if column == Column::Supply { Domain::Supply } else { Domain::Driver };
-            let product = self.regressors(nonlinear_parameters, drivers).columns;
+        if let Some(column) = decode(nonlinear_parameters, drivers) {
+            let product = self.column(nonlinear_parameters, drivers);
             let values = drivers.column(column).unwrap_or(&[]);
-            out.extend(product.first().into_iter().flat_map(|p| reach(domain, values, p)));
+            out.extend(product.iter().flat_map(|p| reach(column.domain(), values, p)));
         }
         out
     }

@@ -1,7 +1,7 @@
 //! A scale factor that differs from the claimed one.
 
 use crate::effect::shared::reach::{large_rates, varies};
-use crate::effect::{Drivers, Param};
+use crate::effect::{Drivers, MeanModel, Nuisance, Param, Place, Resolution};
 
 pub struct SfError;
 
@@ -9,17 +9,29 @@ static PARAMS: [Param; 1] = [Param::reported("error_ppm", "ppm", -1e5, 1e5).sign
 
 describe! {
     SfError, "sf_error", Mean in InputRate, needs [TableRate],
-    confusers ["sf_asymmetry", "sf_nonlinearity", "sf_temperature", "time_offset"]
+    confusers [SfAsymmetry, SfNonlinearity, SfTemperature, TimeOffset]
 }
 
-fn column(drivers: &Drivers) -> Option<Vec<f64>> {
-    Some(drivers.table_rate.as_ref()?.iter().map(|r| 3600e-6 * r).collect())
-}
+impl MeanModel for SfError {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
+    }
 
-linear! { SfError, replaces Some(crate::effect::Nuisance::ScaleFactor), places large_rates }
+    fn replaces(&self) -> Option<Nuisance> {
+        Some(Nuisance::ScaleFactor)
+    }
 
-fn applies(drivers: &Drivers) -> bool {
-    varies(drivers.table_rate.as_deref())
+    fn applies(&self, drivers: &Drivers) -> bool {
+        varies(drivers.table_rate.as_deref())
+    }
+
+    fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        Some(drivers.table_rate.as_ref()?.iter().map(|r| 3600e-6 * r).collect())
+    }
+
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        large_rates(drivers)
+    }
 }
 
 #[cfg(test)]

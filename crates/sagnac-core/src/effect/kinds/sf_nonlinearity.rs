@@ -1,10 +1,8 @@
 //! A scale factor that depends on the size of the rate.
 
-use crate::effect::shared::reach::varies;
-use crate::effect::{
-    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values, number,
-};
-use crate::numeric::range::Bounds;
+use crate::effect::mean::first;
+use crate::effect::shared::reach::{large_rates, largest_rate, varies};
+use crate::effect::{Drivers, MeanModel, Param, Place, Resolution, Values, number};
 
 pub struct SfNonlinearity;
 
@@ -15,14 +13,12 @@ static PARAMS: [Param; 2] = [
 
 describe! {
     SfNonlinearity, "sf_nonlinearity", Mean in InputRate, needs [TableRate],
-    confusers ["sf_error", "saturation", "sf_asymmetry"]
+    confusers [SfError, Saturation, SfAsymmetry],
+    properties [carried_over]
 }
 
-fn largest(drivers: &Drivers) -> f64 {
-    drivers.table_rate.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max)
-}
-
-fn column(largest: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+/// The cubic term, deg/h for 1 ppm at the largest rate.
+fn cubic(largest: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     let rate = drivers.table_rate.as_ref()?;
     (largest > 0.0).then(|| rate.iter().map(|r| 3600e-6 * r * (r / largest).powi(2)).collect())
 }
@@ -34,42 +30,27 @@ impl MeanModel for SfNonlinearity {
 
     /// With a single size of rate the cubic term is a scale factor.
     fn applies(&self, drivers: &Drivers) -> bool {
-        let most = largest(drivers);
+        let most = largest_rate(drivers);
         let between = |r: &f64| r.abs() > 0.1 * most && r.abs() < 0.9 * most;
         varies(drivers.table_rate.as_deref()) && drivers.table_rate.iter().flatten().any(between)
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
-        Starts::linear()
+    fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        cubic(largest_rate(drivers), drivers)
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
-        vec![]
-    }
-
-    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
-        Regressors {
-            columns: column(largest(drivers), drivers).into_iter().collect(),
-            ..Regressors::default()
-        }
-    }
-
-    fn parameters(&self, _shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        vec![coefficients.first().copied().unwrap_or(f64::NAN), largest(drivers)]
-    }
-
-    fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
-        vec![Sizing::linear(&PARAMS[0])]
+    fn parameters(&self, _nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        vec![first(coefficients), largest_rate(drivers)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let coefficient = number(values, PARAMS[0].name)?;
-        let at = number(values, PARAMS[1].name).unwrap_or_else(|| largest(drivers));
-        Some(column(at, drivers)?.into_iter().map(|x| coefficient * x).collect())
+        let at = number(values, PARAMS[1].name).unwrap_or_else(|| largest_rate(drivers));
+        Some(cubic(at, drivers)?.into_iter().map(|x| coefficient * x).collect())
     }
 
-    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        crate::effect::shared::reach::large_rates(drivers)
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        large_rates(drivers)
     }
 }
 

@@ -1,8 +1,10 @@
 //! A scale factor that depends on temperature.
 
-use crate::effect::shared::reach::{reach, varies};
+use super::temp_linear::reference;
+use crate::effect::shared::reach::{large_rates, reach, varies};
+use crate::effect::shared::scale_factor::{is_moving, product};
 use crate::effect::shared::thermal::smooth;
-use crate::effect::{Domain, Drivers, Param, Place};
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place, Resolution};
 
 pub struct SfTemperature;
 
@@ -10,33 +12,35 @@ static PARAMS: [Param; 1] = [Param::reported("coefficient_ppm_per_degC", "ppm/°
 
 describe! {
     SfTemperature, "sf_temperature", Mean in Temperature, needs [TableRate, Temperature],
-    confusers ["sf_error", "temp_linear", "sf_nonlinearity"]
+    confusers [SfError, TempLinear, SfNonlinearity],
+    properties [carried_over]
 }
 
-fn column(drivers: &Drivers) -> Option<Vec<f64>> {
-    let from = drivers.claim.temperature.map_or(20.0, |t| t.reference_degc);
-    let (rate, t) = (drivers.table_rate.as_ref()?, smooth(drivers)?);
-    Some(rate.iter().zip(t).map(|(r, t)| 3600e-6 * r * (t - from)).collect())
-}
+impl MeanModel for SfTemperature {
+    fn resolution(&self) -> Resolution {
+        Resolution::FullRate
+    }
 
-fn places(drivers: &Drivers) -> Vec<Place> {
-    let course = column(drivers).unwrap_or_default();
-    let mut out = reach(Domain::Temperature, smooth(drivers).unwrap_or(&[]), &course);
-    out.extend(crate::effect::shared::reach::large_rates(drivers));
-    out
-}
+    fn applies(&self, drivers: &Drivers) -> bool {
+        is_moving(drivers) && varies(drivers.temperature.as_deref())
+    }
 
-linear! { SfTemperature, replaces None, places places }
+    fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        product(smooth(drivers)?, reference(drivers), drivers)
+    }
 
-fn applies(drivers: &Drivers) -> bool {
-    let moving = drivers.table_rate.as_ref().is_some_and(|r| r.iter().any(|r| *r != 0.0));
-    moving && varies(drivers.temperature.as_deref())
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        let course = self.column(&[], drivers).unwrap_or_default();
+        let mut out = reach(Domain::Temperature, smooth(drivers).unwrap_or(&[]), &course);
+        out.extend(large_rates(drivers));
+        out
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{MeanModel, Value, Values};
+    use crate::effect::{Value, Values};
 
     #[test]
     fn the_scale_factor_is_the_claimed_one_at_the_reference() {

@@ -3,6 +3,7 @@
 
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{large_rates, record};
+use crate::effect::shared::scale_factor::is_moving;
 use crate::effect::shared::search::gain_of;
 use crate::effect::{
     Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, list, number,
@@ -18,17 +19,13 @@ static PARAMS: [Param; 2] =
 /// Name of the list of the coefficients of the cosines, ppm.
 const COEFFICIENTS: &str = "coefficients_ppm";
 /// Most cosines: the shortest period is a fourth of the record.
-const MOST: usize = 8;
+const MAX_COSINES: usize = 8;
 
 describe! {
     SfUnrecorded, "sf_unrecorded", Mean in InputRate, needs [TableRate],
-    confusers ["sf_driver", "sf_temperature", "sf_error"],
+    confusers [SfDriver, SfTemperature, SfError],
     lists [Param::inner(COEFFICIENTS, "ppm", -1e9, 1e9)],
-    with {
-        fn reported_kind(&self) -> &'static str {
-            "sf_driver"
-        }
-    }
+    properties [reported_as SfDriver]
 }
 
 /// Rate of the table times cosines over a time, deg/h for 1 ppm.
@@ -46,41 +43,43 @@ impl MeanModel for SfUnrecorded {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        drivers.table_rate.as_ref().is_some_and(|r| r.len() >= 64 && r.iter().any(|r| *r != 0.0))
+        is_moving(drivers) && drivers.table_rate.as_ref().is_some_and(|r| r.len() >= 64)
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        if !self.applies(drivers) || context.modes.len() != drivers.samples {
-            return Starts { points: vec![], trials: 1.0 };
+        if !self.applies(drivers) || !context.is_of(drivers.samples) {
+            return Starts::none();
         }
         let price = 0.5 * (drivers.samples as f64).ln();
-        let all = columns(drivers.time_s(0), drivers.length_s(), MOST, drivers);
-        let worth = |count: usize| {
-            let columns = all[..count].to_vec();
-            gain_of(Regressors { columns, ..Regressors::default() }, context) - price * count as f64
-        };
-        let rated = (1..=MOST).map(|count| (count, worth(count)));
-        let best = rated.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(1, |(count, _)| count);
-        Starts { points: vec![vec![best as f64]], trials: MOST as f64 }
+        let all = columns(drivers.time_s(0), drivers.length_s(), MAX_COSINES, drivers);
+        let scored = (1..=MAX_COSINES).map(|count| {
+            let gain = gain_of(Regressors::columns(all[..count].iter().cloned()), context);
+            (gain - price * count as f64, vec![count as f64])
+        });
+        Starts::best(scored, MAX_COSINES as f64)
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
-        vec![Bounds::new(1.0, MOST as f64)]
+        vec![Bounds::new(1.0, MAX_COSINES as f64)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         let count = nonlinear_parameters.first().map_or(0, |c| c.round() as usize);
-        let columns = columns(drivers.time_s(0), drivers.length_s(), count, drivers);
-        Regressors { columns, ..Regressors::default() }
+        Regressors::columns(columns(drivers.time_s(0), drivers.length_s(), count, drivers))
     }
 
-    fn parameters(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+    fn parameters(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        drivers: &Drivers,
+    ) -> Vec<f64> {
         vec![drivers.time_s(0), drivers.length_s()]
     }
 
     fn lists(
         &self,
-        _shape: &[f64],
+        _nonlinear_parameters: &[f64],
         coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<(&'static str, Vec<f64>)> {
@@ -94,7 +93,7 @@ impl MeanModel for SfUnrecorded {
         (!columns.is_empty()).then(|| sum(coefficients, &columns))
     }
 
-    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let mut out = large_rates(drivers);
         if !out.is_empty() {
             out.extend(record(drivers));
@@ -107,7 +106,7 @@ impl MeanModel for SfUnrecorded {
     }
 
     // A column that explains the change is the simpler cause, and so is a law of the rate itself.
-    fn odds(&self, _shape: &[f64], _drivers: &Drivers) -> f64 {
+    fn odds(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> f64 {
         -3.0
     }
 }

@@ -43,7 +43,7 @@ fn simulated_spectra_have_the_density_that_fits_use() {
             match spectrum.act() {
                 crate::effect::SpectrumAct::Adds => white + spectrum.density(&fitted, bin),
                 crate::effect::SpectrumAct::Filters => white * spectrum.density(&fitted, bin),
-                crate::effect::SpectrumAct::Frees(term) => white + fitted[0].powi(2) * part(term),
+                crate::effect::SpectrumAct::Unconstrains(term) => white + fitted[0].powi(2) * part(term),
             }
         };
         let (mut low, mut bins) = (1usize, 0);
@@ -138,16 +138,16 @@ fn stated_spectra_give_their_fitted_parameters_back() {
     for effect in EFFECTS {
         let Model::Spectrum(spectrum) = effect.model() else { continue };
         let numbers: Vec<f64> = (0..effect.params().len()).map(|i| 0.5 + i as f64).collect();
-        let stated = spectrum.stated(&values(*effect, &numbers, vec![]));
+        let stated = spectrum.claimed_parameters(&values(*effect, &numbers, vec![]));
         if effect.kind() == "unobserved_driver" {
             assert!(stated.is_none());
             let knots = vec![("knots_time_s", vec![0.0, 10.0]), ("knots_deg_h", vec![1.0, 2.0])];
             let drivers = Drivers { dt_s: 5.0, samples: 3, averaged: 1, ..Drivers::default() };
-            let course = effect.stated_course(&values(*effect, &[], knots), &drivers);
+            let course = effect.claimed_course(&values(*effect, &[], knots), &drivers);
             assert_eq!(course, Some(vec![1.0, 1.5, 2.0]));
             continue;
         }
         assert_eq!(spectrum.parameters(&stated.unwrap()), numbers, "{}", effect.kind());
-        assert!(spectrum.stated(&Values::new()).is_none(), "{}", effect.kind());
+        assert!(spectrum.claimed_parameters(&Values::new()).is_none(), "{}", effect.kind());
     }
 }

@@ -1,5 +1,6 @@
 //! A contribution that is periodic in the table angle.
 
+use crate::effect::mean::first;
 use crate::effect::shared::reach::varies;
 use crate::effect::shared::search::best_of;
 use crate::effect::shared::sinusoid::{polar, wave};
@@ -20,7 +21,7 @@ static PARAMS: [Param; 3] = [
 
 describe! {
     TableHarmonic, "table_harmonic", Mean in Angle, needs [TableAngle],
-    confusers ["earth_rate_projection", "line", "reset_ripple"]
+    confusers [EarthRateProjection, Line, ResetRipple]
 }
 
 impl MeanModel for TableHarmonic {
@@ -42,13 +43,12 @@ impl MeanModel for TableHarmonic {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let free = nonlinear_parameters.first().map_or_else(Vec::new, |k| columns(k.round(), drivers));
-        Regressors { columns: free, ..Regressors::default() }
+        Regressors::columns(nonlinear_parameters.iter().flat_map(|order| columns(order.round(), drivers)))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
         let (amplitude, phase) = polar(coefficients);
-        vec![nonlinear_parameters.first().map_or(f64::NAN, |k| k.round()), amplitude, phase]
+        vec![first(nonlinear_parameters).round(), amplitude, phase]
     }
 
     fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
@@ -65,7 +65,7 @@ impl MeanModel for TableHarmonic {
         Some(wave(amplitude, phase, &columns(order, drivers)))
     }
 
-    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         visited(drivers)
     }
 

@@ -24,7 +24,8 @@ static PARAMS: [Param; 4] = [WIDTH, PLAY, Param::inner("first_state", "", -1.0, 
 
 describe! {
     TempHysteresis, "temp_hysteresis", Mean in Temperature, needs [Temperature],
-    confusers ["temp_rate", "thermal_lag", "temp_polynomial"]
+    confusers [TempRate, ThermalLag, TempPolynomial],
+    properties [carried_over, law Hysteresis]
 }
 
 /// Half the play's state, −1/2 on a cooling branch to 1/2 on a heating one: multiplied by the width of the loop.
@@ -44,8 +45,8 @@ fn column(play: f64, first: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     state(smooth(drivers)?, play, first)
 }
 
-/// Whether a temperature turns by enough for both branches to be seen.
-pub(super) fn turns(t: &[f64]) -> bool {
+/// True where a temperature reverses by enough for both branches to be seen.
+pub(super) fn reverses(t: &[f64]) -> bool {
     let branches = state(t, 0.05 * ends(t).width(), 0.0).unwrap_or_default();
     branches.iter().any(|b| *b > 0.49) && branches.iter().any(|b| *b < -0.49)
 }
@@ -53,7 +54,7 @@ pub(super) fn turns(t: &[f64]) -> bool {
 impl MeanModel for TempHysteresis {
     /// A temperature that never turns has no second branch.
     fn applies(&self, drivers: &Drivers) -> bool {
-        smooth(drivers).is_some_and(|t| varies(Some(t)) && turns(t))
+        smooth(drivers).is_some_and(|t| varies(Some(t)) && reverses(t))
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
@@ -70,7 +71,7 @@ impl MeanModel for TempHysteresis {
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         let [play, first] = nonlinear_parameters else { return Regressors::default() };
-        Regressors { columns: column(*play, *first, drivers).into_iter().collect(), ..Regressors::default() }
+        Regressors::columns(column(*play, *first, drivers))
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {

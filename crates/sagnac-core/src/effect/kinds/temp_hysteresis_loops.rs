@@ -1,15 +1,12 @@
 //! A bias that depends on the direction from which a temperature was reached, as a sum of loops of several widths: large turns
 //! of the temperature and small ones leave their own. It is reported as temperature hysteresis.
 
-use super::temp_hysteresis::{WIDTH, turns};
+use super::temp_hysteresis::{WIDTH, reverses};
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::response::{ANY_SHAPE, PLAYS, play};
 use crate::effect::shared::thermal::smooth;
-use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Unmodelled, Values, list,
-    number,
-};
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place, Regressors, Unmodelled, Values, list, number};
 use crate::numeric::range::{Bounds, ends};
 
 pub struct TempHysteresisLoops;
@@ -20,23 +17,20 @@ static PARAMS: [Param; 3] = [
     Param::inner("half_range_degC", "°C", 1e-6, 1000.0),
 ];
 
-/// Parts of the range of the temperature in which its branches are compared, and points of the record at which.
-const BINS: usize = 24;
-const STEPS: usize = 2000;
+/// Number of parts of the range of the temperature in which its branches are compared.
+const TEMPERATURE_BINS: usize = 24;
+/// Number of points of the record at which they are compared.
+const COMPARED_POINTS: usize = 2000;
 /// Change from one such point to the next, in parts of the range, below which a temperature neither rises nor falls.
-const STILL: f64 = 0.002;
+const STEADY_CHANGE: f64 = 0.002;
 /// Name of the list of the coefficients: that of the temperature in units of half its range, then those of the states.
 const COEFFICIENTS: &str = "coefficients_deg_h";
 
 describe! {
     TempHysteresisLoops, "temp_hysteresis_loops", Mean in Temperature, needs [Temperature],
-    confusers ["temp_hysteresis", "temp_rate_delayed", "thermal_lag"],
+    confusers [TempHysteresis, TempRateDelayed, ThermalLag],
     lists [Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)],
-    with {
-        fn reported_kind(&self) -> &'static str {
-            "temp_hysteresis"
-        }
-    }
+    properties [reported_as TempHysteresis]
 }
 
 /// The temperature in units of half its range, and the state of each play.
@@ -52,17 +46,17 @@ fn range(t: &[f64]) -> [f64; 2] {
     [0.5 * (low + high), 0.5 * (high - low)]
 }
 
-/// Largest difference of a course between rising and falling temperature in one of [`BINS`] parts of its range; NaN where no part
+/// Largest difference of a course between rising and falling temperature in one of [`TEMPERATURE_BINS`] parts of its range; NaN where no part
 /// was passed in both directions.
 fn widest(t: &[f64], course: &[f64]) -> f64 {
     let Bounds { low, high } = ends(t);
-    let step = (t.len() / STEPS).max(1);
-    let mut sums = [[(0.0, 0.0); 2]; BINS];
+    let step = (t.len() / COMPARED_POINTS).max(1);
+    let mut sums = [[(0.0, 0.0); 2]; TEMPERATURE_BINS];
     for i in (step..t.len().min(course.len())).step_by(step) {
         let change = t[i] - t[i - step];
-        if change.abs() > STILL * (high - low) {
-            let bin = ((t[i] - low) / (high - low) * BINS as f64) as usize;
-            let (sum, count) = &mut sums[bin.min(BINS - 1)][usize::from(change > 0.0)];
+        if change.abs() > STEADY_CHANGE * (high - low) {
+            let bin = ((t[i] - low) / (high - low) * TEMPERATURE_BINS as f64) as usize;
+            let (sum, count) = &mut sums[bin.min(TEMPERATURE_BINS - 1)][usize::from(change > 0.0)];
             *sum += course[i];
             *count += 1.0;
         }
@@ -74,26 +68,18 @@ fn widest(t: &[f64], course: &[f64]) -> f64 {
 impl MeanModel for TempHysteresisLoops {
     /// A temperature that never turns has no second branch.
     fn applies(&self, drivers: &Drivers) -> bool {
-        smooth(drivers).is_some_and(|t| varies(Some(t)) && turns(t))
-    }
-
-    fn starts(&self, _drivers: &Drivers, _context: &SearchContext<'_>) -> Starts {
-        Starts::linear()
-    }
-
-    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
-        vec![]
+        smooth(drivers).is_some_and(|t| varies(Some(t)) && reverses(t))
     }
 
     fn regressors(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let of = |t: &[f64]| {
+        let columns = smooth(drivers).map(|t| {
             let [middle, half] = range(t);
             columns(t, middle, half)
-        };
-        Regressors { columns: smooth(drivers).map_or_else(Vec::new, of), ..Regressors::default() }
+        });
+        Regressors::columns(columns.into_iter().flatten())
     }
 
-    fn parameters(&self, _nonlinear: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+    fn parameters(&self, _nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
         let Some(t) = smooth(drivers) else { return vec![f64::NAN; 3] };
         let [middle, half] = range(t);
         let states = columns(t, middle, half).split_off(1);
@@ -102,15 +88,6 @@ impl MeanModel for TempHysteresisLoops {
 
     fn unmodelled(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Unmodelled {
         ANY_SHAPE
-    }
-
-    fn lists(
-        &self,
-        _nonlinear_parameters: &[f64],
-        coefficients: &[f64],
-        _drivers: &Drivers,
-    ) -> Vec<(&'static str, Vec<f64>)> {
-        vec![(COEFFICIENTS, coefficients.to_vec())]
     }
 
     fn linear_list(&self) -> Option<&'static str> {

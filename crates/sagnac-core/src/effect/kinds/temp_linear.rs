@@ -1,10 +1,8 @@
 //! A linear temperature coefficient that differs from the claimed one.
 
+use crate::effect::shared::reach::varies;
 use crate::effect::shared::thermal::smooth;
-use crate::effect::{
-    Column, Domain, Drivers, Effect, MeanModel, Model, Nuisance, Param, Place, Regressors, SearchContext,
-    Sizing, Starts, Values, number,
-};
+use crate::effect::{Domain, Drivers, MeanModel, Nuisance, Param, Place};
 use crate::numeric::range::{Bounds, ends};
 
 pub struct TempLinear;
@@ -15,25 +13,10 @@ pub(super) const COEFFICIENT: Param =
 
 static PARAMS: [Param; 1] = [COEFFICIENT];
 
-impl Effect for TempLinear {
-    fn kind(&self) -> &'static str {
-        "temp_linear"
-    }
-    fn params(&self) -> &'static [Param] {
-        &PARAMS
-    }
-    fn needs(&self) -> &'static [Column] {
-        &[Column::Temperature]
-    }
-    fn domain(&self) -> Domain {
-        Domain::Temperature
-    }
-    fn confusers(&self) -> &'static [&'static str] {
-        &["temp_polynomial", "temp_rate", "thermal_lag"]
-    }
-    fn model(&self) -> Model {
-        Model::Mean(&TempLinear)
-    }
+describe! {
+    TempLinear, "temp_linear", Mean in Temperature, needs [Temperature],
+    confusers [TempPolynomial, TempRate, ThermalLag],
+    properties [carried_over, law Linear]
 }
 
 /// The claimed coefficient, deg/h/°C; 0 where the claim states none.
@@ -52,40 +35,21 @@ impl MeanModel for TempLinear {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        crate::effect::shared::reach::varies(drivers.temperature.as_deref())
+        varies(drivers.temperature.as_deref())
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
-        Starts::linear()
+    fn claimed_coefficient(&self, drivers: &Drivers) -> f64 {
+        claimed(drivers)
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
-        vec![]
-    }
-
-    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
+    /// The noise of the thermometer drives nothing: with it the coefficient comes out too small, the more so the larger the slow
+    /// noise is taken to be.
+    fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
         let from = reference(drivers);
-        // The noise of the thermometer drives nothing: with it the coefficient comes out too small, the more so the larger the
-        // slow noise is taken to be.
-        let free = smooth(drivers).into_iter().map(|c| c.iter().map(|t| t - from).collect()).collect();
-        Regressors { columns: free, ..Regressors::default() }
+        Some(smooth(drivers)?.iter().map(|t| t - from).collect())
     }
 
-    fn parameters(&self, _shape: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        vec![coefficients.first().map_or(f64::NAN, |c| c + claimed(drivers))]
-    }
-
-    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
-        vec![Sizing::linear(&PARAMS[0]).claimed(claimed(drivers))]
-    }
-
-    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let extra = number(values, PARAMS[0].name)? - claimed(drivers);
-        let from = reference(drivers);
-        Some(smooth(drivers)?.iter().map(|t| extra * (t - from)).collect())
-    }
-
-    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let Some(t) = &drivers.temperature else { return vec![] };
         let Bounds { low: from, high: to } = ends(t);
         vec![Place { domain: Domain::Temperature, from, to }]
@@ -95,7 +59,7 @@ impl MeanModel for TempLinear {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
+    use crate::effect::{Value, Values};
 
     #[test]
     fn a_stated_coefficient_adds_what_it_exceeds_the_claimed_one_by() {

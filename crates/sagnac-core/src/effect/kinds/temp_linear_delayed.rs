@@ -5,9 +5,7 @@ use super::temp_linear::{COEFFICIENT, claimed, reference};
 use crate::effect::shared::behind_delay::{self, late};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::thermal::smooth;
-use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
-};
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place, SearchContext, Starts};
 use crate::numeric::range::Bounds;
 
 pub struct TempLinearDelayed;
@@ -16,12 +14,8 @@ static PARAMS: [Param; 2] = [COEFFICIENT, Param::inner("time_constant_s", "s", 1
 
 describe! {
     TempLinearDelayed, "temp_linear_delayed", Mean in Temperature, needs [Temperature],
-    confusers ["temp_linear", "thermal_lag", "temp_hysteresis"],
-    with {
-        fn reported_kind(&self) -> &'static str {
-            "temp_linear"
-        }
-    }
+    confusers [TempLinear, ThermalLag, TempHysteresis],
+    properties [carried_over, reported_as TempLinear]
 }
 
 /// The delayed temperature from that at which the claimed dependence is 0, °C.
@@ -44,23 +38,16 @@ impl MeanModel for TempLinearDelayed {
         behind_delay::bounds(drivers)
     }
 
-    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        behind_delay::regressors(nonlinear_parameters, drivers, temperature)
+    fn claimed_coefficient(&self, drivers: &Drivers) -> f64 {
+        claimed(drivers)
     }
 
-    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
-        let first = |of: &[f64]| of.first().copied().unwrap_or(f64::NAN);
-        vec![first(coefficients) + claimed(drivers), first(nonlinear_parameters)]
+    fn column(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        temperature(*nonlinear_parameters.first()?, drivers)
     }
 
-    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let extra = number(values, PARAMS[0].name)? - claimed(drivers);
-        let late = temperature(number(values, PARAMS[1].name)?, drivers)?;
-        Some(late.into_iter().map(|t| extra * t).collect())
-    }
-
-    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
-        behind_delay::initial(number(values, PARAMS[1].name), drivers)
+    fn initial_state(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<Vec<f64>> {
+        behind_delay::initial_state(nonlinear_parameters, drivers)
     }
 
     fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
@@ -72,7 +59,7 @@ impl MeanModel for TempLinearDelayed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{ClaimedMean, Temperature};
+    use crate::effect::{ClaimedMean, Temperature, Values};
 
     #[test]
     fn behind_a_ramp_the_bias_is_that_of_a_time_constant_before() {

@@ -21,10 +21,11 @@ const COEFFICIENTS: &str = "coefficients_deg_h";
 
 describe! {
     TempPolynomial, "temp_polynomial", Mean in Temperature, needs [Temperature],
-    confusers ["temp_linear", "temp_hysteresis", "temp_rate"],
+    confusers [TempLinear, TempHysteresis, TempRate],
     lists [
         Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
-    ]
+    ],
+    properties [carried_over, law Curve]
 }
 
 /// Middle and half width of the temperatures.
@@ -33,7 +34,7 @@ fn scale(drivers: &Drivers) -> Option<Scale> {
     (high > low).then_some(Scale { center: 0.5 * (low + high), half: 0.5 * (high - low) })
 }
 
-/// The order that a shape stands for.
+/// Order of a shape.
 fn order(nonlinear_parameters: &[f64]) -> usize {
     nonlinear_parameters.first().map_or(2, |o| o.round().clamp(2.0, 4.0) as usize)
 }
@@ -50,15 +51,11 @@ impl MeanModel for TempPolynomial {
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         // Each further order has to be worth its parameter.
         let price = 0.5 * (drivers.samples.max(2) as f64).ln();
-        let worth = |o: i32| {
-            let nonlinear_parameters = vec![f64::from(o)];
-            (
-                gain_of(self.regressors(&nonlinear_parameters, drivers), context) - price * f64::from(o),
-                nonlinear_parameters,
-            )
-        };
-        let best = (2..=4).map(worth).max_by(|a, b| a.0.total_cmp(&b.0));
-        Starts { points: best.map(|(_, s)| s).into_iter().collect(), trials: 3.0 }
+        let scored = (2..=4).map(|order| {
+            let point = vec![f64::from(order)];
+            (gain_of(self.regressors(&point, drivers), context) - price * f64::from(order), point)
+        });
+        Starts::best(scored, 3.0)
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
@@ -66,19 +63,23 @@ impl MeanModel for TempPolynomial {
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let free = smooth(drivers)
-            .zip(scale(drivers))
-            .map_or_else(Vec::new, |(t, scale)| powers(t, scale, order(nonlinear_parameters)));
-        Regressors { columns: free, ..Regressors::default() }
+        let scaled = smooth(drivers).zip(scale(drivers));
+        let powers = scaled.map(|(t, scale)| powers(t, scale, order(nonlinear_parameters)));
+        Regressors::columns(powers.into_iter().flatten())
     }
 
-    fn parameters(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+    fn parameters(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        drivers: &Drivers,
+    ) -> Vec<f64> {
         scale(drivers).map_or(vec![f64::NAN; 2], |s| vec![s.center, s.half])
     }
 
     fn lists(
         &self,
-        _shape: &[f64],
+        _nonlinear_parameters: &[f64],
         coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<(&'static str, Vec<f64>)> {

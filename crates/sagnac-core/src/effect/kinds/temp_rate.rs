@@ -2,10 +2,7 @@
 
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::thermal::rate;
-use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
-};
-use crate::numeric::range::Bounds;
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place};
 
 pub struct TempRate;
 
@@ -17,7 +14,8 @@ static PARAMS: [Param; 1] = [COEFFICIENT];
 
 describe! {
     TempRate, "temp_rate", Mean in TemperatureRate, needs [Temperature],
-    confusers ["thermal_lag", "temp_hysteresis", "temp_linear"]
+    confusers [ThermalLag, TempHysteresis, TempLinear],
+    properties [carried_over, law Rate]
 }
 
 impl MeanModel for TempRate {
@@ -25,32 +23,11 @@ impl MeanModel for TempRate {
         varies(drivers.temperature.as_deref()) && varies(rate(drivers).as_deref())
     }
 
-    fn starts(&self, _drivers: &Drivers, _look: &SearchContext<'_>) -> Starts {
-        Starts::linear()
+    fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        rate(drivers)
     }
 
-    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
-        vec![]
-    }
-
-    fn regressors(&self, _shape: &[f64], drivers: &Drivers) -> Regressors {
-        Regressors { columns: rate(drivers).into_iter().collect(), ..Regressors::default() }
-    }
-
-    fn parameters(&self, _shape: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        vec![coefficients.first().copied().unwrap_or(f64::NAN)]
-    }
-
-    fn sizings(&self, _drivers: &Drivers) -> Vec<Sizing> {
-        vec![Sizing::linear(&PARAMS[0])]
-    }
-
-    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let coefficient = number(values, PARAMS[0].name)?;
-        Some(rate(drivers)?.into_iter().map(|r| coefficient * r).collect())
-    }
-
-    fn places(&self, _shape: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         rate(drivers).map_or_else(Vec::new, |r| reach(Domain::TemperatureRate, &r, &r))
     }
 }

@@ -5,9 +5,7 @@ use super::temp_rate::COEFFICIENT;
 use crate::effect::shared::behind_delay::{self, late};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::thermal::smooth;
-use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
-};
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place, SearchContext, Starts};
 use crate::numeric::range::Bounds;
 
 pub struct TempRateDelayed;
@@ -16,12 +14,8 @@ static PARAMS: [Param; 2] = [COEFFICIENT, Param::inner("time_constant_s", "s", 1
 
 describe! {
     TempRateDelayed, "temp_rate_delayed", Mean in TemperatureRate, needs [Temperature],
-    confusers ["temp_rate", "thermal_lag", "temp_hysteresis"],
-    with {
-        fn reported_kind(&self) -> &'static str {
-            "temp_rate"
-        }
-    }
+    confusers [TempRate, ThermalLag, TempHysteresis],
+    properties [reported_as TempRate]
 }
 
 /// Rate of change of the delayed temperature, °C/min: the difference from the present one over the time constant.
@@ -44,27 +38,16 @@ impl MeanModel for TempRateDelayed {
         behind_delay::bounds(drivers)
     }
 
-    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        behind_delay::regressors(nonlinear_parameters, drivers, rate)
+    fn column(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        rate(*nonlinear_parameters.first()?, drivers)
     }
 
-    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        let first = |of: &[f64]| of.first().copied().unwrap_or(f64::NAN);
-        vec![first(coefficients), first(nonlinear_parameters)]
-    }
-
-    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let coefficient = number(values, PARAMS[0].name)?;
-        let rate = rate(number(values, PARAMS[1].name)?, drivers)?;
-        Some(rate.into_iter().map(|r| coefficient * r).collect())
-    }
-
-    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
-        behind_delay::initial(number(values, PARAMS[1].name), drivers)
+    fn initial_state(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<Vec<f64>> {
+        behind_delay::initial_state(nonlinear_parameters, drivers)
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let rate = nonlinear_parameters.first().and_then(|t| rate(*t, drivers));
+        let rate = self.column(nonlinear_parameters, drivers);
         rate.map_or_else(Vec::new, |r| reach(Domain::TemperatureRate, &r, &r))
     }
 }
@@ -72,6 +55,7 @@ impl MeanModel for TempRateDelayed {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Values;
 
     #[test]
     fn behind_a_ramp_the_rate_rises_to_that_of_the_ramp() {

@@ -1,11 +1,16 @@
 //! The bias follows the history of the recorded temperature by more than one law at once: a curve, flow of heat through
 //! layers, hysteresis. The law that explains most gives the finding its name.
 
+use super::{
+    TempHysteresis, TempHysteresisLoops, TempLinear, TempLinearDelayed, TempPolynomial, TempRate,
+    TempRateDelayed, ThermalLag,
+};
+use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::response::{self, CENTER, COEFFICIENTS_LIST, HALF_RANGE, SCALES_LIST, TERMS_LIST};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Unmodelled, Values,
+    Domain, Drivers, Effect, MeanModel, Param, Place, Regressors, SearchContext, Starts, Unmodelled, Values,
 };
 use crate::numeric::range::Bounds;
 
@@ -16,27 +21,26 @@ static PARAMS: [Param; 2] =
 
 describe! {
     TempResponse, "temp_response", Mean in Temperature, needs [Temperature],
-    confusers ["temp_polynomial", "temp_rate", "thermal_lag", "temp_hysteresis"],
+    confusers [TempPolynomial, TempRate, ThermalLag, TempHysteresis],
     lists [
         Param::inner(TERMS_LIST, "", 1.0, 13.0),
         Param::inner(SCALES_LIST, "", 0.0, 1e9),
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
+    properties [carried_over, outside_format],
     with {
-        fn in_format(&self) -> bool {
-            false
-        }
-        fn named_by_law(&self) -> &'static [&'static str] {
-            &[
-                "temp_polynomial",
-                "temp_rate",
-                "temp_rate_delayed",
-                "thermal_lag",
-                "temp_hysteresis",
-                "temp_hysteresis_loops",
-                "temp_linear",
-                "temp_linear_delayed",
-            ]
+        fn named_by_law(&self) -> &'static [&'static dyn Effect] {
+            const LAWS: &[&dyn Effect] = &[
+                &TempPolynomial,
+                &TempRate,
+                &TempRateDelayed,
+                &ThermalLag,
+                &TempHysteresis,
+                &TempHysteresisLoops,
+                &TempLinear,
+                &TempLinearDelayed,
+            ];
+            LAWS
         }
     }
 }
@@ -65,7 +69,12 @@ impl MeanModel for TempResponse {
         t.map_or_else(Regressors::default, |t| response::regressors(mask(nonlinear_parameters), t, drivers))
     }
 
-    fn parameters(&self, _nonlinear: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+    fn parameters(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        drivers: &Drivers,
+    ) -> Vec<f64> {
         smooth(drivers).map_or(vec![f64::NAN; 2], |t| response::stated_range(t).to_vec())
     }
 
@@ -100,7 +109,7 @@ impl MeanModel for TempResponse {
 
     fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let columns = self.regressors(nonlinear_parameters, drivers).columns;
-        let course = crate::effect::shared::polynomial::sum(coefficients, &columns);
+        let course = sum(coefficients, &columns);
         reach(Domain::Temperature, smooth(drivers).unwrap_or(&[]), &course)
     }
 

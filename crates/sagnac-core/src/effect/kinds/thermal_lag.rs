@@ -1,9 +1,10 @@
 //! The claimed temperature dependence acts through a delayed temperature.
 
-use crate::effect::shared::decay::decay;
-use crate::effect::shared::reach::varies;
+use crate::effect::mean::first;
+use crate::effect::shared::behind_delay::initial_state;
+use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::search::{best_of, log_grid};
-use crate::effect::shared::thermal::{delayed, smooth};
+use crate::effect::shared::thermal::{delayed, rate, smooth};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };
@@ -15,10 +16,11 @@ static PARAMS: [Param; 1] = [Param::reported("time_constant_s", "s", 1e-6, 1e6)]
 
 describe! {
     ThermalLag, "thermal_lag", Mean in Lag, needs [Temperature],
-    confusers ["temp_rate", "temp_hysteresis", "warmup_exponential", "time_offset"]
+    confusers [TempRate, TempHysteresis, WarmupExponential, TimeOffset],
+    properties [law Lag]
 }
 
-/// What the claimed coefficient makes of the difference between delayed and present temperature.
+/// The claimed coefficient times the difference between delayed and present temperature, deg/h.
 fn difference(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     let coefficient = drivers.claim.temperature?.coefficient_deg_h_per_degc;
     let t = smooth(drivers)?;
@@ -55,7 +57,7 @@ impl MeanModel for ThermalLag {
         Regressors {
             offset: difference(*time, drivers),
             columns: vec![],
-            nuisance: vec![decay(*time, drivers)],
+            nuisance: initial_state(nonlinear_parameters, drivers),
         }
     }
 
@@ -65,7 +67,7 @@ impl MeanModel for ThermalLag {
         _coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<f64> {
-        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
+        vec![first(nonlinear_parameters)]
     }
 
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
@@ -79,16 +81,15 @@ impl MeanModel for ThermalLag {
     }
 
     fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
-        let time = number(values, PARAMS[0].name).filter(|t| *t > 0.0);
-        time.map(|t| decay(t, drivers)).into_iter().collect()
+        initial_state(&[number(values, PARAMS[0].name).unwrap_or(f64::NAN)], drivers)
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         let Some(time) = nonlinear_parameters.first() else { return vec![] };
         let (from, to) = (0.5 * time, (1.5 * time).min(drivers.length_s()));
-        let rates = crate::effect::shared::thermal::rate(drivers).unwrap_or_default();
+        let rates = rate(drivers).unwrap_or_default();
         let mut places = vec![Place { domain: Domain::Lag, from: from.min(to), to }];
-        places.extend(crate::effect::shared::reach::reach(Domain::TemperatureRate, &rates, &rates));
+        places.extend(reach(Domain::TemperatureRate, &rates, &rates));
         places
     }
 }

@@ -1,6 +1,7 @@
 //! A constant delay between the gyro and the columns beside it.
 
-use crate::effect::shared::delay::{follow, moves, regressors, shifted};
+use crate::effect::mean::first;
+use crate::effect::shared::delay::{claimed_mean_varies, follow, regressors, shifted};
 use crate::effect::shared::search::{best_of, peaks};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values,
@@ -16,7 +17,7 @@ static PARAMS: [Param; 1] = [Param::reported("lag_s", "s", -1e4, 1e4).signed()];
 
 describe! {
     TimeOffset, "time_offset", Mean in Lag, needs [],
-    confusers ["clock_drift", "sf_error", "bandwidth_filter", "thermal_lag"]
+    confusers [ClockDrift, SfError, BandwidthFilter, ThermalLag]
 }
 
 /// Σ a(i) b(i − L) for every L from 0 up and from −1 down, by Fourier transforms.
@@ -87,17 +88,13 @@ impl MeanModel for TimeOffset {
     }
 
     fn applies(&self, drivers: &Drivers) -> bool {
-        moves(drivers)
+        claimed_mean_varies(drivers)
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let n = drivers.samples;
-        if !moves(drivers)
-            || context.score.len() != n
-            || context.modes.len() != n
-            || context.powers.len() != n
-        {
-            return Starts { points: vec![], trials: 1.0 };
+        if !claimed_mean_varies(drivers) || !context.is_of(n) {
+            return Starts::none();
         }
         let Bounds { low, high } = self.bounds(drivers)[0];
         let mean = drivers.claimed_mean();
@@ -129,7 +126,7 @@ impl MeanModel for TimeOffset {
         _coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<f64> {
-        vec![nonlinear_parameters.first().copied().unwrap_or(f64::NAN)]
+        vec![first(nonlinear_parameters)]
     }
 
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {

@@ -1,10 +1,12 @@
 //! A smooth contribution that follows a quantity which was not recorded.
 
+use crate::effect::shared::knots::{Knots, values_of_knots};
 use crate::effect::shared::markov::starts_between;
 use crate::effect::shared::search::log_grid;
+use crate::effect::shared::sinusoid::averaged;
 use crate::effect::{
-    Domain, Drivers, Knot, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum, SpectrumAct,
-    StatedByCourse, Value, Values, list,
+    ClaimedByCourse, Domain, Drivers, Knot, ModeBin, Param, Place, SpectralContext, SpectralSizing, Spectrum,
+    Values, list,
 };
 use crate::noise::composite::{Composite, Damped, Sampling};
 use crate::numeric::range::Bounds;
@@ -20,15 +22,15 @@ const KNOT_VALUES: &str = "knots_deg_h";
 
 describe! {
     UnobservedDriver, "unobserved_driver", Spectrum in Time, needs [],
-    confusers ["excess_rrw", "markov_long", "rate_ramp", "warmup_exponential"],
+    confusers [ExcessRrw, MarkovLong, RateRamp, WarmupExponential],
     lists [Param::inner(KNOT_TIMES, "s", f64::MIN, f64::MAX), Param::inner(KNOT_VALUES, "deg/h", -1e6, 1e6)],
     with {
         /// Straight lines between knots, the first and last values held outside.
-        fn stated_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-            let knots = crate::effect::shared::knots::Knots::new(list(values, KNOT_TIMES), list(values, KNOT_VALUES))?;
+        fn claimed_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+            let knots = Knots::new(list(values, KNOT_TIMES), list(values, KNOT_VALUES))?;
             Some((0..drivers.samples).map(|i| knots.at(drivers.time_s(i))).collect())
         }
-        fn stated_by_course(&self) -> Option<&'static dyn StatedByCourse> {
+        fn claimed_by_course(&self) -> Option<&'static dyn ClaimedByCourse> {
             Some(&UnobservedDriver)
         }
     }
@@ -37,18 +39,15 @@ describe! {
 /// Fewest knots of a course from which its size and pace can be estimated.
 const FEWEST_KNOTS: usize = 8;
 
-impl StatedByCourse for UnobservedDriver {
+impl ClaimedByCourse for UnobservedDriver {
     fn values(&self, knots: &[Knot]) -> Values {
-        Values::from([
-            (KNOT_TIMES.to_owned(), Value::List(knots.iter().map(|k| k.at).collect())),
-            (KNOT_VALUES.to_owned(), Value::List(knots.iter().map(|k| k.value).collect())),
-        ])
+        values_of_knots(knots, KNOT_TIMES, KNOT_VALUES).into()
     }
 
     /// Root mean square, and the time that it takes a smooth process to change by as much: its slope is the one over the
     /// other.
-    fn process(&self, stated: &Values) -> Option<Vec<f64>> {
-        let (times, knots) = (list(stated, KNOT_TIMES), list(stated, KNOT_VALUES));
+    fn process(&self, claimed: &Values) -> Option<Vec<f64>> {
+        let (times, knots) = (list(claimed, KNOT_TIMES), list(claimed, KNOT_VALUES));
         if knots.len() < FEWEST_KNOTS || times.len() != knots.len() {
             return None;
         }
@@ -70,16 +69,8 @@ fn split(fitted: &[f64]) -> (f64, f64) {
 const LOG_STEP: f64 = 1e-3;
 
 impl Spectrum for UnobservedDriver {
-    fn act(&self) -> SpectrumAct {
-        SpectrumAct::Adds
-    }
-
     fn scales_with(&self, parameter: usize) -> Option<f64> {
         (parameter == 0).then_some(2.0)
-    }
-
-    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
-        self.densities(fitted, &[*bin])[0]
     }
 
     /// Exact in single modes: with a = 1/T the covariance is (1 − a d/da) e^(−a|t|), and the power of a mode is the same
@@ -101,9 +92,9 @@ impl Spectrum for UnobservedDriver {
                 let slope = (faster.power(bin.mode) - slower.power(bin.mode)) / (2.0 * LOG_STEP);
                 return (at.power(bin.mode) - slope).max(0.0);
             }
-            let averaged = crate::effect::shared::sinusoid::averaged(bin.frequency_hz * bin.dt_s).powi(2);
+            let of_samples = averaged(bin.frequency_hz * bin.dt_s).powi(2);
             let ends = 1.0 + if x > 1.0 { ends } else { 0.0 };
-            2.0 * rms * rms / (PI * corner) / (1.0 + x).powi(2) * averaged * ends
+            2.0 * rms * rms / (PI * corner) / (1.0 + x).powi(2) * of_samples * ends
         };
         bins.iter().map(one).collect()
     }
@@ -125,16 +116,12 @@ impl Spectrum for UnobservedDriver {
         (high / low).ln().max(1.0)
     }
 
-    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
-        fitted.to_vec()
-    }
-
-    /// A stated driver is a course through its knots and no noise.
-    fn stated(&self, _values: &Values) -> Option<Vec<f64>> {
+    /// A claimed driver is a course through its knots and no noise.
+    fn claimed_parameters(&self, _values: &Values) -> Option<Vec<f64>> {
         None
     }
 
-    /// Its course is simulated from knots: see `Effect::stated_course`.
+    /// Its course is simulated from knots: see `Effect::claimed_course`.
     fn compose(&self, _fitted: &[f64], _dt_s: f64, _noise: &mut Composite) {}
 
     /// Times from a fiftieth of the record to its length.

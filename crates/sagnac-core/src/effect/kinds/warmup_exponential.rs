@@ -4,9 +4,7 @@ use crate::effect::shared::decay::decay;
 use crate::effect::shared::reach::beginning_s;
 use crate::effect::shared::search::{best_of, log_grid};
 use crate::effect::sizing::numbers;
-use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
-};
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place, SearchContext, Sizing, Starts};
 use crate::numeric::range::Bounds;
 
 pub struct WarmupExponential;
@@ -18,7 +16,7 @@ static PARAMS: [Param; 2] = [
 
 describe! {
     WarmupExponential, "warmup_exponential", Mean in Time, needs [],
-    confusers ["rate_ramp", "excess_rrw", "thermal_lag", "unobserved_driver"]
+    confusers [RateRamp, ExcessRrw, ThermalLag, UnobservedDriver]
 }
 
 impl MeanModel for WarmupExponential {
@@ -37,18 +35,9 @@ impl MeanModel for WarmupExponential {
         vec![Bounds::new(2.0 * drivers.dt_s, drivers.length_s().max(4.0 * drivers.dt_s))]
     }
 
-    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        Regressors {
-            columns: nonlinear_parameters.iter().map(|t| decay(*t, drivers)).collect(),
-            ..Regressors::default()
-        }
-    }
-
-    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        match (nonlinear_parameters, coefficients) {
-            ([time], [amplitude]) => vec![*amplitude, *time],
-            _ => vec![f64::NAN; 2],
-        }
+    fn column(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        let time_constant_s = *nonlinear_parameters.first().filter(|t| **t > 0.0)?;
+        Some(decay(time_constant_s, drivers))
     }
 
     /// Time constants from a hundredth of the record to its length.
@@ -57,14 +46,6 @@ impl MeanModel for WarmupExponential {
         let times = log_grid((0.01 * high).max(low), high, 7).into_iter();
         let places = times.map(|time| numbers([(PARAMS[1].name, time)])).collect();
         vec![Sizing::searched(&PARAMS[0], places, 2, (high / low).ln())]
-    }
-
-    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let (amplitude, time) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
-        if time.is_nan() || time <= 0.0 {
-            return None;
-        }
-        Some(decay(time, drivers).into_iter().map(|x| amplitude * x).collect())
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
@@ -77,7 +58,7 @@ impl MeanModel for WarmupExponential {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
+    use crate::effect::{Value, Values};
 
     #[test]
     fn a_transient_falls_by_e_in_its_time_constant() {

@@ -3,7 +3,7 @@
 use super::decay::decay;
 use super::search::{best_of, log_grid};
 use super::thermal::{delayed, smooth};
-use crate::effect::{Drivers, MeanModel, Regressors, SearchContext, Starts};
+use crate::effect::{Drivers, MeanModel, SearchContext, Starts};
 use crate::numeric::range::Bounds;
 
 /// The delayed temperature, °C; `None` without a temperature or for what is no time constant.
@@ -18,7 +18,7 @@ pub(in crate::effect) fn bounds(drivers: &Drivers) -> Vec<Bounds> {
     vec![Bounds::new(low, (0.25 * drivers.length_s()).max(4.0 * low))]
 }
 
-/// Where the search for the time constant begins.
+/// Points from which the search for the time constant begins.
 pub(in crate::effect) fn starts(
     course: &dyn MeanModel,
     drivers: &Drivers,
@@ -30,23 +30,7 @@ pub(in crate::effect) fn starts(
     Starts { points, trials: (high / low).ln().max(1.0) }
 }
 
-/// A column of a time constant, and beside it what is left of the state at the beginning, which is not known.
-pub(in crate::effect) fn regressors(
-    nonlinear_parameters: &[f64],
-    drivers: &Drivers,
-    column: impl Fn(f64, &Drivers) -> Option<Vec<f64>>,
-) -> Regressors {
-    let Some(time) = nonlinear_parameters.first().filter(|t| **t > 0.0) else {
-        return Regressors::default();
-    };
-    Regressors {
-        columns: column(*time, drivers).into_iter().collect(),
-        nuisance: initial(Some(*time), drivers),
-        ..Regressors::default()
-    }
-}
-
-/// What is left of the state at the beginning of a stated delay.
-pub(in crate::effect) fn initial(time_constant_s: Option<f64>, drivers: &Drivers) -> Vec<Vec<f64>> {
-    time_constant_s.filter(|t| *t > 0.0).map(|t| decay(t, drivers)).into_iter().collect()
+/// Remainder of the unknown state at the beginning of the record, for a time constant as the only nonlinear parameter.
+pub(in crate::effect) fn initial_state(nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<Vec<f64>> {
+    nonlinear_parameters.iter().filter(|t| **t > 0.0).map(|t| decay(*t, drivers)).collect()
 }

@@ -2,8 +2,8 @@
 
 use crate::effect::{Drivers, Regressors};
 
-/// The claimed mean moves with the table: only then a delay against its columns can be seen.
-pub(in crate::effect) fn moves(drivers: &Drivers) -> bool {
+/// True where the claimed mean varies with the table: only then a delay against its columns can be seen.
+pub(in crate::effect) fn claimed_mean_varies(drivers: &Drivers) -> bool {
     let rate = super::reach::varies(drivers.table_rate.as_deref());
     let angle = drivers.claim.earth.is_some() && super::reach::varies(drivers.table_angle.as_deref());
     (rate || angle) && drivers.samples >= 32
@@ -18,7 +18,7 @@ const LEVELS: usize = 4;
 /// A series between two of its samples. A straight line with Everett's corrections as far as the series is smooth on the
 /// scale of its samples: the line alone is exact for means over the sample interval of a rate that changes at the edges
 /// of samples.
-struct Gap<'a> {
+struct Interpolator<'a> {
     series: &'a [f64],
     /// The sample before.
     at: usize,
@@ -29,16 +29,17 @@ struct Gap<'a> {
     near_end: bool,
 }
 
-impl<'a> Gap<'a> {
-    /// The gap of a place; `None` outside the series.
-    fn of(series: &'a [f64], place: f64) -> Option<Gap<'a>> {
+impl<'a> Interpolator<'a> {
+    /// The interpolator of a place; `None` outside the series.
+    fn of(series: &'a [f64], place: f64) -> Option<Interpolator<'a>> {
         let last = series.len().checked_sub(1).filter(|last| *last > 0)?;
         if !(place >= 0.0 && place <= last as f64) {
             return None;
         }
         let at = (place as usize).min(last - 1);
         let reach = (LEVELS + 1).min(at).min(last - at - 1);
-        let mut out = Gap { series, at, differences: [(0.0, 0.0); LEVELS], used: 0, near_end: reach < 2 };
+        let mut out =
+            Interpolator { series, at, differences: [(0.0, 0.0); LEVELS], used: 0, near_end: reach < 2 };
         if out.near_end {
             return Some(out);
         }
@@ -75,12 +76,12 @@ impl<'a> Gap<'a> {
         Some(out)
     }
 
-    /// Whether a place lies in the gap.
+    /// Whether a place lies in the interpolator.
     fn holds(&self, place: f64) -> bool {
         place >= self.at as f64 && place < (self.at + 1) as f64
     }
 
-    /// The series at a place in the gap.
+    /// The series at a place in the interpolator.
     fn value(&self, place: f64) -> f64 {
         let (x, y) = (place - self.at as f64, (self.at + 1) as f64 - place);
         let line = y * self.series[self.at] + x * self.series[self.at + 1];
@@ -99,7 +100,7 @@ impl<'a> Gap<'a> {
 
 /// A series at a place between its samples; `None` outside.
 fn between(series: &[f64], at: f64) -> Option<f64> {
-    Gap::of(series, at).map(|gap| gap.value(at))
+    Interpolator::of(series, at).map(|interpolator| interpolator.value(at))
 }
 
 /// The same within two samples of an end: the cubic through the four samples there, where it is smooth.
@@ -188,11 +189,12 @@ pub(in crate::effect) fn follow(
         let mut sums = Sums::default();
         for i in (0..until).step_by(stride) {
             let place = |x: f64| i as f64 - x * lag(i);
-            let Some(gap) = Gap::of(mean, place(at)) else { continue };
-            let of =
-                |place: f64| if gap.holds(place) { Some(gap.value(place)) } else { between(mean, place) };
+            let Some(interpolator) = Interpolator::of(mean, place(at)) else { continue };
+            let of = |place: f64| {
+                if interpolator.holds(place) { Some(interpolator.value(place)) } else { between(mean, place) }
+            };
             let (Some(more), Some(less)) = (of(place(at + step)), of(place(at - step))) else { continue };
-            let here = gap.value(place(at));
+            let here = interpolator.value(place(at));
             sums.add(mean[i], (more - less) / (2.0 * step), residual[i] - (here - mean[i]));
         }
         match sums.coefficient() {
@@ -335,7 +337,12 @@ mod tests {
     #[test]
     fn a_mean_moves_with_the_rate_or_with_the_angle_to_the_north() {
         let of = |rate: Option<Vec<f64>>, angle: Option<Vec<f64>>, samples: usize| {
-            moves(&Drivers { samples, table_rate: rate, table_angle: angle, ..Drivers::default() })
+            claimed_mean_varies(&Drivers {
+                samples,
+                table_rate: rate,
+                table_angle: angle,
+                ..Drivers::default()
+            })
         };
         let turning = || Some((0..32).map(f64::from).collect::<Vec<_>>());
         assert!(of(turning(), None, 32) && !of(turning(), None, 31));

@@ -1,4 +1,6 @@
-//! Straight lines between stated points.
+//! Straight lines between claimed points.
+
+use crate::effect::{Knot, Value};
 
 /// Times in rising order with a value each.
 pub(in crate::effect) struct Knots<'a> {
@@ -27,6 +29,12 @@ impl<'a> Knots<'a> {
             }
         }
     }
+}
+
+/// Values by which a claim states knots: the lists of their places and of their values, under the given names.
+pub(in crate::effect) fn values_of_knots(knots: &[Knot], places: &str, values: &str) -> [(String, Value); 2] {
+    let list = |part: fn(&Knot) -> f64| Value::List(knots.iter().map(part).collect());
+    [(places.to_owned(), list(|k| k.at)), (values.to_owned(), list(|k| k.value))]
 }
 
 #[cfg(test)]

@@ -16,6 +16,7 @@ pub(super) mod power_law;
 pub(super) mod pursuit;
 pub(super) mod reach;
 pub(super) mod response;
+pub(super) mod scale_factor;
 pub(super) mod search;
 pub(super) mod sinusoid;
 pub(super) mod stated_lines;

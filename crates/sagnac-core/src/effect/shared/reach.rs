@@ -15,6 +15,11 @@ pub(in crate::effect) fn reach(domain: Domain, column: &[f64], contribution: &[f
     if from <= to { vec![Place { domain, from, to }] } else { vec![] }
 }
 
+/// Largest size of the rate of the table, deg/s; 0 without a table.
+pub(in crate::effect) fn largest_rate(drivers: &Drivers) -> f64 {
+    drivers.table_rate.iter().flatten().map(|r| r.abs()).fold(0.0, f64::max)
+}
+
 /// Rates at which an effect that grows with the rate is at least half of its largest.
 pub(in crate::effect) fn large_rates(drivers: &Drivers) -> Vec<Place> {
     let Some(rate) = &drivers.table_rate else { return vec![] };

@@ -1,7 +1,8 @@
 //! A level that changes once: its column, and a search for the instant.
 
 use crate::effect::sizing::numbers;
-use crate::effect::{Drivers, Param, SearchContext, Sizing, Starts};
+use crate::effect::{Domain, Drivers, Param, Place, SearchContext, Sizing, Starts};
+use crate::numeric::range::Bounds;
 
 /// A step at `at_s` seconds after the first sample, the sample that it falls into averaged.
 pub(in crate::effect) fn step(drivers: &Drivers, at_s: f64) -> Vec<f64> {
@@ -13,7 +14,7 @@ pub(in crate::effect) fn step(drivers: &Drivers, at_s: f64) -> Vec<f64> {
 pub(in crate::effect) fn instants(drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
     let n = drivers.samples;
     if n < 8 {
-        return Starts { points: vec![], trials: 1.0 };
+        return Starts::none();
     }
     // The gain is (Σ_{i ≥ j} w_i)²/2 over z'C⁻¹z.
     let information = informations(context.powers);
@@ -35,6 +36,18 @@ pub(in crate::effect) fn instants(drivers: &Drivers, context: &SearchContext<'_>
         gains[best.saturating_sub(apart)..(best + apart).min(n)].fill(0.0);
     }
     Starts { points, trials: trials(n) }
+}
+
+/// Bounds of the instant, s after the first sample: at least one whole sample lies on either side.
+pub(in crate::effect) fn instant_bounds(drivers: &Drivers) -> Bounds {
+    Bounds::new(0.5 * drivers.dt_s, drivers.length_s() - 1.5 * drivers.dt_s)
+}
+
+/// The time around an instant, given in s after the first sample.
+pub(in crate::effect) fn around(at_s: f64, drivers: &Drivers) -> Place {
+    let at = drivers.start_s + at_s;
+    let half = (0.01 * drivers.length_s()).max(2.0 * drivers.dt_s);
+    Place { domain: Domain::Time, from: at - half, to: at + half }
 }
 
 /// Σ c²/p over the modes c of a unit step from sample j on, for j up to half the record; that of n − j is the same.

@@ -213,7 +213,7 @@ pub(super) fn try_course(
     let best = each.max_by(|a, b| a.fit.log_likelihood.total_cmp(&b.fit.log_likelihood))?;
     let Fitted { ground, trials, shape, columns, beside, hypothesis, fit } = best;
     let drivers = &ground.spectral.drivers;
-    let added = course.counted(columns) + beside;
+    let added = course.bic_parameters(columns) + beside;
     // A fit with a value that the effect cannot have (a zone that answers more than the rest) is another effect.
     let allowed = hypothesis.courses.last().is_none_or(|inside| {
         let parameters = || course.parameters(&inside.nonlinear_parameters, &inside.coefficients, drivers);
@@ -264,7 +264,7 @@ fn fitted<'a>(
     let noise = &ground.before.hypothesis.noise;
     let mut hypothesis = with_course(&before.hypothesis, effect, &shape, noise);
     // The noise, fitted anew, can give at most about as much again.
-    let price = (course.counted(columns) + beside) as f64 * (spectra.rows as f64).ln();
+    let price = (course.bic_parameters(columns) + beside) as f64 * (spectra.rows as f64).ln();
     let gain = gain - behind;
     let worth = 4.0 * gain - price;
     let mut fit =

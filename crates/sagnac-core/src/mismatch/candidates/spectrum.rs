@@ -24,7 +24,7 @@ pub(super) fn try_spectrum(
         expected: &before.fit.densities,
         grid_step_arcsec: spectra.grid_step_arcsec,
     };
-    if let SpectrumAct::Frees(term) = act {
+    if let SpectrumAct::Unconstrains(term) = act {
         let i = base_index(term)?;
         if before.hypothesis.noise.freed[i] {
             return None;

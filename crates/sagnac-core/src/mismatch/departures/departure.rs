@@ -48,6 +48,11 @@ impl Departure {
         self.test == "track"
     }
 
+    /// True for a test that looks for a repetition, of which single lines are parts.
+    pub fn is_periodic(&self) -> bool {
+        self.test == "comb"
+    }
+
     /// Whether it is below a probability in a family of so many tests.
     pub fn below(&self, probability: f64, tests: usize) -> bool {
         self.ln_p + (tests.max(1) as f64).ln() < probability.ln()

@@ -24,7 +24,7 @@ pub(super) fn of_spectrum(
     let which: Vec<Option<usize>> = (0..part.fitted.len())
         .map(|p| {
             let wanted = match spectrum.act() {
-                SpectrumAct::Frees(term) => Which::Base(base_index(term).unwrap_or(0)),
+                SpectrumAct::Unconstrains(term) => Which::Base(base_index(term).unwrap_or(0)),
                 _ => Which::Effect(index, p),
             };
             best.fit.noise.which.iter().position(|w| *w == wanted)

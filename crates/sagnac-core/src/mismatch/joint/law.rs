@@ -104,7 +104,7 @@ impl Law {
     pub fn stated(&self, coefficients: &[f64], drivers: &Drivers) -> Stated {
         let values = match (&self.coefficients, coefficients) {
             (Coefficients::Number(sizing), [size, ..]) => {
-                self.model.stated_size(sizing, &self.values, *size, drivers)
+                self.model.claimed_size(sizing, &self.values, *size, drivers)
             }
             (Coefficients::List(name, _), all) => {
                 let mut values = self.values.clone();

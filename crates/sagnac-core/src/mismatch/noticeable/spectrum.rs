@@ -87,7 +87,7 @@ pub(super) fn size(
     expected: &Expected<'_>,
     gate: &Gate,
 ) -> Result<NoticeableSize, WhyNot> {
-    if let SpectrumAct::Frees(term) = spectrum.act() {
+    if let SpectrumAct::Unconstrains(term) = spectrum.act() {
         return coefficient(effect, term, expected, gate).ok_or(WhyNot::NeverLargeEnough);
     }
     let context = SpectralContext {

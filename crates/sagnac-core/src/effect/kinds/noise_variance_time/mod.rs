@@ -2,23 +2,24 @@
 
 mod forms;
 
-use crate::effect::shared::knots::Knots;
+use crate::effect::shared::knots::{Knots, values_of_knots};
+use crate::effect::shared::noise_level::scale;
 use crate::effect::{
-    Detector, Drivers, FlatResidual, Law, Level, LevelDetector, LevelLaw, Param, Samples, Value, Values,
-    list, number,
+    Detector, Drivers, FlatResidual, Law, Level, LevelDetector, LevelLaw, Param, Samples, Values, list,
+    number,
 };
 
 pub struct NoiseVarianceTime;
 
 static PARAMS: [Param; 1] = [Param::reported("ratio", "", 1.0, 1e3)];
 
-/// Scale at instants, against the claimed level.
+/// Names of the lists of instants and of the ratios to the claimed level there.
 const KNOT_TIMES: &str = "knots_time_s";
 const KNOT_RATIOS: &str = "knots_ratio";
 
 describe! {
     NoiseVarianceTime, "noise_variance_time", Samples in Time, needs [],
-    confusers ["outlier_bursts", "noise_variance_driver", "noise_variance_rate"],
+    confusers [OutlierBursts, NoiseVarianceDriver, NoiseVarianceRate],
     lists [
         Param::inner(KNOT_TIMES, "s", f64::MIN, f64::MAX),
         Param::inner(KNOT_RATIOS, "", 0.0, 1e3)
@@ -29,14 +30,10 @@ impl Samples for NoiseVarianceTime {
     /// Without knots the level rises from the claimed one to `ratio` times that over the record.
     fn apply(&self, values: &Values, drivers: &Drivers, _seed: u64, rate: &mut [f64], _keep: &mut [bool]) {
         if let Some(knots) = Knots::new(list(values, KNOT_TIMES), list(values, KNOT_RATIOS)) {
-            crate::effect::shared::noise_level::scale(drivers, rate, |i| {
-                knots.at(drivers.time_s(i)).max(0.0)
-            });
+            scale(drivers, rate, |i| knots.at(drivers.time_s(i)).max(0.0));
         } else if let Some(ratio) = number(values, PARAMS[0].name) {
             let last = drivers.samples.max(2) as f64 - 1.0;
-            crate::effect::shared::noise_level::scale(drivers, rate, |i| {
-                1.0 + (ratio - 1.0) * i as f64 / last
-            });
+            scale(drivers, rate, |i| 1.0 + (ratio - 1.0) * i as f64 / last);
         }
     }
 
@@ -56,21 +53,15 @@ impl LevelDetector for NoiseVarianceTime {
     }
 
     fn stated(&self, level: &Level, _drivers: &Drivers) -> Values {
-        let knots = match &level.law {
-            Law::Time(knots) => knots.as_slice(),
-            _ => &[],
-        };
-        Values::from([
-            (KNOT_TIMES.to_owned(), Value::List(knots.iter().map(|k| k.at).collect())),
-            (KNOT_RATIOS.to_owned(), Value::List(knots.iter().map(|k| k.value).collect())),
-        ])
+        let Law::Time(knots) = &level.law else { return Values::new() };
+        values_of_knots(knots, KNOT_TIMES, KNOT_RATIOS).into()
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::ClaimedMean;
+    use crate::effect::{ClaimedMean, Value};
 
     #[test]
     fn deviations_are_scaled_about_the_claimed_mean() {

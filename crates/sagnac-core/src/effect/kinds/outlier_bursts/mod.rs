@@ -25,17 +25,13 @@ const SIZES: &str = "bursts_size_deg_h";
 
 describe! {
     OutlierBursts, "outlier_bursts", Samples in Time, needs [],
-    confusers ["noise_variance_time", "bias_step", "excess_arw"],
+    confusers [NoiseVarianceTime, BiasStep, ExcessArw],
     lists [
         Param::inner(TIMES, "s", f64::MIN, f64::MAX),
         Param::inner(DURATIONS, "s", 0.0, 1e6),
         Param::inner(SIZES, "deg/h", 0.0, 1e9)
     ],
-    with {
-        fn is_short_events(&self) -> bool {
-            true
-        }
-    }
+    properties [short_events]
 }
 
 /// A burst: first instant s, length s, size deg/h.

@@ -5,7 +5,7 @@ mod detect;
 mod dwell;
 mod path;
 
-use super::markov_long::MarkovLong;
+use super::MarkovLong;
 use crate::effect::{
     Background, Detection, Detector, Domain, Drivers, Effect, JumpDetector, Jumps, Param, Place, Pulses,
     Reported, Samples, Value, Values, list, number,
@@ -26,11 +26,11 @@ const SWITCHES: &str = "switches_time_s";
 
 describe! {
     RandomTelegraph, "random_telegraph", Samples in Time, needs [],
-    confusers ["bias_step", "markov_long", "unobserved_driver"],
+    confusers [BiasStep, MarkovLong, UnobservedDriver],
     lists [Param::inner(SWITCHES, "s", f64::MIN, f64::MAX)],
     with {
         /// The course of known jumps.
-        fn stated_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        fn claimed_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
             let switches = list(values, SWITCHES);
             if switches.is_empty() || switches.iter().any(|t| !t.is_finite()) {
                 return None;
@@ -84,7 +84,7 @@ impl Samples for RandomTelegraph {
             let mut rng = Xoshiro256PlusPlus::seed_from_u64(seed);
             (dwell > 0.0).then(|| simulated(amplitude, dwell, drivers, &mut rng))
         };
-        if let Some(course) = self.stated_course(values, drivers).or_else(drawn) {
+        if let Some(course) = self.claimed_course(values, drivers).or_else(drawn) {
             rate.iter_mut().zip(course).for_each(|(y, c)| *y += c);
         }
     }
@@ -208,7 +208,7 @@ mod tests {
             ("amplitude_deg_h".to_owned(), Value::Number(2.0)),
             (SWITCHES.to_owned(), Value::List(vec![101.75, 104.0])),
         ]);
-        let course = RandomTelegraph.stated_course(&values, &drivers).unwrap();
+        let course = RandomTelegraph.claimed_course(&values, &drivers).unwrap();
         assert_eq!(course, [-1.0, -1.0, 0.5, 1.0, 0.0, -1.0]);
     }
 
