@@ -1,4 +1,4 @@
-//! Words that people write for the role of a channel, so that the role can be offered.
+//! Words in which people write the role of a channel, so that the role can be offered, and the place of a sensor.
 
 use crate::recording::Role;
 
@@ -46,9 +46,29 @@ pub(crate) fn meant(word: &str) -> Option<&'static str> {
     })
 }
 
+/// Beginnings of words for places that are not on the unit, in lower case.
+const PLACES_ELSEWHERE: [&str; 10] =
+    ["rack", "room", "ambient", "outside", "outdoor", "hall", "air", "помещ", "комн", "стойк"];
+
+/// True where the name of a column says that its sensor is somewhere else than on the unit.
+pub(crate) fn is_elsewhere(name: &str) -> bool {
+    let name = name.to_lowercase();
+    PLACES_ELSEWHERE.iter().any(|place| name.contains(place))
+}
+
 #[cfg(test)]
 mod tests {
-    use super::meant;
+    use super::{is_elsewhere, meant};
+
+    #[test]
+    fn the_name_of_a_column_may_say_that_its_sensor_is_not_on_the_unit() {
+        for on_the_unit in ["temp_degC", "T_housing [degC]", "Температура"] {
+            assert!(!is_elsewhere(on_the_unit), "{on_the_unit}");
+        }
+        for elsewhere in ["rack_degC", "Room temperature", "Температура помещения"] {
+            assert!(is_elsewhere(elsewhere), "{elsewhere}");
+        }
+    }
 
     #[test]
     fn roles_are_offered_by_meaning_before_spelling() {

@@ -1,6 +1,7 @@
 //! Selects the columns of a recording that are read: by the names of the contract first, else as names and units tell.
 
 use super::options::{SeriesError, SeriesOptions};
+use crate::config::role_words;
 use crate::effect::Column;
 use crate::i18n::Note;
 use crate::ingest::{IngestErrorKind, Source};
@@ -124,7 +125,7 @@ fn declared(source: &Source, channels: &[Channel], chosen: &mut SeriesChannels) 
                 source.columns().get(i - 1).map(|c| c.name.clone()).unwrap_or_else(|| i.to_string())
             }
         };
-        chosen.read_from.push(ReadFrom { name, column, unit: channel.unit.text().to_owned() });
+        chosen.read_from.push(read_from(name, column, channel.unit.text()));
         chosen.channels.push(Channel { id: name.to_owned(), role, ..channel.clone() });
         chosen.channels.len() - 1
     };
@@ -204,6 +205,12 @@ fn rate(source: &Source, options: &SeriesOptions, chosen: &mut SeriesChannels) -
     Ok(())
 }
 
+/// A column of the file for a quantity. Only of a thermometer it matters where it is: other columns drive the unit from anywhere.
+fn read_from(name: &'static str, column: String, unit: &str) -> ReadFrom {
+    let elsewhere = name == Column::Temperature.name() && role_words::is_elsewhere(&column);
+    ReadFrom { name, column, unit: unit.to_owned(), elsewhere }
+}
+
 impl SeriesChannels {
     fn has(&self, index: usize) -> bool {
         self.channels.iter().any(|c| c.column == ColumnRef::Position(index + 1))
@@ -212,7 +219,7 @@ impl SeriesChannels {
     /// Adds a channel; gives its place.
     fn take(&mut self, name: &'static str, index: usize, source: &Source, role: Role, unit: Unit) -> usize {
         let column = source.columns().get(index).map(|c| c.name.clone()).unwrap_or_default();
-        self.read_from.push(ReadFrom { name, column, unit: unit.text().to_owned() });
+        self.read_from.push(read_from(name, column, unit.text()));
         let column = ColumnRef::Position(index + 1);
         self.channels.push(Channel { id: name.to_owned(), column, role, unit, scale: 1.0 });
         self.channels.len() - 1

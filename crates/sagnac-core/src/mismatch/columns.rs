@@ -1,10 +1,11 @@
-//! What became of each recorded column: it drives something that was found, it is silent, or it cannot be used and why.
+//! Status of each recorded column: it drives something that was found, it is silent, or it cannot be used and why.
 
 use super::finding::{ColumnRecord, ColumnStatus, Finding, UnusableColumn};
 use super::named::Named;
 use super::problem::Problem;
+use super::select::MOST_EQUIVALENTS;
 use super::tried::Tried;
-use crate::effect::{Column, ResponseLaw, find};
+use crate::effect::{Column, any_column_driver, find};
 use crate::numeric::cosine::dct2;
 use crate::series::ReadFrom;
 
@@ -51,20 +52,11 @@ fn other_name(column: Column, read_from: &[ReadFrom]) -> Option<&str> {
     read.map(|r| r.column.as_str()).filter(|name| *name != column.name())
 }
 
-/// Whether a thermometer is said to be somewhere else than on the unit: it may say as little of it as any other column.
-fn is_elsewhere(column: Column, name: &str) -> bool {
-    const PLACES: [&str; 10] =
-        ["rack", "room", "ambient", "outside", "outdoor", "hall", "air", "помещ", "комн", "стойк"];
-    let name = name.to_lowercase();
-    column == Column::Temperature && PLACES.iter().any(|place| name.contains(place))
-}
-
-/// Says of a cause that follows the temperature which column of the file that is, where the thermometer is somewhere else than on
-/// the unit: to somebody else it is a column as any other.
+/// Names the column of the file in a cause that follows the temperature, where the thermometer is not on the unit: there it may
+/// say as little of the unit as any other column.
 pub(super) fn as_recorded(findings: &mut [Finding], read_from: &[ReadFrom]) {
-    /// Kinds that are an equivalent at most.
-    const MOST: usize = 3;
-    let elsewhere = |c: &Column| other_name(*c, read_from).filter(|name| is_elsewhere(*c, name));
+    let is_elsewhere = |c: &Column| read_from.iter().any(|r| r.name == c.name() && r.elsewhere);
+    let elsewhere = |c: &Column| other_name(*c, read_from).filter(|_| is_elsewhere(c));
     for finding in findings {
         for named in [&mut finding.column, &mut finding.column2] {
             let recorded = named.as_ref().and_then(|name| elsewhere(&Column::of_name(name)));
@@ -72,28 +64,15 @@ pub(super) fn as_recorded(findings: &mut [Finding], read_from: &[ReadFrom]) {
                 *named = Some(recorded);
             }
         }
-        let Some(law) = law_of(&finding.kind) else { continue };
+        let Some(law) = find(&finding.kind).and_then(|e| e.law()) else { continue };
         let needed = find(finding.effect_id()).map_or(&[][..], |e| e.needs());
         let Some(name) = needed.iter().find_map(elsewhere) else { continue };
         finding.column = Some(name.to_owned());
         finding.law = Some(law.id().to_owned());
-        finding.equivalents.insert(0, COLUMN_DRIVER.to_owned());
-        finding.equivalents.truncate(MOST);
-    }
-}
-
-/// Kind of what follows a column without a role.
-const COLUMN_DRIVER: &str = "column_driver";
-
-/// The law of a kind by which the bias follows a column with a role.
-fn law_of(kind: &str) -> Option<ResponseLaw> {
-    match kind {
-        "temp_linear" => Some(ResponseLaw::Linear),
-        "temp_polynomial" => Some(ResponseLaw::Curve),
-        "temp_rate" => Some(ResponseLaw::Rate),
-        "thermal_lag" => Some(ResponseLaw::Lag),
-        "temp_hysteresis" => Some(ResponseLaw::Hysteresis),
-        _ => None,
+        if let Some(driver) = any_column_driver() {
+            finding.equivalents.insert(0, driver.kind().to_owned());
+        }
+        finding.equivalents.truncate(MOST_EQUIVALENTS);
     }
 }
 
@@ -118,7 +97,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_thermometer_elsewhere_is_a_column_as_any_other() {
+    fn a_thermometer_that_is_not_on_the_unit_is_a_column_as_any_other() {
         let mut finding = Finding {
             kind: "temp_linear".to_owned(),
             effect: None,
@@ -138,7 +117,9 @@ mod tests {
         };
         let after = |finding: &Finding, name: &str| {
             let column = name.to_owned();
-            let read = ReadFrom { name: Column::Temperature.name(), column, unit: "degC".to_owned() };
+            let elsewhere = name == "rack_degC";
+            let read =
+                ReadFrom { name: Column::Temperature.name(), column, unit: "degC".to_owned(), elsewhere };
             let mut findings = [finding.clone()];
             as_recorded(&mut findings, &[read]);
             findings[0].clone()
@@ -148,7 +129,7 @@ mod tests {
         }
         let of_rack = after(&finding, "rack_degC");
         assert_eq!((of_rack.column.as_deref(), of_rack.law.as_deref()), (Some("rack_degC"), Some("linear")));
-        assert_eq!(of_rack.equivalents, [COLUMN_DRIVER, "temp_rate", "temp_polynomial"]);
+        assert_eq!(of_rack.equivalents, ["column_driver", "temp_rate", "temp_polynomial"]);
         finding.kind = "noise_variance_driver".to_owned();
         finding.column = Some(Column::Temperature.name().to_owned());
         let level = after(&finding, "rack_degC");

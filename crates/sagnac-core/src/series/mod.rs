@@ -102,6 +102,8 @@ pub struct ReadFrom {
     pub column: String,
     /// Unit in the file.
     pub unit: String,
+    /// True where the name of the column says that its sensor is not on the unit, such as a thermometer of the room.
+    pub elsewhere: bool,
 }
 
 #[cfg(test)]
