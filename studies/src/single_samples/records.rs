@@ -2,12 +2,12 @@
 
 use sagnac::config::model::{Claim, Uncertainty};
 use sagnac::effect::{ClaimedMean, Column, Detector, Jumps, Outliers, find};
+use sagnac::mismatch::fitted_hypothesis::FittedHypothesis;
 use sagnac::mismatch::jumps::jumps;
 use sagnac::mismatch::problem::Problem;
 use sagnac::mismatch::regular::Regular;
 pub use sagnac::mismatch::samples::levels;
 use sagnac::mismatch::samples::outliers;
-use sagnac::mismatch::tried::Tried;
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::simulate::{Setup, Simulator};
 use std::collections::BTreeMap;
@@ -62,7 +62,12 @@ impl Model {
     }
 
     /// A draw that `change` changed, against the claim of the noise alone.
-    pub fn problem(self, samples: usize, seed: u64, change: impl Fn(&mut [f64])) -> (Problem, Tried) {
+    pub fn problem(
+        self,
+        samples: usize,
+        seed: u64,
+        change: impl Fn(&mut [f64]),
+    ) -> (Problem, FittedHypothesis) {
         self.with_columns(samples, seed, &BTreeMap::new(), change)
     }
 
@@ -73,7 +78,7 @@ impl Model {
         seed: u64,
         columns: &BTreeMap<Column, Vec<f64>>,
         change: impl Fn(&mut [f64]),
-    ) -> (Problem, Tried) {
+    ) -> (Problem, FittedHypothesis) {
         let mut rate = self.draw(samples, seed);
         change(&mut rate);
         against(&self.claim(), &rate, columns)
@@ -81,7 +86,11 @@ impl Model {
 }
 
 /// A record against a claim.
-pub fn against(claim: &Claim, rate: &[f64], columns: &BTreeMap<Column, Vec<f64>>) -> (Problem, Tried) {
+pub fn against(
+    claim: &Claim,
+    rate: &[f64],
+    columns: &BTreeMap<Column, Vec<f64>>,
+) -> (Problem, FittedHypothesis) {
     let time: Vec<f64> = (0..rate.len()).map(|i| i as f64 / RATE_HZ).collect();
     let columns = columns.iter().map(|(c, v)| (*c, v.as_slice())).collect();
     let regular = Regular::new(&time, rate, &columns, RATE_HZ).expect("a regular record");
@@ -91,13 +100,13 @@ pub fn against(claim: &Claim, rate: &[f64], columns: &BTreeMap<Column, Vec<f64>>
 }
 
 /// Bursts in the residual of a hypothesis.
-pub fn bursts(problem: &Problem, tried: &Tried) -> Option<Outliers> {
+pub fn bursts(problem: &Problem, tried: &FittedHypothesis) -> Option<Outliers> {
     let Some(Detector::Outliers(detector)) = find("outlier_bursts")?.detector() else { return None };
     outliers(detector, problem, tried)
 }
 
 /// Jumps between two levels in the residual of a hypothesis.
-pub fn telegraph(problem: &Problem, tried: &Tried) -> Option<Jumps> {
+pub fn telegraph(problem: &Problem, tried: &FittedHypothesis) -> Option<Jumps> {
     let Some(Detector::Jumps(detector)) = find("random_telegraph")?.detector() else { return None };
     jumps(detector, problem, tried)
 }

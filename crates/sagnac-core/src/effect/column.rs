@@ -4,6 +4,9 @@ use super::Domain;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
+/// Name of the text by which a claim states the column that an effect follows.
+pub const COLUMN_TEXT: &str = "column";
+
 /// A column beside time and rate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Column {

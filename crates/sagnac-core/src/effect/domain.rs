@@ -1,4 +1,4 @@
-//! Where an effect shows: a domain and an interval of it.
+//! The place at which an effect shows: a domain and an interval of it.
 
 use serde::{Deserialize, Serialize};
 

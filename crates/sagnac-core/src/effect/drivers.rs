@@ -1,4 +1,4 @@
-//! What the gyro was exposed to: the columns of a recording on a uniform grid, and the mean that a claim expects of them.
+//! Drivers of the rate: the columns of a recording on a uniform grid, and the mean that a claim expects of them.
 
 use super::Column;
 use crate::units::EARTH_RATE_DEG_H;
@@ -12,7 +12,7 @@ pub struct Temperature {
     pub reference_degc: f64,
 }
 
-/// Where the input axis points.
+/// Direction of the input axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Earth {
     /// Geographic latitude, deg.
@@ -48,11 +48,11 @@ pub struct StatedLine {
 /// A column without a role of its own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct OtherDriver {
-    /// Which.
+    /// The column.
     pub column: Column,
     /// Its values, in the unit of its file, one a sample.
     pub values: Vec<f64>,
-    /// The same freed from the noise of its sensor as far as its spectrum tells them apart.
+    /// The same without the noise of its sensor, as far as its spectrum separates them.
     pub smooth: Vec<f64>,
 }
 
@@ -65,11 +65,11 @@ pub struct Drivers {
     pub start_s: f64,
     /// Samples of the grid.
     pub samples: usize,
-    /// How many samples of the recording one sample of the grid averages.
+    /// Number of samples of the recording that one sample of the grid averages.
     pub averaged: usize,
     /// °C.
     pub temperature: Option<Vec<f64>>,
-    /// Temperature freed from the noise of its sensor as far as its spectrum tells them apart, °C.
+    /// Temperature without the noise of its sensor, as far as its spectrum separates them, °C.
     pub smooth_temperature: Option<Vec<f64>>,
     /// deg/s.
     pub table_rate: Option<Vec<f64>>,
@@ -134,7 +134,7 @@ impl Drivers {
         (0..self.samples).map(|i| f(i as f64 * self.dt_s)).collect()
     }
 
-    /// What the claim expects of the rate without the bias, deg/h.
+    /// Rate that the claim expects, without the bias, deg/h.
     pub fn claimed_mean(&self) -> Vec<f64> {
         let mut mean = vec![0.0; self.samples];
         if let (Some(claimed), Some(temperature)) = (self.claim.temperature, &self.temperature) {

@@ -1,4 +1,4 @@
-//! What the files of effects would otherwise repeat word for word.
+//! Text that the files of effects would otherwise repeat word for word.
 
 /// The description of an effect: what [`Effect`](super::Effect) asks of every one, and the properties in which it differs from a
 /// plain one. Its parameters are `PARAMS`, unless `params` names others. `with` has further methods of the trait.
@@ -61,6 +61,11 @@ macro_rules! describe {
     (@ reported_as $other:ident) => {
         fn reported_kind(&self) -> &'static str {
             $crate::effect::Effect::kind(&$crate::effect::kinds::$other)
+        }
+    };
+    (@ slow) => {
+        fn is_slow(&self) -> bool {
+            true
         }
     };
     (@ family $family:ident) => {

@@ -147,7 +147,7 @@ pub trait MeanModel: Effect {
 
     /// The sampling at which it must be fitted.
     fn resolution(&self) -> Resolution {
-        Resolution::Averaged
+        if self.is_slow() { Resolution::Averaged } else { Resolution::FullRate }
     }
 
     /// The value of the claim whose prior is given up when the effect is fitted, since both are the same column.
@@ -276,7 +276,7 @@ pub trait MeanModel: Effect {
     }
 
     /// Sizes to ask for when it is determined which size would have been noticed; one entry for each column that can drive it.
-    /// Empty for an effect whose size no single number tells. One column without nonlinear parameters is sized by its
+    /// Empty for an effect whose size is no single number. One column without nonlinear parameters is sized by its
     /// coefficient.
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
         let coefficient = self.params().first().filter(|_| self.column(&[], drivers).is_some());

@@ -27,7 +27,7 @@ mod shared;
 mod sizing;
 mod spectral;
 
-pub use column::{Column, OtherColumn};
+pub use column::{COLUMN_TEXT, Column, OtherColumn};
 pub use domain::{Domain, Place};
 pub use drivers::{ClaimedMean, Drivers, Earth, OtherDriver, StatedLine, Temperature, averages};
 pub use kinds::{EFFECTS, any_column_driver, find, parameter};

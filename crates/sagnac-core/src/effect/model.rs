@@ -1,8 +1,8 @@
-//! What every effect has: id, parameters, class, properties; and of effects on single samples, what each does to a simulated
-//! recording and how it is found in a recorded one.
+//! Description of an effect: id, parameters, class, properties; and of effects on single samples, their action on a simulated
+//! recording and their detection in a recorded one.
 //!
-//! The search for a mismatch knows no effect by name. It asks an effect on samples for its [`Detector`], whose class says on
-//! what the effect is looked for and what is done with the record where it is found.
+//! The search for a mismatch knows no effect by name. It asks an effect on samples for its [`Detector`], whose class determines
+//! the data that are searched and the consequence of a detection.
 
 use super::{
     ClaimedMean, Column, Domain, Drivers, MeanModel, Param, Place, ResponseLaw, Spectrum, Value, Values,
@@ -28,7 +28,7 @@ pub trait Effect: Sync {
     fn confusers(&self) -> &'static [&'static dyn Effect];
     /// Its class and forward model.
     fn model(&self) -> Model;
-    /// Whether format `explain/1` has a kind for it. It is named only where nothing that has one explains nearly as much.
+    /// True where format `explain/1` has a kind for it. It is named only where nothing that has one explains nearly as much.
     fn in_format(&self) -> bool {
         true
     }
@@ -43,6 +43,10 @@ pub trait Effect: Sync {
     /// Texts that a claim may state beside the numbers, by name.
     fn text_params(&self) -> &'static [&'static str] {
         &[]
+    }
+    /// True for an effect on the mean that averages over many samples determine: it is fitted to averages of a long record.
+    fn is_slow(&self) -> bool {
+        false
     }
     /// True for an effect that a claim carries over from the recording that it was identified in: a property of the unit, which
     /// its other recordings show too, and no event or state of one recording.
@@ -119,7 +123,7 @@ pub enum Later {
     As(&'static dyn Effect, Values),
 }
 
-/// Effects that are alike. Several of one family at once are one cause: lines side by side are a line that is modulated,
+/// Effects of one form. Several of one family at once are one cause: lines side by side are a line that is modulated,
 /// many lines a periodic course, several changes of the spectrum a spectrum that no effect has, several jumps a staircase.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Family {
@@ -151,7 +155,7 @@ pub enum Model {
     Samples(&'static dyn Samples),
 }
 
-/// Whether numbers, in the order of an effect's parameters, are within their bounds. NaN, a value that is not known, is.
+/// True where numbers, in the order of an effect's parameters, are within their bounds. NaN, a value that is not known, is.
 pub fn plausible(effect: &dyn Effect, parameters: &[f64]) -> bool {
     let within = |(p, v): (&Param, &f64)| v.is_nan() || (p.lower..=p.upper).contains(v);
     effect.params().iter().zip(parameters).all(within)
@@ -179,7 +183,7 @@ pub trait Samples: Sync {
     /// `keep` becomes false are not written.
     fn apply(&self, values: &Values, drivers: &Drivers, seed: u64, rate: &mut [f64], keep: &mut [bool]);
 
-    /// How it is found.
+    /// Its detector.
     fn detector(&self) -> Detector;
 }
 
@@ -195,7 +199,7 @@ pub enum Detector {
     },
     /// Finds groups of samples that do not belong to the noise. They are set aside.
     Outliers(&'static dyn OutlierDetector),
-    /// Finds what the level of the noise follows. The laws of all detectors of this class compete.
+    /// Finds the law of the level of the noise. The laws of all detectors of this class compete.
     Level(&'static dyn LevelDetector),
     /// Finds a course of jumps. It competes with the processes that have its spectrum, and is taken out.
     Jumps(&'static dyn JumpDetector),
@@ -223,14 +227,14 @@ impl Reported {
     }
 }
 
-/// What a detector found.
+/// Result of a detector.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Detection {
     /// Parameters as reports give them.
     pub reported: Vec<Reported>,
     /// Parameters as a claim states them.
     pub stated: Values,
-    /// Where it shows, principal place first.
+    /// Intervals in which it shows, principal one first.
     pub places: Vec<Place>,
     /// Gain of log-likelihood over a record without it.
     pub gain: f64,
@@ -284,13 +288,13 @@ pub struct RowsFound {
     pub detection: Detection,
 }
 
-/// What a fitted hypothesis leaves of a recording, in single samples.
+/// Residual of a fitted hypothesis, in single samples.
 pub struct FlatResidual<'a> {
     /// Whitened by the hypothesis.
     pub white: Vec<f64>,
     /// Without the slow course, its own spectrum levelled: what a wrong spectrum or a missing course leaves is not in it.
     pub flat: Vec<f64>,
-    /// What a deviation of 1 deg/h of one sample is in `flat`.
+    /// Deviation in `flat` for 1 deg/h in one sample.
     pub per_deg_h: f64,
     /// Samples at either end that say nothing of single samples.
     pub ends: usize,
@@ -304,7 +308,7 @@ pub struct FlatResidual<'a> {
 
 impl FlatResidual<'_> {
     /// Steps of rounding, in deviations of a sample, from which values are seen to jump between them.
-    pub const COARSE: f64 = 2.0;
+    pub const COARSE_STEPS: f64 = 2.0;
 
     /// True for a sample that counts.
     pub fn counts(&self, i: usize) -> bool {
@@ -345,13 +349,13 @@ pub trait OutlierDetector: Sync {
 /// A point of a law that runs in straight lines.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Knot {
-    /// Where: a time or the value of a column.
+    /// A time or a value of a column.
     pub at: f64,
-    /// What the law is there.
+    /// Value of the law there.
     pub value: f64,
 }
 
-/// What the level of the noise follows.
+/// Law of the level of the noise.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Law {
     /// Time: deviation over that of the whole record at `time_s`, with lines between the knots.
@@ -370,7 +374,7 @@ pub enum Law {
 /// A law of the level, fitted to groups of samples and not yet held against single ones.
 #[derive(Debug, Clone)]
 pub struct LevelLaw {
-    /// What it follows.
+    /// The law.
     pub law: Law,
     /// Deviation of each sample, in any unit.
     pub profile: Vec<f64>,
@@ -388,7 +392,7 @@ pub struct LevelLaw {
     pub ratio: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
-    /// Where the noise is raised.
+    /// Interval in which the noise is raised.
     pub place: Place,
 }
 
@@ -397,7 +401,7 @@ pub struct LevelLaw {
 pub struct Level {
     /// The effect.
     pub effect: &'static dyn Effect,
-    /// What it follows.
+    /// The law.
     pub law: Law,
     /// Deviation of each sample over that of the whole record; its mean square is 1.
     pub profile: Vec<f64>,
@@ -411,11 +415,11 @@ pub struct Level {
     pub ratio: f64,
     /// Its 95 % interval.
     pub ci95: [f64; 2],
-    /// Where the noise is raised, principal place first.
+    /// Intervals in which the noise is raised, principal one first.
     pub places: Vec<Place>,
 }
 
-/// Finds what the level of the noise follows.
+/// Finds the law of the level of the noise.
 pub trait LevelDetector: Sync {
     /// Laws fitted to a residual; `samples` are those that count.
     fn laws(&self, residual: &FlatResidual<'_>, samples: &[usize]) -> Vec<LevelLaw>;
@@ -426,7 +430,7 @@ pub trait LevelDetector: Sync {
         None
     }
 
-    /// What a claim states of a law beside its ratio.
+    /// Values by which a claim states a law, beside its ratio.
     fn stated(&self, level: &Level, drivers: &Drivers) -> Values;
 }
 
@@ -440,7 +444,7 @@ pub struct Background<'a> {
     pub powers: Vec<f64>,
     /// Modes of the columns of the hypothesis, each with the deviation of its prior.
     pub columns: Vec<(Vec<f64>, f64)>,
-    /// What the noise beside jumps loses of log-likelihood against that of the hypothesis where there are no jumps.
+    /// Log-likelihood that the noise beside jumps loses against that of the hypothesis in a record without jumps.
     pub lost: f64,
     /// Step of the grid of values that the output is rounded to, as an angle increment, arcsec.
     pub grid_step_arcsec: Option<f64>,
@@ -449,16 +453,16 @@ pub struct Background<'a> {
 /// A course of jumps.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Jumps {
-    /// What is expected of each sample given all, less its mean, deg/h.
+    /// Expected value of each sample given all, less its mean, deg/h.
     pub course: Vec<f64>,
-    /// The effect; its probability is that of such a gain over the rival where that is the likelier.
+    /// The effect. Its p-value is the larger of that under the hypothesis and that of its gain over the best single process.
     pub detection: Detection,
     /// Bound of the probability of such a gain under the hypothesis.
     pub chance: f64,
     /// Gain of the best single process in its place.
     pub rival_gain: f64,
-    /// False for jumps every few samples, which are no other than a short correlated process, and for even ones, which are a
-    /// periodic course.
+    /// False for jumps every few samples, which cannot be distinguished from a short correlated process, and for jumps in equal
+    /// intervals, which are a periodic course.
     pub resolved: bool,
     /// For a level that is left much sooner than the other, which is no telegraph: its visits.
     pub pulses: Option<Pulses>,
@@ -467,9 +471,9 @@ pub struct Jumps {
 /// Pulses of no kind that recur.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Pulses {
-    /// How many.
+    /// Number of pulses.
     pub count: usize,
-    /// How long each is on average, s.
+    /// Mean length, s.
     pub each_s: f64,
 }
 
@@ -478,7 +482,7 @@ pub trait JumpDetector: Sync {
     /// Jumps beside a hypothesis; `rival_gain` works out what the best single process gains in their place.
     fn find(&self, background: &Background<'_>, rival_gain: &dyn Fn() -> f64) -> Option<Jumps>;
 
-    /// Whether jumps that were found are those that a claim states.
+    /// True where jumps that were found are those that a claim states.
     fn agrees(&self, stated: &Values, found: &Detection) -> bool;
 
     /// The process that has the spectrum of stated jumps, with its parameters; `None` where too little is stated.

@@ -1,15 +1,15 @@
-//! At which values of its other parameters the size of an effect is asked for.
+//! The size of an effect, and the values of its other parameters at which it is asked for.
 
 use super::{Column, Param, Value, Values};
 
-/// How large an effect on the mean is asked to be.
+/// Question for the size of an effect on the mean.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sizing {
     /// The parameter that says how large.
     pub parameter: &'static Param,
     /// The recorded column that it follows, for an effect that any column can drive.
     pub column: Option<Column>,
-    /// What the claim states of the parameter; a size is what the true value exceeds it by.
+    /// Claimed value of the parameter; a size is the excess of the true value over it.
     pub claimed: f64,
     /// A size to begin from.
     pub begin: f64,
@@ -63,7 +63,7 @@ impl Sizing {
     }
 }
 
-/// How large a process or a filter is asked to be.
+/// Question for the size of a process or a filter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SpectralSizing {
     /// The parameter that says how large.

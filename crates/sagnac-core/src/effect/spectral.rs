@@ -13,7 +13,7 @@ pub struct ModeBin {
     pub frequency_hz: f64,
     /// Order of its first mode.
     pub mode: usize,
-    /// How many modes it holds.
+    /// Number of modes.
     pub modes: usize,
     /// Samples of the record.
     pub samples: usize,
@@ -140,8 +140,8 @@ pub trait Spectrum: Effect {
         None
     }
 
-    /// Size to ask for when it is determined which size would have been noticed; `None` for an effect whose size no single
-    /// number tells.
+    /// Size to ask for when it is determined which size would have been noticed; `None` for an effect whose size is no single
+    /// number.
     fn sizing(&self, _context: &SpectralContext<'_>) -> Option<SpectralSizing> {
         None
     }

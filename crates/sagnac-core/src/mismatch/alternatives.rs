@@ -1,11 +1,11 @@
-//! What would explain a recording as well as the chosen effects do, each with its parameters.
+//! Explanations of a recording as good as the chosen effects, each with its parameters.
 
 use super::contribution::drawn_course;
 use super::estimates;
 use super::finding::Finding;
+use super::fitted_hypothesis::{Candidate, FittedHypothesis};
 use super::problem::Problem;
 use super::select::{Chosen, Selection, Slot};
-use super::tried::{Candidate, Tried};
 use crate::claim::Stated;
 use crate::effect::{Effect, Model, stateable};
 
@@ -43,7 +43,7 @@ pub(super) fn all(selection: &Selection, findings: &[Finding], problem: &Problem
 }
 
 /// The chosen effect; of a response that is described by terms, the law that gives it its name.
-fn chosen(one: &Chosen, best: &Tried, problem: &Problem) -> Stated {
+fn chosen(one: &Chosen, best: &FittedHypothesis, problem: &Problem) -> Stated {
     match &one.law {
         Some(law) => candidate(law, problem),
         None => stated(one.effect, one.slot, best, problem),
@@ -60,7 +60,7 @@ fn candidate(fitted: &Candidate, problem: &Problem) -> Stated {
     stated(fitted.effect, slot, &fitted.tried, problem)
 }
 
-fn stated(effect: &'static dyn Effect, slot: Slot, tried: &Tried, problem: &Problem) -> Stated {
+fn stated(effect: &'static dyn Effect, slot: Slot, tried: &FittedHypothesis, problem: &Problem) -> Stated {
     let mut values = estimates::of(effect, slot, tried, &problem.spectra).stated;
     if let (Some(by_course), Slot::Spectrum(i)) = (effect.claimed_by_course(), slot) {
         values = by_course.values(&drawn_course(tried, i, problem));

@@ -5,16 +5,17 @@ use super::augmented::{augmented, nuisances};
 use super::columns;
 use super::contribution;
 use super::departures::{self, Departure};
-use super::draw::{self, Drawn};
+use super::draw::{self, FigureData};
 use super::estimates;
 use super::experiment;
 use super::finding::{
     Candidate, Explanation, Finding, Fit, FitFigures, MismatchVerdict, ParameterValue, PlaceRecord,
     RecordingFacts, Rest, Test,
 };
+use super::fitted_hypothesis::{Candidate as FittedCandidate, FittedHypothesis};
 use super::heldout::{Halves, HeldOut};
 use super::improvement;
-use super::named::{Found, Named};
+use super::named::{NamedEffect, SampleFindings};
 use super::noticeable::{self, Noticeable};
 use super::options::Options;
 use super::outcome::Outcome;
@@ -22,11 +23,10 @@ use super::problem::Problem;
 use super::samples;
 use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
 use super::single_cause;
-use super::tried::{Candidate as Fitted, Tried};
 use super::unnamed;
 use crate::claim::{Claim, Stated};
 use crate::effect::{
-    Detection, Domain, Effect, Family, Model, Place, SpectralContext, UNKNOWN, find, stateable,
+    COLUMN_TEXT, Detection, Domain, Effect, Family, Model, Place, SpectralContext, UNKNOWN, find, stateable,
 };
 use crate::numeric::order::SortByNumber;
 use crate::series::ReadFrom;
@@ -39,13 +39,13 @@ pub(super) struct Evidence<'a> {
     /// The claim as given.
     pub claim: &'a Claim,
     /// The claim's own fit.
-    pub base: &'a Tried,
+    pub base: &'a FittedHypothesis,
     /// Its held-out figures.
     pub held_base: HeldOut,
-    /// What was selected.
+    /// The selected effects.
     pub selection: &'a Selection,
-    /// What was found in single samples.
-    pub found: Found,
+    /// Effects found in single samples.
+    pub found: SampleFindings,
     /// Tests of the residual of the claim.
     pub before: &'a [Departure],
     /// Tests of what is left.
@@ -56,14 +56,14 @@ pub(super) struct Evidence<'a> {
     pub options: &'a Options,
 }
 
-/// What is known of a recording after its rows are on the grid.
+/// Facts of a recording after its rows are on the grid.
 #[derive(Debug, Clone)]
 pub(super) struct Recorded {
     /// Rows.
     pub rows: usize,
     /// Time from the first to the last, s.
     pub length_s: f64,
-    /// Which column of the file each quantity was read from.
+    /// Column of the file that each quantity was read from.
     pub read_from: Vec<ReadFrom>,
 }
 
@@ -83,7 +83,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let held_best = if nothing { held_base } else { halves.judge(best) };
     for chosen in &selection.chosen {
         let gained = improvement::of(chosen, selection, &spectra.full, &halves, held_best.log_likelihood);
-        found.named.push(Named { improvement: Some(gained), ..named(chosen, best, problem, options) });
+        found.named.push(NamedEffect { improvement: Some(gained), ..named(chosen, best, problem, options) });
     }
     single_cause::returned(&mut found.named, problem, options);
     found.named.sort_descending_by(|a| a.delta_bic);
@@ -139,7 +139,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
         noticeable_not_computed: not_computed,
         experiments: experiment::deciding(&selection.chosen, best, spectra),
     };
-    let drawn = Drawn {
+    let drawn = FigureData {
         before: &observed,
         base,
         best,
@@ -153,7 +153,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     Outcome { explanation, correction, augmented, skewness, alternatives, figures }
 }
 
-fn kinds(named: &[Named]) -> Vec<&'static str> {
+fn kinds(named: &[NamedEffect]) -> Vec<&'static str> {
     named.iter().map(|n| n.effect.kind()).collect()
 }
 
@@ -171,8 +171,8 @@ fn on_rows(series: &[f64], problem: &Problem) -> Vec<(f64, f64)> {
     rows.map(|(i, (value, _))| (problem.drivers.time_s(i), *value)).collect()
 }
 
-/// Where the leading finding shows, or else the clearest departure without a name.
-fn principal_places(named: &[Named], after: &[Departure]) -> Vec<Place> {
+/// Intervals of the leading finding, or else that of the clearest departure without a name.
+fn principal_places(named: &[NamedEffect], after: &[Departure]) -> Vec<Place> {
     match named.first().map(|n| n.places.clone()) {
         Some(places) if !places.is_empty() => places,
         _ => after.iter().filter(|d| d.below(1e-3, after.len())).map(|d| d.place).take(1).collect(),
@@ -180,12 +180,12 @@ fn principal_places(named: &[Named], after: &[Departure]) -> Vec<Place> {
 }
 
 /// Part of the misfit below which what named effects leave is a rest and no cause of its own.
-const REST: f64 = 0.05;
+const MAX_REST_SHARE: f64 = 0.05;
 
 /// Every cause: what was named, what departs and has no name, and rows that are missing; and a small rest beside them.
 /// `gained` is the gain of log-likelihood of what was named.
 fn causes(
-    named: &[Named],
+    named: &[NamedEffect],
     gained: f64,
     problem: &Problem,
     after: &[Departure],
@@ -195,14 +195,14 @@ fn causes(
     let mut rest = None;
     let all_named = !out.is_empty() && out.iter().all(|f| f.kind != UNKNOWN);
     let departs = unnamed::cause(after, named.is_empty(), problem, options);
-    // A departure of probability p is worth about −ln p of log-likelihood.
+    // A departure of probability p corresponds to about −ln p of log-likelihood.
     let share = |u: &Finding| 0.5 * u.delta_bic / (0.5 * u.delta_bic + gained.max(0.0)).max(1e-300);
-    if let Some(small) = departs.as_ref().filter(|u| all_named && share(u) < REST) {
+    if let Some(small) = departs.as_ref().filter(|u| all_named && share(u) < MAX_REST_SHARE) {
         rest = Some(Rest { p_value: small.p_value, share: share(small), places: small.places.clone() });
     } else if let Some(mut unknown) = departs {
         unnamed::absorb(&mut unknown, &mut out);
         // What repeats without being a sinusoid has lines for its parts: they are no causes beside it.
-        if after.iter().any(|d| d.is_periodic() && d.below(unnamed::DEPARTED, after.len())) {
+        if after.iter().any(|d| d.is_periodic() && d.below(unnamed::DEPARTURE_PROBABILITY, after.len())) {
             out.retain(|f| find(&f.kind).and_then(|e| e.family()) != Some(Family::Line));
         }
         out.push(unknown);
@@ -223,7 +223,7 @@ fn verdict(causes: &[Finding]) -> MismatchVerdict {
 }
 
 /// One finding a cause: several named effects that are one cause of no kind are one.
-fn findings(named: &[Named], allowed: usize) -> Vec<Finding> {
+fn findings(named: &[NamedEffect], allowed: usize) -> Vec<Finding> {
     let together = single_cause::together(named, allowed);
     let mut out = vec![];
     for (i, one) in named.iter().enumerate() {
@@ -256,7 +256,7 @@ fn findings(named: &[Named], allowed: usize) -> Vec<Finding> {
 }
 
 /// A chosen effect with its parameters and places.
-fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) -> Named {
+fn named(chosen: &Chosen, best: &FittedHypothesis, problem: &Problem, options: &Options) -> NamedEffect {
     let mut estimated = estimates::of(chosen.effect, chosen.slot, best, &problem.spectra);
     if let (Some(by_course), Slot::Spectrum(i)) = (chosen.effect.claimed_by_course(), chosen.slot) {
         estimated.stated = by_course.values(&contribution::drawn_course(best, i, problem));
@@ -293,13 +293,13 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
     if let Some(law) = &chosen.law {
         effect = law.effect;
         let whole = best.fit.log_likelihood - chosen.without.fit.log_likelihood;
-        let of_whole = estimated.reported.remove("rms_deg_h").filter(|_| law.gain >= MAINLY * whole);
+        let of_whole = estimated.reported.remove("rms_deg_h").filter(|_| law.gain >= DOMINANT_SHARE * whole);
         (estimated.reported, places) = by_law(law, chosen, problem);
         // What one of several laws adds by itself is not told by the response, which is all of them.
         estimated.reported.remove("rms_deg_h");
         estimated.reported.extend(of_whole.map(|rms| ("rms_deg_h".to_owned(), rms)));
     }
-    Named {
+    NamedEffect {
         effect,
         stated_as: chosen.effect,
         estimated,
@@ -314,31 +314,31 @@ fn named(chosen: &Chosen, best: &Tried, problem: &Problem, options: &Options) ->
     }
 }
 
-/// Part of what a response gains that one law must gain alone for the response to be that law.
-const MAINLY: f64 = 0.85;
+/// Share of the gain of a response that one law must reach alone for the response to be that law.
+const DOMINANT_SHARE: f64 = 0.85;
 
 /// Parameters and places of a response as its leading law has them. The rest of the response is no noise that the claim knows,
 /// so flicker and random walk are free to stand for it while the intervals are found.
 fn by_law(
-    law: &Fitted,
+    law: &FittedCandidate,
     chosen: &Chosen,
     problem: &Problem,
 ) -> (BTreeMap<String, ParameterValue>, Vec<Place>) {
     let mut free = law.tried.clone();
-    free.hypothesis.noise.freed = [free.hypothesis.noise.freed[0], true, true];
+    free.hypothesis.noise.unconstrained = [free.hypothesis.noise.unconstrained[0], true, true];
     let free = problem.refitted(&free);
     let slot = Slot::Mean(free.hypothesis.courses.len().saturating_sub(1));
     let reported = estimates::of(law.effect, slot, &free, &problem.spectra).reported;
     (reported, places(law.effect, slot, &free, chosen, problem))
 }
 
-fn smallest_p(first: &[Fitted], before: &[Departure]) -> f64 {
+fn smallest_p(first: &[FittedCandidate], before: &[Departure]) -> f64 {
     let named = first.iter().map(|c| c.p_value).fold(1.0, f64::min) * first.len().max(1) as f64;
     (2.0 * named.min(departures::family(before))).min(1.0)
 }
 
 /// Figures of a fit; `local_gain` is what effects on single samples gained beside it.
-fn figures(tried: &Tried, held: &HeldOut, rows: usize, local_gain: f64) -> FitFigures {
+fn figures(tried: &FittedHypothesis, held: &HeldOut, rows: usize, local_gain: f64) -> FitFigures {
     FitFigures {
         log_likelihood: tried.fit.log_likelihood + local_gain,
         heldout_log_likelihood: held.log_likelihood + 0.5 * local_gain,
@@ -347,7 +347,7 @@ fn figures(tried: &Tried, held: &HeldOut, rows: usize, local_gain: f64) -> FitFi
     }
 }
 
-fn of_samples(named: &Named) -> Candidate {
+fn of_samples(named: &NamedEffect) -> Candidate {
     Candidate {
         kind: if named.shape.is_some() { UNKNOWN } else { named.effect.kind() }.to_owned(),
         delta_bic: named.delta_bic,
@@ -356,7 +356,7 @@ fn of_samples(named: &Named) -> Candidate {
     }
 }
 
-fn candidate(fitted: &Fitted) -> Candidate {
+fn candidate(fitted: &FittedCandidate) -> Candidate {
     Candidate {
         kind: fitted.effect.kind().to_owned(),
         delta_bic: fitted.delta_bic,
@@ -365,7 +365,7 @@ fn candidate(fitted: &Fitted) -> Candidate {
     }
 }
 
-fn finding(named: &Named) -> Finding {
+fn finding(named: &NamedEffect) -> Finding {
     let own = !named.effect.in_format() || named.shape.is_some();
     let kind = if own { UNKNOWN } else { named.effect.reported_kind() };
     let text = |name: &str| named.estimated.texts.get(name).cloned();
@@ -373,7 +373,7 @@ fn finding(named: &Named) -> Finding {
         kind: kind.to_owned(),
         effect: (kind != named.effect.kind() && named.shape.is_none())
             .then(|| named.effect.kind().to_owned()),
-        column: text("column"),
+        column: text(COLUMN_TEXT),
         column2: text("column2"),
         law: text("law"),
         formula: named.estimated.formula.clone(),
@@ -393,7 +393,7 @@ fn finding(named: &Named) -> Finding {
 fn places(
     effect: &'static dyn Effect,
     slot: Slot,
-    best: &Tried,
+    best: &FittedHypothesis,
     chosen: &Chosen,
     problem: &Problem,
 ) -> Vec<Place> {
@@ -429,17 +429,17 @@ fn missing(problem: &Problem, options: &Options) -> Vec<Finding> {
         let named = options.allows(effect.kind());
         let delta_bic = found.parameters as f64 * (problem.spectra.rows as f64).ln();
         let kind = if named { effect.reported_kind() } else { UNKNOWN };
-        let mut finding = finding(&Named::detected(effect, &found, delta_bic));
+        let mut finding = finding(&NamedEffect::detected(effect, &found, delta_bic));
         finding.parameters.retain(|_, _| named);
         Finding { kind: kind.to_owned(), ..finding }
     };
     samples::missing(problem, &problem.claim).into_iter().map(one).collect()
 }
 
-/// Cycles of a record from which their regularity tells.
-const TELLING: f64 = 20.0;
+/// Fewest cycles of a record whose regularity distinguishes an oscillation from a driver.
+const MIN_CYCLES: f64 = 20.0;
 
-/// What may have made the few cycles of an oscillation. A thermostat or a day that was not recorded swings as regularly
+/// The other cause that the few cycles of an oscillation may have. A thermostat or a day that was not recorded swings as regularly
 /// through them as what turns by itself, and no statistic of one record tells which it was.
 fn ambiguous_oscillation(
     effect: &dyn Effect,
@@ -449,7 +449,7 @@ fn ambiguous_oscillation(
 ) -> Option<&'static str> {
     let other = effect.if_few_cycles()?.kind();
     let cycles = reported.get("frequency_hz")?.value * length_s;
-    (cycles < TELLING && options.allows(other)).then_some(other)
+    (cycles < MIN_CYCLES && options.allows(other)).then_some(other)
 }
 
 fn tests(before: &[Departure], after: &[Departure]) -> Vec<Test> {

@@ -1,21 +1,21 @@
 //! The claim that explains the recording, and what becomes of the values that it states with an uncertainty.
 
 use super::finding::NuisanceValue;
+use super::fitted_hypothesis::FittedHypothesis;
 use super::hypothesis::kept;
 use super::problem::{Problem, level, scaled};
 use super::samples;
-use super::tried::Tried;
 use crate::claim::{Claim, Stated};
 use crate::effect::{Effect, Model, Nuisance, SpectrumAct};
 use crate::noise::data::NoiseType;
 
-/// The claim with its nuisances as fitted and the effects stated. A coefficient that an effect sets free stays as
-/// claimed: the effect states it. A level of the noise that was found frees N as well: what it comes to is the claim's.
+/// The claim with its nuisances as fitted and the effects stated. A coefficient that an effect unconstrains stays as
+/// claimed: the effect states it. A level of the noise that was found unconstrains N as well: what it comes to is the claim's.
 /// `correction` is what the hypothesis adds to each sample.
 pub(super) fn augmented(
     problem: &Problem,
     given: &Claim,
-    best: &Tried,
+    best: &FittedHypothesis,
     mut stated: Vec<Stated>,
     levelled: bool,
     correction: Option<&[f64]>,
@@ -28,8 +28,8 @@ pub(super) fn augmented(
     claim.noise.q = given.noise.q;
     let noise = &best.hypothesis.noise;
     for (i, slot) in [&mut claim.noise.n, &mut claim.noise.b, &mut claim.noise.k].into_iter().enumerate() {
-        let by_level = i == 0 && levelled && !stated.iter().any(|s| frees_white_noise(s.effect));
-        if !noise.freed[i] || by_level {
+        let by_level = i == 0 && levelled && !stated.iter().any(|s| unconstrains_white_noise(s.effect));
+        if !noise.unconstrained[i] || by_level {
             *slot = noise.base[i];
         }
     }
@@ -55,20 +55,24 @@ pub(super) fn augmented(
     claim
 }
 
-fn frees_white_noise(effect: &dyn Effect) -> bool {
-    let frees = SpectrumAct::Unconstrains(NoiseType::AngleRandomWalk);
-    matches!(effect.model(), Model::Spectrum(s) if s.act() == frees)
+fn unconstrains_white_noise(effect: &dyn Effect) -> bool {
+    let act = SpectrumAct::Unconstrains(NoiseType::AngleRandomWalk);
+    matches!(effect.model(), Model::Spectrum(s) if s.act() == act)
 }
 
 /// The value of a nuisance column in a fit; 0 where its prior was given up.
-fn nuisance_value(problem: &Problem, tried: &Tried, nuisance: Nuisance) -> f64 {
+fn nuisance_value(problem: &Problem, tried: &FittedHypothesis, nuisance: Nuisance) -> f64 {
     let kept = kept(&problem.spectra.full, &tried.hypothesis.courses);
     let at = kept.iter().position(|n| n.nuisance == nuisance);
     at.and_then(|i| tried.fit.mean.coefficients.get(i)).copied().unwrap_or(0.0)
 }
 
-/// What the claim states with its uncertainty, and where both fits put it.
-pub(super) fn nuisances(problem: &Problem, base: &Tried, best: &Tried) -> Vec<NuisanceValue> {
+/// Claimed values with their uncertainties, and their estimates by both fits.
+pub(super) fn nuisances(
+    problem: &Problem,
+    base: &FittedHypothesis,
+    best: &FittedHypothesis,
+) -> Vec<NuisanceValue> {
     let (claim, u) = (&problem.claim, &problem.claim.uncertainty);
     let mut out = vec![];
     let names = [("N_deg_rt_h", "deg/√h"), ("B_deg_h", "deg/h"), ("K_deg_h_rt_h", "deg/h/√h")];

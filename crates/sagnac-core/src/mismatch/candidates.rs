@@ -3,46 +3,46 @@
 mod course;
 mod spectrum;
 
+use super::fitted_hypothesis::{Candidate, FittedHypothesis, SpectralDataSet};
 use super::options::Options;
-use super::tried::{Candidate, SpectralDataSet, Tried};
 use crate::effect::{EFFECTS, Effect, Model};
 use crate::numeric::order::SortByNumber;
 use crate::numeric::parallel;
-use course::{Grounds, try_course};
+use course::{Baselines, try_course};
 use spectrum::try_spectrum;
 
 /// The hypothesis with its noise as the claim states it, where the fit moved it far from there: it may stand for a course.
-fn restated(before: &Tried) -> Option<Tried> {
+fn restated(before: &FittedHypothesis) -> Option<FittedHypothesis> {
     /// Logarithm of the prior from which noise has moved: √8 of its stated deviations, were it one coefficient.
-    const MOVED: f64 = -4.0;
-    (before.hypothesis.noise.prior() < MOVED).then(|| {
+    const MOVED_LOG_PRIOR: f64 = -4.0;
+    (before.hypothesis.noise.prior() < MOVED_LOG_PRIOR).then(|| {
         let mut out = before.clone();
         out.hypothesis.noise.restate();
         out
     })
 }
 
-/// Fits every effect that is thought of and not in the hypothesis yet as an addition to it; those that gain something,
+/// Fits every effect that is considered and not in the hypothesis yet as an addition to it; those that gain something,
 /// the largest ΔBIC first.
-pub fn all(before: &Tried, spectra: &SpectralDataSet, options: &Options) -> Vec<Candidate> {
+pub fn all(before: &FittedHypothesis, spectra: &SpectralDataSet, options: &Options) -> Vec<Candidate> {
     among(before, spectra, |e| options.allows(e.kind()))
 }
 
-/// As [`all`], of some effects only.
+/// [`all`] for the wanted effects only.
 pub fn among(
-    before: &Tried,
+    before: &FittedHypothesis,
     spectra: &SpectralDataSet,
     wanted: impl Fn(&dyn Effect) -> bool + Sync,
 ) -> Vec<Candidate> {
-    // Grounds take transforms of the whole record, and a search for filters alone needs none.
+    // Baselines take transforms of the whole record, and a search for filters alone needs none.
     let any_course = EFFECTS.iter().any(|e| wanted(*e) && matches!(e.model(), Model::Mean(_)));
     let restated = restated(before).filter(|_| any_course);
-    let grounds = [
-        any_course.then(|| Grounds::fitted(before, spectra)),
-        restated.as_ref().map(|restated| Grounds::restated(restated, spectra)),
+    let baselines = [
+        any_course.then(|| Baselines::fitted(before, spectra)),
+        restated.as_ref().map(|restated| Baselines::restated(restated, spectra)),
     ];
     let tried = |effect: &&'static dyn Effect| match effect.model() {
-        Model::Mean(course) => try_course(*effect, course, before, spectra, &grounds),
+        Model::Mean(course) => try_course(*effect, course, before, spectra, &baselines),
         Model::Spectrum(spectrum) => try_spectrum(*effect, spectrum, before, spectra),
         Model::Samples(_) => None,
     };
@@ -52,7 +52,7 @@ pub fn among(
             Model::Mean(course) => course.resolution(),
             _ => return false,
         };
-        grounds.iter().flatten().any(|g| g.is_long(resolution))
+        baselines.iter().flatten().any(|g| g.is_long(resolution))
     };
     let (alone, together): (Vec<_>, Vec<_>) = EFFECTS.iter().filter(|e| wanted(**e)).partition(|e| long(e));
     let mut found: Vec<Candidate> =

@@ -9,9 +9,9 @@ use crate::claim::Claim;
 use crate::effect::Column;
 
 /// Fewest samples that are left.
-const FEWEST: usize = 1024;
+const MIN_SAMPLES: usize = 1024;
 
-/// How many samples to average so that white noise moves the angle by two steps of `lsb_arcsec` between two of them; 1
+/// Number of samples to average so that white noise moves the angle by two steps of `lsb_arcsec` between two of them; 1
 /// where it moves it by one from sample to sample.
 pub fn group(lsb_arcsec: f64, claim: &Claim, samples: usize) -> usize {
     let dt_s = 1.0 / claim.sample_rate_hz;
@@ -24,7 +24,7 @@ pub fn group(lsb_arcsec: f64, claim: &Claim, samples: usize) -> usize {
     }
     // Two steps: then rounding has a twentieth of the variance of the noise, and its flat law shows in no tail.
     let wanted = (2.0 * lsb_arcsec / moved_arcsec).powi(2).ceil();
-    (wanted as usize).clamp(1, (samples / FEWEST).max(1))
+    (wanted as usize).clamp(1, (samples / MIN_SAMPLES).max(1))
 }
 
 /// The recording in averages over `m` samples with what the claim expects averaged as well: on a table that turns, the

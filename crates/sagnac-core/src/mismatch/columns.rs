@@ -1,11 +1,11 @@
 //! Status of each recorded column: it drives something that was found, it is silent, or it cannot be used and why.
 
 use super::finding::{ColumnRecord, ColumnStatus, Finding, UnusableColumn};
-use super::named::Named;
+use super::fitted_hypothesis::FittedHypothesis;
+use super::named::NamedEffect;
 use super::problem::Problem;
 use super::select::MOST_EQUIVALENTS;
-use super::tried::Tried;
-use crate::effect::{Column, any_column_driver, find};
+use crate::effect::{COLUMN_TEXT, Column, any_column_driver, find};
 use crate::numeric::cosine::dct2;
 use crate::series::ReadFrom;
 
@@ -15,14 +15,14 @@ const ONE_SIDED_95: f64 = 1.644_854;
 /// Every column with its part in what was found. `best` is what was selected, `read_from` the names in the file.
 pub(super) fn records(
     problem: &Problem,
-    best: &Tried,
-    named: &[Named],
+    best: &FittedHypothesis,
+    named: &[NamedEffect],
     read_from: &[ReadFrom],
 ) -> Vec<ColumnRecord> {
     let recorded_as = |column: Column| other_name(column, read_from).map(ToOwned::to_owned);
     let drives = |column: Column| {
         named.iter().any(|n| {
-            let named = n.estimated.texts.get("column").or_else(|| n.estimated.texts.get("column2"));
+            let named = n.estimated.texts.get(COLUMN_TEXT).or_else(|| n.estimated.texts.get("column2"));
             named.is_some_and(|name| name == column.name()) || n.effect.needs().contains(&column)
         })
     };
@@ -77,7 +77,7 @@ pub(super) fn as_recorded(findings: &mut [Finding], read_from: &[ReadFrom]) {
 }
 
 /// One-sided 95 % limit of what is proportional to a column, rms over the record, deg/h.
-fn linear_limit(column: Column, problem: &Problem, best: &Tried) -> Option<f64> {
+fn linear_limit(column: Column, problem: &Problem, best: &FittedHypothesis) -> Option<f64> {
     let values = problem.drivers.column(column)?;
     let n = values.len().max(1) as f64;
     let mean = values.iter().sum::<f64>() / n;

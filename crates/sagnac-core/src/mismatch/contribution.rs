@@ -1,10 +1,10 @@
-//! What chosen effects add to the rate: sample by sample, at knots, and in root mean square.
+//! Contributions of chosen effects to the rate: sample by sample, at knots, and in root mean square.
 
+use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use super::noise_fit::{Noise, base_index};
 use super::problem::Problem;
 use super::select::Slot;
 use super::spectral_data::SpectralData;
-use super::tried::{SpectralDataSet, Tried};
 use crate::effect::{Domain, Knot, Model, Place, SpectrumAct};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::sums::cumulated;
@@ -12,9 +12,9 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
-/// What everything that a hypothesis adds to the claim contributes to the rate, deg/h on the grid: courses, and the best
+/// Contribution to the rate of everything that a hypothesis adds to the claim, deg/h on the grid: courses, and the best
 /// linear estimate of processes that are slow or narrow-band. `None` where nothing can be predicted sample by sample.
-pub fn correction(best: &Tried, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
+pub fn correction(best: &FittedHypothesis, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
     let courses = (0..best.hypothesis.courses.len()).map(Slot::Mean);
     let processes = (0..best.hypothesis.noise.spectra.len()).map(Slot::Spectrum);
     let mut sum: Option<Vec<f64>> = None;
@@ -41,8 +41,8 @@ pub(super) fn summed(
     sum
 }
 
-/// What one effect adds to each sample, deg/h.
-fn of(slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
+/// Contribution of one effect to each sample, deg/h.
+fn of(slot: Slot, best: &FittedHypothesis, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
     match slot {
         Slot::Mean(i) => {
             let inside = &best.hypothesis.courses[i];
@@ -56,7 +56,7 @@ fn of(slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
 
 /// The best linear estimate of what a process that was found adds to each sample, deg/h; `None` for one that is stated, and
 /// for one that is neither slow nor narrow-band.
-fn course_of_process(index: usize, best: &Tried, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
+fn course_of_process(index: usize, best: &FittedHypothesis, spectra: &SpectralDataSet) -> Option<Vec<f64>> {
     let spectral = &spectra.full;
     let part = &best.hypothesis.noise.spectra[index];
     let Model::Spectrum(spectrum) = part.effect.model() else { return None };
@@ -73,9 +73,9 @@ fn course_of_process(index: usize, best: &Tried, spectra: &SpectralDataSet) -> O
     Some(inverse_dct2(&modes))
 }
 
-/// When an effect is away from its median: between the instants before and after which lie half a hundredth of its square.
-pub fn time_of(slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Option<Place> {
-    const OUTSIDE: f64 = 0.005;
+/// Time in which an effect is away from its median: between the instants before and after which lie half a hundredth of its square.
+pub fn time_of(slot: Slot, best: &FittedHypothesis, spectra: &SpectralDataSet) -> Option<Place> {
+    const TAIL_SHARE: f64 = 0.005;
     let course = of(slot, best, spectra)?;
     let mut sorted = course.clone();
     let middle = sorted.len() / 2;
@@ -85,28 +85,28 @@ pub fn time_of(slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Option<Pl
     let at = |share: f64| sums.partition_point(|s| *s < share * all).saturating_sub(1);
     let drivers = &spectra.full.drivers;
     let last = course.len().saturating_sub(1);
-    let [from, to] = [at(OUTSIDE), at(1.0 - OUTSIDE)].map(|i| drivers.time_s(i.min(last)));
+    let [from, to] = [at(TAIL_SHARE), at(1.0 - TAIL_SHARE)].map(|i| drivers.time_s(i.min(last)));
     (all > 0.0).then_some(Place { domain: Domain::Time, from, to })
 }
 
 /// Knots at most.
-const KNOTS: usize = 512;
+const MAX_KNOTS: usize = 512;
 /// Seed of the draw.
-const SEED: u64 = 0x5a67_6e61_6320_0006;
+const DRAW_SEED: u64 = 0x5a67_6e61_6320_0006;
 
 /// The course of a smooth process of a hypothesis at knots, for a claim to state. A draw of what it may have been given the record, not the
 /// expectation: what the expectation leaves of the record is quieter than the noise, and the claim would not fit.
-pub fn drawn_course(best: &Tried, index: usize, problem: &Problem) -> Vec<Knot> {
+pub fn drawn_course(best: &FittedHypothesis, index: usize, problem: &Problem) -> Vec<Knot> {
     let spectral = &problem.spectra.full;
     let own = spectral.powers(&best.hypothesis.noise.part_densities(index, spectral));
-    let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(DRAW_SEED);
     let (residual, powers) = (best.residual(&problem.spectra), best.powers(&problem.spectra));
     let modes = residual.iter().zip(own.iter().zip(&powers)).map(|(x, (s, p))| {
         let z: f64 = StandardNormal.sample(&mut rng);
         if s.is_finite() && p.is_finite() { x * s / p + z * (s * (1.0 - s / p).max(0.0)).sqrt() } else { 0.0 }
     });
     let course = inverse_dct2(&modes.collect::<Vec<f64>>());
-    let group = course.len().div_ceil(KNOTS).max(1);
+    let group = course.len().div_ceil(MAX_KNOTS).max(1);
     let drivers = &problem.drivers;
     let middle = |g: usize, len: usize| drivers.time_s(g * group) + 0.5 * (len - 1) as f64 * drivers.dt_s;
     let chunks = || course.chunks(group).enumerate();
@@ -114,7 +114,7 @@ pub fn drawn_course(best: &Tried, index: usize, problem: &Problem) -> Vec<Knot> 
     chunks().map(|(g, c)| Knot { at: middle(g, c.len()), value: mean(c) }).collect()
 }
 
-/// What a spectral effect added to a record.
+/// Course that a spectral effect added to a record.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct AddedRms {
     /// Its root mean square, deg/h; 0 for an effect that takes away, or filters.
@@ -169,7 +169,7 @@ pub fn added_rms(
 mod tests {
     use super::*;
     use crate::effect::{Drivers, find};
-    use crate::mismatch::terms::SpectrumIn;
+    use crate::mismatch::terms::SpectralTerm;
     use crate::numeric::cosine::dct2;
 
     #[test]
@@ -197,9 +197,9 @@ mod tests {
                 claimed: [1.0 / 60.0, 0.0, 0.0],
                 bound: [0.0; 3],
                 deviation: [0.0; 3],
-                freed: [false, false, true],
+                unconstrained: [false, false, true],
                 quantization_arcsec: 0.0,
-                spectra: vec![SpectrumIn { effect, fitted: vec![k], stated: false }],
+                spectra: vec![SpectralTerm { effect, fitted: vec![k], stated: false }],
             };
             let added = added_rms(&noise, 0, &[k], &spectral, &dct2(&series));
             let mean = walk.iter().sum::<f64>() / n as f64;

@@ -1,34 +1,34 @@
-//! What an explanation shows: the residual over time, in the spectrum, against the located column, and its level.
+//! The figures of an explanation: the residual over time, in the spectrum, against the located column, and its level.
 
 use super::departures::White;
 use super::figures::{Against, Spectra, TimeSeries, against, local_level, spectrum, time_course};
+use super::fitted_hypothesis::FittedHypothesis;
 use super::problem::Problem;
-use super::tried::Tried;
 use crate::effect::{Column, Domain, Drivers, Place};
 use crate::figure::Figure;
 use crate::numeric::cosine::inverse_dct2;
 
 /// Intervals of the level over time.
-const LEVELS: usize = 100;
+const LEVEL_INTERVALS: usize = 100;
 
-/// What is drawn.
-pub struct Drawn<'a> {
+/// Data of the figures.
+pub struct FigureData<'a> {
     /// Residual of the claim with everything still in it, on the grid, deg/h.
     pub before: &'a [f64],
     /// Fit of the claim.
-    pub base: &'a Tried,
+    pub base: &'a FittedHypothesis,
     /// Fit of the augmented claim.
-    pub best: &'a Tried,
-    /// What was added, deg/h.
+    pub best: &'a FittedHypothesis,
+    /// Course that was added, deg/h.
     pub correction: Option<&'a [f64]>,
     /// True when anything was added.
     pub added: bool,
-    /// Where, the principal place first.
+    /// Intervals in which the mismatch was located, principal one first.
     pub places: &'a [Place],
 }
 
 /// Every figure, that of the located view first.
-pub fn all(problem: &Problem, drawn: &Drawn<'_>) -> Vec<Figure> {
+pub fn all(problem: &Problem, drawn: &FigureData<'_>) -> Vec<Figure> {
     let drivers = &problem.drivers;
     let time: Vec<f64> = (0..drivers.samples).map(|i| drivers.time_s(i)).collect();
     let mean = drawn.before.iter().sum::<f64>() / drawn.before.len().max(1) as f64;
@@ -93,7 +93,7 @@ fn column(domain: Domain, drivers: &Drivers) -> Option<Vec<f64>> {
     }
 }
 
-fn spectra(problem: &Problem, drawn: &Drawn<'_>) -> Option<Figure> {
+fn spectra(problem: &Problem, drawn: &FigureData<'_>) -> Option<Figure> {
     let spectral = &problem.spectra.full;
     let frequency: Vec<f64> = spectral.bins.iter().map(|b| b.frequency_hz).collect();
     let dof: Vec<f64> = spectral.bins.iter().map(|b| spectral.weight(b)).collect();
@@ -108,10 +108,10 @@ fn spectra(problem: &Problem, drawn: &Drawn<'_>) -> Option<Figure> {
     })
 }
 
-fn levels(problem: &Problem, drawn: &Drawn<'_>) -> Figure {
-    let of = |tried: &Tried| {
+fn levels(problem: &Problem, drawn: &FigureData<'_>) -> Figure {
+    let of = |tried: &FittedHypothesis| {
         let series = inverse_dct2(&White::of(tried, &problem.spectra).modes);
-        let group = (series.len() / LEVELS).max(1);
+        let group = (series.len() / LEVEL_INTERVALS).max(1);
         let points: Vec<(f64, f64)> = series
             .chunks_exact(group)
             .enumerate()

@@ -5,9 +5,10 @@ use super::candidates;
 use super::coarse;
 use super::departures::{self, Departure};
 use super::filtered;
+use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use super::heldout::Halves;
 use super::jumps::{take_jumps, with_stated_jumps};
-use super::named::{Found, Named, worth};
+use super::named::{NamedEffect, SampleFindings, significant_delta_bic};
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
 use super::problem::{Problem, drivers};
@@ -15,7 +16,6 @@ use super::quantization_grid::QuantizationGrid;
 use super::regular::{Irregular, Regular};
 use super::samples;
 use super::select;
-use super::tried::{SpectralDataSet, Tried};
 use crate::claim::Claim;
 use crate::effect::{Column, Detection, Domain, EFFECTS, Effect, Model, Rounding};
 use crate::message::Note;
@@ -23,7 +23,7 @@ use crate::series::Series;
 use std::collections::BTreeMap;
 
 /// Rounds of setting samples aside that a course bends within, of drawing what is not there, and of finding the course again.
-const ROUNDS: usize = 3;
+const MAX_ROUNDS: usize = 3;
 
 /// Explains a recording against a claim.
 ///
@@ -40,7 +40,7 @@ pub fn explain(
     let recorded = Recorded { rows: series.time_s.len(), length_s, read_from: series.read_from.clone() };
     let mut regular = on_grid(series, claim, options)?;
     progress(Progress { doing: "explain.progress.locating", done: 0, total: 3 });
-    let mut found = Found::default();
+    let mut found = SampleFindings::default();
     let invalid = samples::take_invalid(&mut regular, claim, &mut found, options);
     let mut problem = uncoarsened(&regular, claim, &mut found, options);
     // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
@@ -51,10 +51,10 @@ pub fn explain(
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
     // What the table does at low frequencies looks like a filter of the noise while no course says so.
     let mut moved = with_table_courses(&base, &problem.spectra, options);
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ROUNDS {
         // What is drawn for them follows the course as it was found with them, so it is found again.
         let bent = problem.without_bends(&moved);
-        if !problem.settle(&moved) && !bent {
+        if !problem.reimpute_until_stable(&moved) && !bent {
             break;
         }
         base = problem.refitted(&base);
@@ -76,8 +76,8 @@ pub fn explain(
     let mut selection = select::select(&start, &problem, options);
     // The ends for the filters that were selected, then missing rows about the courses: each asks for the selection anew.
     let mut ends_drawn = problem.impute_edges(&selection.best, &selection.best);
-    for _ in 0..=ROUNDS {
-        if !std::mem::take(&mut ends_drawn) && !problem.settle(&selection.best) {
+    for _ in 0..=MAX_ROUNDS {
+        if !std::mem::take(&mut ends_drawn) && !problem.reimpute_until_stable(&selection.best) {
             break;
         }
         base = problem.refitted(&base);
@@ -114,14 +114,19 @@ pub(super) fn on_grid(series: Series, claim: &Claim, options: &Options) -> Resul
     Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)
 }
 
-/// What departs from a hypothesis.
-fn tests(problem: &Problem, tried: &Tried, level: Option<&[f64]>) -> Vec<Departure> {
+/// Departures from a hypothesis.
+fn tests(problem: &Problem, tried: &FittedHypothesis, level: Option<&[f64]>) -> Vec<Departure> {
     departures::all(&problem.spectra, tried, level, &problem.usable, problem.claim.uncertainty.skewness)
 }
 
 /// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does
 /// not state is named first: nothing finer can be judged beside it.
-pub(super) fn uncoarsened(regular: &Regular, claim: &Claim, found: &mut Found, options: &Options) -> Problem {
+pub(super) fn uncoarsened(
+    regular: &Regular,
+    claim: &Claim,
+    found: &mut SampleFindings,
+    options: &Options,
+) -> Problem {
     let problem = Problem::new(regular, claim);
     let as_effect = claim.effects.iter().filter_map(|e| e.effect.rounding()?.step_arcsec(&e.values));
     let as_effect = as_effect.fold(0.0, f64::max);
@@ -160,18 +165,18 @@ fn as_rounded(
     with: &Problem,
     needed: bool,
     options: &Options,
-) -> Option<Named> {
+) -> Option<NamedEffect> {
     let rows = problem.spectra.rows;
     let gain = with.baseline().fit.log_likelihood - problem.baseline().fit.log_likelihood;
     let chance = |gain: f64| crate::estimate::chi_square_tail(2.0 * gain.max(0.0), 1.0);
-    let worth = |total: f64| worth(total, 1, chance(total), rows, options.alpha);
-    let by_spectrum = worth(gain);
+    let justified = |total: f64| significant_delta_bic(total, 1, chance(total), rows, options.alpha);
+    let by_spectrum = justified(gain);
     let (effect, rounding) = rounding(options)?;
     let QuantizationGrid { increment_arcsec, open_arcsec, .. } = quantization_grid;
     let dt_s = problem.grid.dt_s;
     let named = |delta_bic: f64, p_value: f64| {
         let detection = rounding.detection(increment_arcsec, open_arcsec, dt_s);
-        Named::detected(effect, &Detection { gain, p_value, ..detection }, delta_bic)
+        NamedEffect::detected(effect, &Detection { gain, p_value, ..detection }, delta_bic)
     };
     if needed {
         return by_spectrum.map(|delta_bic| named(delta_bic, chance(gain)));
@@ -180,19 +185,23 @@ fn as_rounded(
     if by_spectrum.is_some() || gain <= 0.0 {
         return None;
     }
-    worth(by_values).map(|delta_bic| named(delta_bic, chance(by_values)))
+    justified(by_values).map(|delta_bic| named(delta_bic, chance(by_values)))
 }
 
-/// The effect that rounds the output, where it is thought of.
+/// The effect that rounds the output, where it is considered.
 fn rounding(options: &Options) -> Option<(&'static dyn Effect, &'static dyn Rounding)> {
     let mut all = EFFECTS.iter().filter_map(|e| Some((*e, e.rounding()?)));
     all.find(|(e, _)| options.allows(e.kind()))
 }
 
-/// What single samples are judged on: the claim with the courses of a moving table that it leaves out. Their corners,
+/// The hypothesis that single samples are compared with: the claim with the courses of a moving table that it leaves out. Their corners,
 /// as of a delay, look like bursts and like a changing level; a smooth course does not.
-fn with_table_courses(base: &Tried, spectra: &SpectralDataSet, options: &Options) -> Tried {
-    const COURSES: usize = 2;
+fn with_table_courses(
+    base: &FittedHypothesis,
+    spectra: &SpectralDataSet,
+    options: &Options,
+) -> FittedHypothesis {
+    const MAX_COURSES: usize = 2;
     let table = [Column::TableRate, Column::TableAngle, Column::OuterRate];
     // A delay of the claimed mean needs no column of its own, but moves only with the table.
     let delays = |e: &dyn Effect| e.needs().is_empty() && e.domain() == Domain::Lag;
@@ -208,7 +217,7 @@ fn with_table_courses(base: &Tried, spectra: &SpectralDataSet, options: &Options
         return base.clone();
     }
     let mut out = base.clone();
-    for _ in 0..COURSES {
+    for _ in 0..MAX_COURSES {
         let candidates = candidates::among(&out, spectra, applies);
         let family = EFFECTS.len() as f64;
         match candidates.into_iter().next() {
@@ -220,8 +229,8 @@ fn with_table_courses(base: &Tried, spectra: &SpectralDataSet, options: &Options
 }
 
 /// The same on a problem from which something was taken since.
-fn moved_again(moved: &Tried, start: &Tried, problem: &Problem) -> Tried {
-    let filters = |t: &Tried| t.hypothesis.noise.filters().count();
+fn moved_again(moved: &FittedHypothesis, start: &FittedHypothesis, problem: &Problem) -> FittedHypothesis {
+    let filters = |t: &FittedHypothesis| t.hypothesis.noise.filters().count();
     if moved.hypothesis.courses.is_empty() && filters(moved) == filters(start) {
         return start.clone();
     }
@@ -232,7 +241,7 @@ fn note(why: Irregular) -> Note {
     match why {
         Irregular::Short(rows) => Note::new("explain.error.short")
             .with("rows", rows as u64)
-            .with("needed", super::regular::FEWEST as u64),
+            .with("needed", super::regular::MIN_ROWS as u64),
         Irregular::OtherRate(observed, claimed) => Note::new("explain.error.other_rate")
             .with("observed", format!("{observed:.6}"))
             .with("claimed", format!("{claimed:.6}")),

@@ -1,13 +1,13 @@
-//! How much longer a record must be to decide between an effect and one that serves as well.
+//! The length of a record that decides between an effect and one that serves as well.
 
 use super::finding::Experiment;
+use super::fitted_hypothesis::{Candidate, FittedHypothesis, SpectralDataSet};
 use super::hypothesis::{PartModes, columns, kept};
 use super::noise_fit::{self, Noise};
 use super::nonlinear_search::LocalSearch;
-use super::select::{Chosen, ENOUGH, Slot};
+use super::select::{Chosen, MIN_DELTA_BIC, Slot};
 use super::spectral_data::SpectralData;
-use super::terms::CourseIn;
-use super::tried::{Candidate, SpectralDataSet, Tried};
+use super::terms::MeanTerm;
 use crate::effect::{MeanModel, ModeBin, Model};
 use crate::numeric::least_squares::{Normal, subtract};
 use crate::numeric::parallel;
@@ -17,19 +17,19 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use std::borrow::Cow;
 
 /// Records simulated for each length.
-const DRAWS: usize = 60;
+const SIMULATED_RECORDS: usize = 60;
 /// Of those, how many must tell the two apart.
-const DECIDED: usize = 57;
-/// Longest record that is thought of, in lengths of this one.
+const MIN_DECIDED: usize = 57;
+/// Longest record that is considered, in lengths of this one.
 const MAX_TIMES_LONGER: f64 = 128.0;
 /// Evaluations of the rival's course while it is brought as near as it comes.
-const EVALUATIONS: usize = 40;
+const MAX_EVALUATIONS: usize = 40;
 /// Seed of the simulated records: a report is a function of recording and claim alone.
-const SEED: u64 = 0x5a67_6e61_6320_0007;
+const SIMULATION_SEED: u64 = 0x5a67_6e61_6320_0007;
 
-/// For each effect and each of its equivalents of the same sort, the shortest record that tells them apart. A process is
+/// For each effect and each of its equivalents of the same sort, the shortest record that distinguishes them. A process is
 /// not weighed against a course: what either does in a longer record depends on what the record holds.
-pub fn deciding(chosen: &[Chosen], best: &Tried, spectra: &SpectralDataSet) -> Vec<Experiment> {
+pub fn deciding(chosen: &[Chosen], best: &FittedHypothesis, spectra: &SpectralDataSet) -> Vec<Experiment> {
     let mut out = vec![];
     for one in chosen {
         for rival in &one.equivalents {
@@ -46,42 +46,42 @@ pub fn deciding(chosen: &[Chosen], best: &Tried, spectra: &SpectralDataSet) -> V
 }
 
 /// By simulation: spectra are drawn from the hypothesis as longer records would show them, and both are fitted to each.
-fn processes(best: &Tried, rival: &Tried, spectra: &SpectralDataSet) -> Option<f64> {
+fn processes(best: &FittedHypothesis, rival: &FittedHypothesis, spectra: &SpectralDataSet) -> Option<f64> {
     let told = |times: f64| {
         let spectral = spectra.full.longer(times);
         let price = (rival.parameters as f64 - best.parameters as f64) * (spectra.rows as f64 * times).ln();
-        records_decided(&best.hypothesis.noise, &rival.hypothesis.noise, &spectral, price) >= DECIDED
+        records_decided(&best.hypothesis.noise, &rival.hypothesis.noise, &spectral, price) >= MIN_DECIDED
     };
     shortest(told)
 }
 
-/// Of [`DRAWS`] spectra drawn from a noise, those that tell it from a rival, both fitted to each. `price` is what BIC charges
+/// Of [`SIMULATED_RECORDS`] spectra drawn from a noise, those that tell it from a rival, both fitted to each. `price` is what BIC charges
 /// the rival more.
 fn records_decided(own: &Noise, rival: &Noise, spectral: &SpectralData, price: f64) -> usize {
     let densities = own.densities(spectral);
     let decides = |draw: usize| {
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED + draw as u64);
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(SIMULATION_SEED + draw as u64);
         let power = |(bin, s): (&ModeBin, &f64)| {
             let dof = bin.modes as f64;
             ChiSquared::new(dof).map_or(*s, |law| s * law.sample(&mut rng) / dof)
         };
         let drawn: Vec<f64> = spectral.bins.iter().zip(&densities).map(power).collect();
         let fitted = |noise: &Noise| noise_fit::fit(&mut noise.clone(), spectral, &drawn).log_likelihood;
-        2.0 * (fitted(own) - fitted(rival)) + price >= ENOUGH
+        2.0 * (fitted(own) - fitted(rival)) + price >= MIN_DELTA_BIC
     };
-    parallel::map(DRAWS, decides).into_iter().filter(|d| *d).count()
+    parallel::map(SIMULATED_RECORDS, decides).into_iter().filter(|d| *d).count()
 }
 
-/// The share of records, 0 to 1, that tell a noise from a rival: the ΔBIC between them is [`ENOUGH`] in favour of the one
+/// The share of records, 0 to 1, that tell a noise from a rival: the ΔBIC between them is [`MIN_DELTA_BIC`] in favour of the one
 /// that is true. `price` is what BIC charges the rival more.
 pub(crate) fn share_decided(own: &Noise, rival: &Noise, spectral: &SpectralData, price: f64) -> f64 {
-    records_decided(own, rival, spectral, price) as f64 / DRAWS as f64
+    records_decided(own, rival, spectral, price) as f64 / SIMULATED_RECORDS as f64
 }
 
 /// In closed form: the test repeated m times gives m times the squared distance δ² of the course to the nearest that its
 /// rival makes, and 2 ln of the likelihood ratio is normal with mean mδ² and deviation 2√m δ.
 fn courses(
-    best: &Tried,
+    best: &FittedHypothesis,
     index: usize,
     rival: &Candidate,
     course: &'static dyn MeanModel,
@@ -93,16 +93,16 @@ fn courses(
     let parameters = rival.tried.parameters as f64 - best.parameters as f64;
     let told = |times: f64| {
         let price = parameters * (spectra.rows as f64 * times).ln();
-        times * distance - 1.644_854 * 2.0 * (times * distance).sqrt() + price >= ENOUGH
+        times * distance - 1.644_854 * 2.0 * (times * distance).sqrt() + price >= MIN_DELTA_BIC
     };
     shortest(told)
 }
 
 /// Squared distance, in deviations of the noise, of a fitted course to the nearest of another effect.
 fn distance(
-    best: &Tried,
-    own: &CourseIn,
-    other: &CourseIn,
+    best: &FittedHypothesis,
+    own: &MeanTerm,
+    other: &MeanTerm,
     course: &'static dyn MeanModel,
     spectra: &SpectralDataSet,
 ) -> Option<f64> {
@@ -116,7 +116,7 @@ fn distance(
     Some(nearest(&modes, other, course, spectral, &powers).squared)
 }
 
-/// What a mean model leaves of a course, brought as near to it as it comes.
+/// Residual of a course after the best fit of a mean model.
 pub(crate) struct Nearest {
     /// Its nonlinear parameters.
     pub nonlinear_parameters: Vec<f64>,
@@ -128,7 +128,7 @@ pub(crate) struct Nearest {
 /// the nuisances of the claim are free, the latter under their priors.
 pub(crate) fn nearest(
     modes: &[f64],
-    rival: &CourseIn,
+    rival: &MeanTerm,
     course: &dyn MeanModel,
     spectral: &SpectralData,
     powers: &[f64],
@@ -146,7 +146,7 @@ pub(crate) fn nearest(
     let start = &rival.nonlinear_parameters;
     let (nonlinear_parameters, found) = match start.as_slice() {
         [] => (vec![], -left(&[])),
-        start => local.refine(start, EVALUATIONS, |s| -left(s)),
+        start => local.refine(start, MAX_EVALUATIONS, |s| -left(s)),
     };
     Nearest { nonlinear_parameters, squared: (-found).max(0.0) }
 }
@@ -179,7 +179,7 @@ mod tests {
     use super::*;
     use crate::effect::{Drivers, find};
     use crate::mismatch::hypothesis::{Hypothesis, fit};
-    use crate::mismatch::terms::SpectrumIn;
+    use crate::mismatch::terms::SpectralTerm;
 
     const N: f64 = 0.004;
 
@@ -189,7 +189,7 @@ mod tests {
             claimed: [N, 0.0, 0.0],
             bound: [0.0; 3],
             deviation: [0.0; 3],
-            freed: [false; 3],
+            unconstrained: [false; 3],
             quantization_arcsec: 0.0,
             spectra: vec![],
         }
@@ -201,11 +201,16 @@ mod tests {
         SpectralDataSet { full, slow: None, grid_step_arcsec: None, rows: samples, repeated_share: 0.0 }
     }
 
-    fn tried(noise: Noise, courses: Vec<CourseIn>, parameters: usize, spectra: &SpectralDataSet) -> Tried {
+    fn tried(
+        noise: Noise,
+        courses: Vec<MeanTerm>,
+        parameters: usize,
+        spectra: &SpectralDataSet,
+    ) -> FittedHypothesis {
         let mut hypothesis = Hypothesis { noise, courses };
         let kept = hypothesis.clone();
         let fit = fit(&mut hypothesis, &spectra.full);
-        Tried { hypothesis: kept, fit, parameters, odds: vec![] }
+        FittedHypothesis { hypothesis: kept, fit, parameters, odds: vec![] }
     }
 
     /// A Markov process of known size against flicker: as many records of the length found, drawn and fitted anew with
@@ -215,14 +220,14 @@ mod tests {
         let spectra = spectra(8192);
         let with = |kind: &str, fitted: Vec<f64>| {
             let mut noise = white();
-            noise.spectra.push(SpectrumIn { effect: find(kind).unwrap(), fitted, stated: false });
+            noise.spectra.push(SpectralTerm { effect: find(kind).unwrap(), fitted, stated: false });
             noise
         };
         // A correlation time of 60 s, a third of the noise of a sample.
         let markov = tried(with("markov_long", vec![60.0, 0.08]), vec![], 2, &spectra);
-        let mut freed = with("excess_flicker", vec![0.1]);
-        (freed.base[1], freed.freed[1]) = (0.1, true);
-        let flicker = tried(freed, vec![], 1, &spectra);
+        let mut unconstrained = with("excess_flicker", vec![0.1]);
+        (unconstrained.base[1], unconstrained.unconstrained[1]) = (0.1, true);
+        let flicker = tried(unconstrained, vec![], 1, &spectra);
         let times = processes(&markov, &flicker, &spectra).unwrap();
         assert!((1.0..=MAX_TIMES_LONGER).contains(&times), "{times}");
         let decided = |times: f64| {
@@ -241,11 +246,11 @@ mod tests {
                             s * ChiSquared::new(dof).unwrap().sample(&mut rng) / dof
                         })
                         .collect();
-                    let fitted = |t: &Tried| {
+                    let fitted = |t: &FittedHypothesis| {
                         let mut noise = t.hypothesis.noise.clone();
                         noise_fit::fit(&mut noise, &spectral, &drawn).log_likelihood
                     };
-                    2.0 * (fitted(&markov) - fitted(&flicker)) + price >= ENOUGH
+                    2.0 * (fitted(&markov) - fitted(&flicker)) + price >= MIN_DELTA_BIC
                 })
                 .count()
         };
@@ -257,7 +262,7 @@ mod tests {
     #[test]
     fn the_distance_of_courses_gives_the_length() {
         let spectra = spectra(4096);
-        let course = |kind: &str, nonlinear_parameters: Vec<f64>, coefficients: Vec<f64>| CourseIn {
+        let course = |kind: &str, nonlinear_parameters: Vec<f64>, coefficients: Vec<f64>| MeanTerm {
             effect: find(kind).unwrap(),
             nonlinear_parameters,
             coefficients,

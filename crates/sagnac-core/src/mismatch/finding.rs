@@ -1,4 +1,4 @@
-//! What an explanation says, as `explain.json` has it.
+//! The result of an explanation, as `explain.json` has it.
 
 use super::noticeable_record::{NotComputed, NoticeableSize};
 use crate::effect::{Domain, Place, UNKNOWN, find};

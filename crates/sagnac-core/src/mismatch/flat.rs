@@ -1,45 +1,47 @@
 //! The residual of a hypothesis in single samples.
 
 use super::departures::White;
+use super::fitted_hypothesis::FittedHypothesis;
 use super::problem::Problem;
-use super::tried::Tried;
 use crate::effect::FlatResidual;
 use crate::numeric::cosine::{dct2, inverse_dct2};
 use crate::numeric::order::SortNumbers;
 use crate::numeric::order::{NORMAL_MEDIAN, upper_median};
 
 /// Samples on either side of a running median: courses slower than this are none of a burst.
-const SLOW: usize = 64;
+const MEDIAN_HALF_WIDTH: usize = 64;
 /// Modes on either side over which the own spectrum is averaged where it stands out, and elsewhere: a narrow average
 /// follows chance, and dividing by it would smear what happens in time.
-const NARROW: usize = 12;
-const WIDE: usize = 250;
+const NARROW_MODES: usize = 12;
+const WIDE_MODES: usize = 250;
 /// Power of a narrow average over a wide one within which the wide one is taken.
-const EVEN: (f64, f64) = (0.4, 2.0);
+const EVEN_POWER_RATIOS: (f64, f64) = (0.4, 2.0);
 /// Levelled power from which the ends of the record show the leakage of cosine modes, and how far.
-const STRONG: f64 = 8.0;
-const ENDS: usize = 64;
+const LEAKAGE_POWER: f64 = 8.0;
+const LEAKAGE_SAMPLES: usize = 64;
 
 /// The residual of a fitted hypothesis in single samples, whitened and with its own spectrum levelled, so that what a wrong
 /// spectrum or a missing course leaves is not taken for an effect on samples.
-pub fn flat<'a>(tried: &Tried, problem: &'a Problem) -> FlatResidual<'a> {
+pub fn flat<'a>(tried: &FittedHypothesis, problem: &'a Problem) -> FlatResidual<'a> {
     let white = White::of(tried, &problem.spectra);
-    let slow = running_median(&white.series, SLOW);
+    let slow = running_median(&white.series, MEDIAN_HALF_WIDTH);
     let fast: Vec<f64> = white.series.iter().zip(&slow).map(|(e, s)| e - s).collect();
     // Few large values must not be what the spectrum is levelled by.
     let bound = 4.0 * deviation(&fast);
     let clipped: Vec<f64> = fast.iter().map(|e| e.clamp(-bound, bound)).collect();
     let squares: Vec<f64> = dct2(&clipped).iter().map(|u| u * u).collect();
-    let (narrow, wide) = (smooth(&squares, NARROW), smooth(&squares, WIDE));
-    let even = |(p, w): (&f64, &f64)| if *p > EVEN.0 * w && *p < EVEN.1 * w { *w } else { *p };
+    let (narrow, wide) = (smooth(&squares, NARROW_MODES), smooth(&squares, WIDE_MODES));
+    let even = |(p, w): (&f64, &f64)| {
+        if *p > EVEN_POWER_RATIOS.0 * w && *p < EVEN_POWER_RATIOS.1 * w { *w } else { *p }
+    };
     let powers: Vec<f64> = narrow.iter().zip(&wide).map(even).collect();
     let level = upper_median(&mut powers.clone());
-    let strong = powers.iter().any(|p| *p > STRONG * level);
+    let strong = powers.iter().any(|p| *p > LEAKAGE_POWER * level);
     let modes: Vec<f64> = dct2(&fast).iter().zip(&powers).map(|(u, p)| u / p.max(1e-12).sqrt()).collect();
     let n = modes.len().max(2);
     let gains = white.roots.iter().zip(&powers).skip(1).map(|(r, p)| 1.0 / (r * p.max(1e-12).sqrt()));
     let per_deg_h = gains.sum::<f64>() / (n - 1) as f64;
-    let ends = if strong { ENDS.min(n / 16) } else { 0 };
+    let ends = if strong { LEAKAGE_SAMPLES.min(n / 16) } else { 0 };
     let step = problem.spectra.grid_step_arcsec.map_or(0.0, |a| a / problem.drivers.dt_s * per_deg_h);
     FlatResidual {
         white: white.series,

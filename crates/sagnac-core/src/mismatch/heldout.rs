@@ -1,19 +1,19 @@
 //! Held-out figures: ten blocks of equal time, the parameters from blocks 1, 3, 5, 7, 9, judged on 2, 4, 6, 8, 10. The
 //! likelihood of each block is that about its own mean, the rms is about the mean of all that are held out.
 
+use super::fitted_hypothesis::FittedHypothesis;
 use super::hypothesis::{Hypothesis, LeastSquares, PartModes, columns, fit, kept, less_fixed, part_modes};
 use super::noise_fit::whittle;
 use super::nonlinear_search::LocalSearch;
 use super::problem::Problem;
 use super::spectral_data::SpectralData;
-use super::tried::Tried;
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::least_squares::{Normal, subtract};
 
 /// Blocks.
-const BLOCKS: usize = 10;
+const HELD_OUT_BLOCKS: usize = 10;
 /// Bins of the held-out residual in a block.
-const BINS: usize = 200;
+const BLOCK_BINS: usize = 200;
 
 /// Figures of one hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,9 +36,9 @@ pub struct Halves {
 impl Halves {
     /// Cuts a problem.
     pub fn new(problem: &Problem) -> Halves {
-        let length = problem.drivers.samples / BLOCKS;
+        let length = problem.drivers.samples / HELD_OUT_BLOCKS;
         let spectral = |odd: usize| {
-            let blocks = (0..BLOCKS).filter(|b| b % 2 == odd).map(|b| b * length).collect();
+            let blocks = (0..HELD_OUT_BLOCKS).filter(|b| b % 2 == odd).map(|b| b * length).collect();
             let drivers = problem.drivers.clone();
             let deviations = problem.deviations();
             SpectralData::of_blocks(drivers, &problem.residual, &deviations, blocks, length)
@@ -46,7 +46,7 @@ impl Halves {
         };
         let test = spectral(1);
         let means = test.block_means(&problem.residual);
-        Halves { train: spectral(0), test, means, bin: (length / BINS).max(1) }
+        Halves { train: spectral(0), test, means, bin: (length / BLOCK_BINS).max(1) }
     }
 
     /// Length of the bins, s.
@@ -55,7 +55,7 @@ impl Halves {
     }
 
     /// Fits a hypothesis to one half, beginning from its fit to everything, and judges it on the other.
-    pub fn judge(&self, tried: &Tried) -> HeldOut {
+    pub fn judge(&self, tried: &FittedHypothesis) -> HeldOut {
         let mut hypothesis = tried.hypothesis.clone();
         refine_shapes(&mut hypothesis, &self.train);
         let trained = fit(&mut hypothesis, &self.train);
@@ -100,11 +100,11 @@ impl Halves {
 /// The coefficients that the training half knows. One whose column it hardly holds, as of a step in a block held out, is
 /// taken for nothing.
 fn known(trained: &LeastSquares, whole: &LeastSquares) -> Vec<f64> {
-    const HARDLY: f64 = 1e3;
+    const MAX_DEVIATION_RATIO: f64 = 1e3;
     let deviation =
         |fit: &LeastSquares, i: usize| fit.covariance.get((i, i)).map_or(0.0, |v| v.max(0.0).sqrt());
     let one = |(i, c): (usize, &f64)| {
-        let told = deviation(trained, i) <= HARDLY * deviation(whole, i);
+        let told = deviation(trained, i) <= MAX_DEVIATION_RATIO * deviation(whole, i);
         if told && c.is_finite() { *c } else { 0.0 }
     };
     trained.coefficients.iter().enumerate().map(one).collect()
@@ -126,10 +126,10 @@ fn refine_shapes(hypothesis: &mut Hypothesis, spectral: &SpectralData) {
             let data = less_fixed(spectral, parts());
             -0.5 * Normal::new(&columns(&nuisances, parts()), &data, &powers).solve().2
         };
-        const EVALUATIONS: usize = 40;
+        const MAX_EVALUATIONS: usize = 40;
         let start = &hypothesis.courses[i].nonlinear_parameters;
         let local = LocalSearch::of(course, &spectral.drivers);
-        let (nonlinear_parameters, _) = local.refine(start, EVALUATIONS, gain);
+        let (nonlinear_parameters, _) = local.refine(start, MAX_EVALUATIONS, gain);
         hypothesis.courses[i].nonlinear_parameters = nonlinear_parameters;
     }
 }

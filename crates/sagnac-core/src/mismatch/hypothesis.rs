@@ -3,7 +3,7 @@
 
 use super::noise_fit::{self, Noise, NoiseFit};
 use super::spectral_data::{NuisanceColumn, SpectralData};
-use super::terms::CourseIn;
+use super::terms::MeanTerm;
 use crate::effect::{MeanModel, Regressors, Resolution, averages};
 use crate::numeric::least_squares::{Normal, subtract};
 use crate::numeric::parallel;
@@ -16,7 +16,7 @@ pub struct Hypothesis {
     /// Noise.
     pub noise: Noise,
     /// Courses.
-    pub courses: Vec<CourseIn>,
+    pub courses: Vec<MeanTerm>,
 }
 
 /// Cosine modes of the parts of a course.
@@ -59,7 +59,7 @@ impl PartModes {
     }
 }
 
-/// What generalised least squares gave.
+/// Result of generalised least squares.
 #[derive(Debug, Clone)]
 pub struct LeastSquares {
     /// Coefficients: nuisances, then of each course its free and its beside columns.
@@ -86,14 +86,14 @@ pub struct Fit {
 }
 
 impl Fit {
-    /// The same with so much more log-likelihood: stands for a fit that is not worth making.
+    /// The same with so much more log-likelihood: stands for a fit that would not change the decision.
     pub fn raised(&self, gain: f64) -> Fit {
         Fit { log_likelihood: self.log_likelihood + gain, ..self.clone() }
     }
 }
 
 /// Nuisance columns that keep their prior under the courses of a hypothesis.
-pub fn kept<'a>(spectral: &'a SpectralData, courses: &[CourseIn]) -> Vec<&'a NuisanceColumn> {
+pub fn kept<'a>(spectral: &'a SpectralData, courses: &[MeanTerm]) -> Vec<&'a NuisanceColumn> {
     let replaced: Vec<_> = courses.iter().filter_map(|c| c.course()?.replaces()).collect();
     spectral.nuisances.iter().filter(|n| !replaced.contains(&n.nuisance)).collect()
 }
@@ -156,8 +156,8 @@ pub fn residual(spectral: &SpectralData, hypothesis: &Hypothesis, mean: &LeastSq
 }
 
 /// Modes of every course of a hypothesis.
-pub fn part_modes(spectral: &SpectralData, courses: &[CourseIn]) -> Vec<PartModes> {
-    let one = |c: &CourseIn| {
+pub fn part_modes(spectral: &SpectralData, courses: &[MeanTerm]) -> Vec<PartModes> {
+    let one = |c: &MeanTerm| {
         c.course().map(|x| PartModes::of_shape(x, &c.nonlinear_parameters, spectral)).unwrap_or_default()
     };
     courses.iter().map(one).collect()
@@ -168,7 +168,7 @@ pub fn part_modes(spectral: &SpectralData, courses: &[CourseIn]) -> Vec<PartMode
 pub fn part_modes_of_averages(
     spectral: &SpectralData,
     full: &SpectralData,
-    courses: &[CourseIn],
+    courses: &[MeanTerm],
 ) -> Vec<PartModes> {
     let samples_each = spectral.drivers.averaged / full.drivers.averaged.max(1);
     let averaged = |column: Vec<f64>| {
@@ -177,7 +177,7 @@ pub fn part_modes_of_averages(
         means
     };
     let all = |columns: Vec<Vec<f64>>| columns.into_iter().map(averaged).collect();
-    let one = |c: &CourseIn| {
+    let one = |c: &MeanTerm| {
         let Some(course) = c.course() else { return PartModes::default() };
         let parts = match course.resolution() {
             Resolution::Averaged => course.regressors(&c.nonlinear_parameters, &spectral.drivers),
@@ -254,11 +254,11 @@ mod tests {
             claimed: base,
             deviation: [0.0; 3],
             bound: [0.0; 3],
-            freed: [false; 3],
+            unconstrained: [false; 3],
             quantization_arcsec: 0.0,
             spectra: vec![],
         };
-        let ramp = CourseIn {
+        let ramp = MeanTerm {
             effect: find("rate_ramp").unwrap(),
             nonlinear_parameters: vec![],
             coefficients: vec![],

@@ -14,9 +14,9 @@ use crate::noise::model::NoiseModel;
 use crate::series::Series;
 
 /// Fewest rows from which a claim is identified.
-const FEWEST: usize = 256;
+const MIN_ROWS: usize = 256;
 /// Rounds of mean and noise.
-const ROUNDS: u64 = 2;
+const MEAN_NOISE_ROUNDS: u64 = 2;
 
 /// Identifies a claim from a recording.
 ///
@@ -24,11 +24,12 @@ const ROUNDS: u64 = 2;
 /// Fails when the recording is too short, or when all its samples are equal.
 pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<Claim, Note> {
     let rows = series.rate_deg_h.len();
-    if rows < FEWEST {
-        return Err(Note::new("explain.error.short").with("rows", rows).with("needed", FEWEST));
+    if rows < MIN_ROWS {
+        return Err(Note::new("explain.error.short").with("rows", rows).with("needed", MIN_ROWS));
     }
-    let mut step =
-        |done| progress(Progress { doing: "explain.progress.identifying", done, total: 2 * ROUNDS });
+    let mut step = |done| {
+        progress(Progress { doing: "explain.progress.identifying", done, total: 2 * MEAN_NOISE_ROUNDS })
+    };
     step(0);
     let columns = mean::Columns::new(series);
     let mut fitted = columns.fit(series, None);
@@ -37,13 +38,13 @@ pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<C
         return Err("explain.error.no_noise".into());
     }
     let mut found = noise::identify(series, &fitted.residual);
-    for round in 1..ROUNDS {
+    for round in 1..MEAN_NOISE_ROUNDS {
         step(2 * round);
         fitted = columns.fit(series, Some(&found.composite));
         step(2 * round + 1);
         found = noise::identify(series, &fitted.residual);
     }
-    step(2 * ROUNDS);
+    step(2 * MEAN_NOISE_ROUNDS);
     let [n, b, k, q] = [found.n, found.b, found.k, found.q];
     if [n, b, k, q].iter().all(|c| c.value <= 0.0 && c.at_most <= 0.0) {
         return Err("explain.error.no_noise".into());
@@ -51,15 +52,15 @@ pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<C
     Ok(claim(series, &fitted, &found))
 }
 
-/// Whether a residual holds more than what rounding in the last digits of the arithmetic leaves.
+/// True for a residual beyond the rounding of the arithmetic.
 fn has_noise(series: &Series, residual: &[f64]) -> bool {
-    const ROUNDING: f64 = 1e-11;
+    const ROUNDING_SHARE: f64 = 1e-11;
     let largest = |values: &[f64]| values.iter().fold(0.0f64, |m, v| m.max(v.abs()));
     let columns = series.columns.get(&Column::TableRate).map_or(0.0, |rate| 3600.0 * largest(rate));
-    largest(residual) > ROUNDING * largest(&series.rate_deg_h).max(columns)
+    largest(residual) > ROUNDING_SHARE * largest(&series.rate_deg_h).max(columns)
 }
 
-fn claim(series: &Series, mean: &mean::Fitted, noise: &noise::Found) -> Claim {
+fn claim(series: &Series, mean: &mean::FittedMean, noise: &noise::FittedNoise) -> Claim {
     let [n, b, k, q] = [noise.n, noise.b, noise.k, noise.q];
     // No claim states a deviation beyond this: it knows nothing of the value.
     let deviation = |d: f64| if d.is_finite() { d.min(1e6) } else { 1e6 };

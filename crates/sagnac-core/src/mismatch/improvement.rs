@@ -1,4 +1,4 @@
-//! What adding an effect improves: held-out likelihood, and the share of the misfit that goes.
+//! The improvement by an effect: held-out likelihood, and the share of the misfit that it removes.
 
 use super::heldout::Halves;
 use super::hypothesis::Fit;
@@ -71,7 +71,7 @@ mod tests {
                 claimed: base,
                 bound: [0.0; 3],
                 deviation: [0.0; 3],
-                freed: [false; 3],
+                unconstrained: [false; 3],
                 quantization_arcsec: 0.0,
                 spectra: vec![],
             };

@@ -13,7 +13,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 use sagnac_fft::real_forward;
 
 /// Steps of the conjugate gradients.
-const STEPS: usize = 40;
+const MAX_STEPS: usize = 40;
 /// Missing values up to which the equations are solved at once.
 const MAX_EXACT: usize = 600;
 
@@ -58,7 +58,7 @@ pub fn expect(values: &mut [f64], present: &[bool], powers: &[f64]) {
     let mut square: f64 = residual.iter().map(|r| r * r).sum();
     let first = square;
     let mut full = vec![0.0; values.len()];
-    for _ in 0..STEPS {
+    for _ in 0..MAX_STEPS {
         if square <= 1e-16 * first || square == 0.0 {
             break;
         }

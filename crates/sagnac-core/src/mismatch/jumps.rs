@@ -2,15 +2,15 @@
 
 use super::departures::White;
 use super::finding::ShapeRecord;
+use super::fitted_hypothesis::FittedHypothesis;
 use super::hypothesis::{kept, part_modes};
-use super::named::{Found, Named, worth};
+use super::named::{NamedEffect, SampleFindings, significant_delta_bic};
 use super::noise_fit::{self, Noise};
 use super::options::Options;
 use super::problem::Problem;
 use super::samples::with_free_level;
 use super::select::{self, Selection, Slot};
-use super::terms::SpectrumIn;
-use super::tried::Tried;
+use super::terms::SpectralTerm;
 use crate::effect::{
     Background, Detector, EFFECTS, Effect, JumpDetector, Jumps, Model, Pulses, SpectralContext, Spectrum,
     SpectrumAct,
@@ -21,18 +21,18 @@ use crate::effect::{
 const LEAST_GAIN: f64 = 8.0;
 
 /// Jumps in the residual of a hypothesis.
-pub fn jumps(detector: &dyn JumpDetector, problem: &Problem, tried: &Tried) -> Option<Jumps> {
+pub fn jumps(detector: &dyn JumpDetector, problem: &Problem, tried: &FittedHypothesis) -> Option<Jumps> {
     let (gain, noise) = rival(problem, tried, |s| s.is_relaxation()).filter(|r| r.0 >= LEAST_GAIN)?;
     let rival_gain = || {
         gain.max(rival(problem, tried, |s| !s.is_relaxation()).map_or(0.0, |r| r.0))
-            .max(freed(problem, tried))
+            .max(unconstrained(problem, tried))
             .max(line(problem, tried))
     };
     detector.find(&background(problem, tried, &noise), &rival_gain)
 }
 
 /// A record before a hypothesis with another noise.
-fn background<'a>(problem: &'a Problem, tried: &Tried, noise: &Noise) -> Background<'a> {
+fn background<'a>(problem: &'a Problem, tried: &FittedHypothesis, noise: &Noise) -> Background<'a> {
     let spectral = &problem.spectra.full;
     let courses = &tried.hypothesis.courses;
     let mut columns: Vec<(Vec<f64>, f64)> =
@@ -53,7 +53,11 @@ fn background<'a>(problem: &'a Problem, tried: &Tried, noise: &Noise) -> Backgro
 }
 
 /// Gain of the best spectral effect that is `wanted`, and the noise beside it.
-fn rival(problem: &Problem, tried: &Tried, wanted: impl Fn(&dyn Spectrum) -> bool) -> Option<(f64, Noise)> {
+fn rival(
+    problem: &Problem,
+    tried: &FittedHypothesis,
+    wanted: impl Fn(&dyn Spectrum) -> bool,
+) -> Option<(f64, Noise)> {
     let spectral = &problem.spectra.full;
     let observed = &tried.fit.observed;
     let before = tried.fit.noise.log_likelihood;
@@ -73,7 +77,7 @@ fn rival(problem: &Problem, tried: &Tried, wanted: impl Fn(&dyn Spectrum) -> boo
         for start in spectrum.starts(&context) {
             let mut noise = tried.hypothesis.noise.clone();
             let fitted = start.iter().zip(&bounds).map(|(x, b)| b.clamp(*x)).collect();
-            noise.spectra.push(SpectrumIn { effect: *effect, fitted, stated: false });
+            noise.spectra.push(SpectralTerm { effect: *effect, fitted, stated: false });
             let gain = noise_fit::fit(&mut noise, spectral, observed).log_likelihood - before;
             if best.as_ref().is_none_or(|b| gain > b.0) {
                 noise.spectra.pop();
@@ -84,8 +88,8 @@ fn rival(problem: &Problem, tried: &Tried, wanted: impl Fn(&dyn Spectrum) -> boo
     best
 }
 
-/// Gain of flicker or random walk set free.
-fn freed(problem: &Problem, tried: &Tried) -> f64 {
+/// Gain of an unconstrained flicker or random walk.
+fn unconstrained(problem: &Problem, tried: &FittedHypothesis) -> f64 {
     let spectral = &problem.spectra.full;
     let observed = &tried.fit.observed;
     let mut best = 0.0f64;
@@ -94,7 +98,7 @@ fn freed(problem: &Problem, tried: &Tried) -> f64 {
             let mut noise = tried.hypothesis.noise.clone();
             let beside = (noise.base[0] * 0.01).max(1e-9);
             noise.base[i] = noise.base[i].max(beside) * level;
-            noise.freed[i] = true;
+            noise.unconstrained[i] = true;
             let fitted = noise_fit::fit(&mut noise, spectral, observed).log_likelihood;
             best = best.max(fitted - tried.fit.noise.log_likelihood);
         }
@@ -104,7 +108,7 @@ fn freed(problem: &Problem, tried: &Tried) -> f64 {
 
 /// Gain of the best line: half the power of the whitened residual in a pair of neighbouring modes, which hold nearly
 /// all of a line.
-fn line(problem: &Problem, tried: &Tried) -> f64 {
+fn line(problem: &Problem, tried: &FittedHypothesis) -> f64 {
     let white = White::of(tried, &problem.spectra);
     white.modes.windows(4).map(|w| 0.5 * w.iter().map(|u| u * u).sum::<f64>()).fold(0.0, f64::max)
 }
@@ -115,7 +119,7 @@ struct Weighed {
     delta_bic: f64,
     /// True when nothing else explains nearly as much.
     told: bool,
-    /// What the selection gains on the same hypothesis.
+    /// Gain of the selection on the same hypothesis.
     rival: f64,
     /// The process that the selection has in their place.
     instead: Option<&'static str>,
@@ -126,7 +130,7 @@ struct Weighed {
 fn weighed(
     detector: &dyn JumpDetector,
     problem: &Problem,
-    start: &Tried,
+    start: &FittedHypothesis,
     selection: &Selection,
     alpha: f64,
 ) -> Option<Weighed> {
@@ -134,13 +138,13 @@ fn weighed(
     let several = selection.chosen.len() > 1;
     let processes = selection.chosen.iter().filter(|c| several && matches!(c.slot, Slot::Spectrum(_)));
     let single = selection.chosen.iter().find(|_| !several).map(|c| c.effect.kind());
-    let grounds =
+    let baselines =
         std::iter::once((start, single)).chain(processes.map(|c| (&c.without, Some(c.effect.kind()))));
-    let judged = grounds.filter_map(|(tried, instead)| {
+    let judged = baselines.filter_map(|(tried, instead)| {
         let jumps = jumps(detector, problem, tried).filter(|j| j.resolved)?;
         let (gain, parameters) = (jumps.detection.gain, jumps.detection.parameters);
-        let delta_bic = worth(gain, parameters, jumps.chance, rows, alpha)?;
-        let told = worth(gain, parameters, jumps.detection.p_value, rows, alpha).is_some();
+        let delta_bic = significant_delta_bic(gain, parameters, jumps.chance, rows, alpha)?;
+        let told = significant_delta_bic(gain, parameters, jumps.detection.p_value, rows, alpha).is_some();
         let rival = tried.bic(rows) - selection.best.bic(rows);
         Some(Weighed { jumps, delta_bic, told, rival, instead })
     });
@@ -148,8 +152,8 @@ fn weighed(
 }
 
 /// The claim's own fit where it states jumps without saying when: they are taken out where they are found as they are
-/// stated, and stand as the process that has their spectrum where they cannot be told one by one.
-pub(super) fn with_stated_jumps(problem: &mut Problem, alpha: f64) -> Tried {
+/// stated, and stand as the process that has their spectrum where they cannot be resolved one by one.
+pub(super) fn with_stated_jumps(problem: &mut Problem, alpha: f64) -> FittedHypothesis {
     let base = problem.baseline();
     let Some((detector, stated)) = problem.stated_jumps() else { return base };
     let Some((effect, fitted)) = detector.process(stated) else { return base };
@@ -160,7 +164,7 @@ pub(super) fn with_stated_jumps(problem: &mut Problem, alpha: f64) -> Tried {
             problem.take(&jumps.course);
             problem.baseline()
         }
-        None => problem.baseline_with(Some(SpectrumIn { effect, fitted, stated: true })),
+        None => problem.baseline_with(Some(SpectralTerm { effect, fitted, stated: true })),
     }
 }
 
@@ -168,9 +172,9 @@ pub(super) fn with_stated_jumps(problem: &mut Problem, alpha: f64) -> Tried {
 /// equivalent.
 pub(super) fn take_jumps(
     problem: &mut Problem,
-    start: &Tried,
+    start: &FittedHypothesis,
     selection: &mut Selection,
-    found: &mut Found,
+    found: &mut SampleFindings,
     options: &Options,
 ) {
     for effect in EFFECTS {
@@ -184,7 +188,7 @@ pub(super) fn take_jumps(
     }
 }
 
-/// What pulses look like, for a report.
+/// Shape of pulses, for a report.
 fn pulses_shape(pulses: &Pulses, jumps: &Jumps) -> ShapeRecord {
     let square = jumps.course.iter().map(|c| c * c).sum::<f64>() / jumps.course.len().max(1) as f64;
     ShapeRecord {
@@ -199,14 +203,14 @@ fn take(
     effect: &'static dyn Effect,
     weighed: Weighed,
     problem: &mut Problem,
-    start: &Tried,
+    start: &FittedHypothesis,
     selection: &mut Selection,
-    found: &mut Found,
+    found: &mut SampleFindings,
     options: &Options,
 ) {
     let Weighed { jumps, delta_bic, told, rival, instead } = weighed;
     if !told || delta_bic < rival {
-        if delta_bic > rival - select::ENOUGH && jumps.pulses.is_none() {
+        if delta_bic > rival - select::MIN_DELTA_BIC && jumps.pulses.is_none() {
             let replaced = selection.chosen.iter_mut().find(|c| Some(c.effect.kind()) == instead);
             replaced.into_iter().for_each(|c| c.beside = Some(effect.kind()));
         }
@@ -214,12 +218,13 @@ fn take(
     }
     problem.take(&jumps.course);
     let mut base = problem.baseline();
-    if start.hypothesis.noise.freed[0] {
+    if start.hypothesis.noise.unconstrained[0] {
         base = with_free_level(&base, problem);
     }
-    let equivalents = instead.filter(|_| delta_bic < rival + select::ENOUGH).into_iter().collect();
+    let equivalents = instead.filter(|_| delta_bic < rival + select::MIN_DELTA_BIC).into_iter().collect();
     let shape = jumps.pulses.map(|pulses| pulses_shape(&pulses, &jumps));
-    let named = Named { equivalents, shape, ..Named::detected(effect, &jumps.detection, delta_bic) };
+    let named =
+        NamedEffect { equivalents, shape, ..NamedEffect::detected(effect, &jumps.detection, delta_bic) };
     found.gained_in_fit += base.fit.log_likelihood - start.fit.log_likelihood;
     found.named.push(named);
     found.take(jumps.course);

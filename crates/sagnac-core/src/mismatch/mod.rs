@@ -7,19 +7,19 @@
 //! |---|---|
 //! | rows on the grid of the claim, rounding, averages | `regular`, `quantization_grid`, `coarse` |
 //! | residual in cosine modes, missing samples imputed | `spectral_data`, `impute` |
-//! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `tried`, `problem` |
+//! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `fitted_hypothesis`, `problem` |
 //! | tests that name no physics | `departures` |
 //! | every effect tried as an addition | `nonlinear_search`, `candidates`, `filtered` |
-//! | what is predicted of blocks that are held out | `heldout`, `prediction` |
-//! | the fewest effects that explain the recording, and how probable their names are | `select`, `posterior` |
+//! | prediction of blocks that are held out | `heldout`, `prediction` |
+//! | the fewest effects that explain the recording, and the probabilities of their names | `select`, `posterior` |
 //! | effects on single samples, by their detectors | `flat`, `samples`, `jumps` |
-//! | parameters with intervals, what effects add, what they improve | `estimates`, `contribution`, `improvement` |
-//! | what became of each column | `columns` |
+//! | parameters with intervals, contributions and improvements of effects | `estimates`, `contribution`, `improvement` |
+//! | status of each column | `columns` |
 //! | sizes of effects that would have been noticed | `noticeable_record`, `noticeable` |
 //! | causes, equivalents, the augmented claim, figures | `single_cause`, `unnamed`, `experiment`, `alternatives`, `augmented`, `draw`, `figures`, `assemble` |
 //! | all of it in order | `engine` |
-//! | several recordings of one unit, with what they share | `joint` |
-//! | a claim from a simulated recording, and what that recording shows itself | `identify`, `witness`, `taken` |
+//! | several recordings of one unit, with the laws that they share | `joint` |
+//! | a claim from a simulated recording, and the effects that this recording shows itself | `identify`, `simulation_check`, `simulation_claim` |
 
 mod alternatives;
 mod assemble;
@@ -36,6 +36,7 @@ pub(crate) mod experiment;
 pub mod figures;
 pub mod filtered;
 pub mod finding;
+pub mod fitted_hypothesis;
 pub mod flat;
 mod heldout;
 pub mod hypothesis;
@@ -58,18 +59,17 @@ pub mod quantization_grid;
 pub mod regular;
 pub mod samples;
 pub mod select;
+mod simulation_check;
+mod simulation_claim;
 mod single_cause;
 pub mod spectral_data;
-mod taken;
 pub mod terms;
-pub mod tried;
 mod unnamed;
 mod usable;
-mod witness;
 
 pub use alternatives::Alternative;
 pub use engine::explain;
 pub use identify::identify;
 pub use options::{Options, Progress};
 pub use outcome::Outcome;
-pub use taken::{Taken, explain_simulation};
+pub use simulation_claim::{SimulationClaim, explain_simulation};

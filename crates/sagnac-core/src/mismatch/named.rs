@@ -4,14 +4,14 @@ use super::estimates::Estimated;
 use super::finding::{ParameterValue, ShapeRecord};
 use super::improvement::Improvement;
 use super::posterior::Probable;
-use super::select::ENOUGH;
+use super::select::MIN_DELTA_BIC;
 use crate::effect::{Detection, Effect, Place, Value};
 
 /// Effects that are counted as looked for in single samples.
-pub const FAMILY: f64 = 40.0;
+pub const SAMPLE_EFFECTS: f64 = 40.0;
 
 /// An effect that was named, however it was found.
-pub struct Named {
+pub struct NamedEffect {
     /// The effect that gives it its name.
     pub effect: &'static dyn Effect,
     /// The effect that a claim states it as: another one for a response that is named by its leading law.
@@ -20,25 +20,25 @@ pub struct Named {
     pub estimated: Estimated,
     /// Kinds that would have served as well.
     pub equivalents: Vec<&'static str>,
-    /// How probable each name is; empty for an effect that its detector found.
+    /// Probability of each name; empty for an effect that its detector found.
     pub names: Vec<Probable>,
-    /// Where, principal first.
+    /// Intervals in which it shows, principal one first.
     pub places: Vec<Place>,
     /// BIC without it less BIC with it.
     pub delta_bic: f64,
     /// Probability without it, everything counted.
     pub p_value: f64,
-    /// What it improves, where the fit in cosine modes tells.
+    /// Its improvement, where the fit in cosine modes determines it.
     pub improvement: Option<Improvement>,
     /// Gain of log-likelihood that the fit in cosine modes does not hold.
     pub local_gain: f64,
-    /// What a course looks like that was found and is of no kind.
+    /// Shape of a course that was found and is of no kind.
     pub shape: Option<ShapeRecord>,
 }
 
-impl Named {
+impl NamedEffect {
     /// An effect as its detector found it.
-    pub fn detected(effect: &'static dyn Effect, found: &Detection, delta_bic: f64) -> Named {
+    pub fn detected(effect: &'static dyn Effect, found: &Detection, delta_bic: f64) -> NamedEffect {
         let value = |r: &crate::effect::Reported| {
             let value = ParameterValue { value: r.value, unit: r.unit.to_owned(), ci95: r.ci95 };
             (r.name.to_owned(), value)
@@ -47,7 +47,7 @@ impl Named {
             Value::Text(text) => Some((name.clone(), text.clone())),
             _ => None,
         };
-        Named {
+        NamedEffect {
             effect,
             stated_as: effect,
             estimated: Estimated {
@@ -74,26 +74,32 @@ impl Named {
     }
 }
 
-/// Whether a gain is worth its parameters and is no chance. `family` counts the catalogue.
-pub fn worth(gain: f64, parameters: usize, p_value: f64, rows: usize, alpha: f64) -> Option<f64> {
+/// ΔBIC of a gain that pays for its parameters and is significant, all effects on samples counted; `None` for any other.
+pub fn significant_delta_bic(
+    gain: f64,
+    parameters: usize,
+    p_value: f64,
+    rows: usize,
+    alpha: f64,
+) -> Option<f64> {
     let delta_bic = 2.0 * gain - parameters as f64 * (rows as f64).ln();
-    (delta_bic >= ENOUGH && FAMILY * p_value < alpha).then_some(delta_bic)
+    (delta_bic >= MIN_DELTA_BIC && SAMPLE_EFFECTS * p_value < alpha).then_some(delta_bic)
 }
 
-/// What was found in single samples.
+/// Effects found in single samples.
 #[derive(Default)]
-pub struct Found {
-    /// What was named.
-    pub named: Vec<Named>,
+pub struct SampleFindings {
+    /// The effects with their names.
+    pub named: Vec<NamedEffect>,
     /// Deviation of the noise of each sample over that of the record.
     pub level: Option<Vec<f64>>,
-    /// What was taken out of the residual, deg/h.
+    /// Course that was subtracted from the residual, deg/h.
     pub taken: Option<Vec<f64>>,
-    /// What the fits without it gained, which counts it as known.
+    /// Gain of the fits without it, which counts it as known.
     pub gained_in_fit: f64,
 }
 
-impl Found {
+impl SampleFindings {
     /// Takes a course out of what is left to explain.
     pub fn take(&mut self, course: Vec<f64>) {
         match &mut self.taken {
@@ -115,17 +121,23 @@ mod tests {
     #[test]
     fn a_gain_must_pay_for_its_parameters_and_be_no_chance() {
         // 2 · 20 − 2 ln 1000 = 26.18.
-        let delta_bic = worth(20.0, 2, 1e-5, 1000, 0.01).unwrap();
+        let delta_bic = significant_delta_bic(20.0, 2, 1e-5, 1000, 0.01).unwrap();
         assert!((delta_bic - 26.184_489_442).abs() < 1e-6, "{delta_bic}");
         // 40 effects were looked for: 2.5e-4 is the 0.01 that was asked for.
-        assert!(worth(20.0, 2, 2.4e-4, 1000, 0.01).is_some() && worth(20.0, 2, 2.6e-4, 1000, 0.01).is_none());
+        assert!(
+            significant_delta_bic(20.0, 2, 2.4e-4, 1000, 0.01).is_some()
+                && significant_delta_bic(20.0, 2, 2.6e-4, 1000, 0.01).is_none()
+        );
         // 2 · 9.9 − 2 ln 1000 = 5.98 is less than 6.
-        assert!(worth(9.9, 2, 1e-9, 1000, 0.01).is_none() && worth(9.92, 2, 1e-9, 1000, 0.01).is_some());
+        assert!(
+            significant_delta_bic(9.9, 2, 1e-9, 1000, 0.01).is_none()
+                && significant_delta_bic(9.92, 2, 1e-9, 1000, 0.01).is_some()
+        );
     }
 
     #[test]
     fn what_was_taken_out_adds_up() {
-        let mut found = Found::default();
+        let mut found = SampleFindings::default();
         found.take(vec![1.0, 2.0]);
         found.take(vec![0.5, -2.0]);
         assert_eq!(found.taken, Some(vec![1.5, 0.0]));

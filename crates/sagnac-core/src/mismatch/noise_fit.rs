@@ -14,7 +14,7 @@
 //! bounded steps of variances and damped steps of logarithms, and be neither.
 
 use super::spectral_data::SpectralData;
-use super::terms::SpectrumIn;
+use super::terms::SpectralTerm;
 use crate::claim::Claim;
 use crate::effect::{ModeBin, Model, SpectralContext, SpectrumAct};
 use crate::noise::data::NoiseType;
@@ -23,7 +23,7 @@ use nalgebra::{DMatrix, DVector};
 
 /// Index of a base coefficient in arrays.
 pub fn base_index(term: NoiseType) -> Option<usize> {
-    super::spectral_data::BASE.iter().position(|t| *t == term)
+    super::spectral_data::BASE_TERMS.iter().position(|t| *t == term)
 }
 
 /// The noise of a hypothesis.
@@ -39,11 +39,11 @@ pub struct Noise {
     /// this deviation; 0 is exact.
     pub bound: [f64; 3],
     /// Set free by an effect.
-    pub freed: [bool; 3],
+    pub unconstrained: [bool; 3],
     /// Density of the claimed quantisation for Q = 1 times Q², by bin: Q, arcsec.
     pub quantization_arcsec: f64,
     /// Spectral effects, stated and found.
-    pub spectra: Vec<SpectrumIn>,
+    pub spectra: Vec<SpectralTerm>,
 }
 
 /// Which parameter.
@@ -60,7 +60,7 @@ pub enum Which {
 pub struct NoiseFit {
     /// Penalised log-likelihood without constants that are the same for all hypotheses.
     pub log_likelihood: f64,
-    /// What was fitted.
+    /// The fitted parameters.
     pub which: Vec<Which>,
     /// Covariance of the logarithms of those.
     pub covariance: DMatrix<f64>,
@@ -73,7 +73,7 @@ impl Noise {
         let base = [terms.n, terms.b, terms.k];
         let u = &claim.uncertainty;
         let spectra = claim.effects.iter().filter_map(|stated| match stated.effect.model() {
-            Model::Spectrum(s) => Some(SpectrumIn {
+            Model::Spectrum(s) => Some(SpectralTerm {
                 effect: stated.effect,
                 fitted: s.claimed_parameters(&stated.values)?,
                 stated: true,
@@ -85,13 +85,13 @@ impl Noise {
             claimed: base,
             deviation: [u.n_rel, u.b_rel, u.k_rel],
             bound: u.of_zero(),
-            freed: [false; 3],
+            unconstrained: [false; 3],
             quantization_arcsec: claim.quantization_lsb_arcsec / 12f64.sqrt(),
             spectra: vec![],
         };
         for stated in spectra {
-            let frees = stated.spectrum().map(|s| s.act());
-            match (frees, stated.fitted.first()) {
+            let act = stated.spectrum().map(|s| s.act());
+            match (act, stated.fitted.first()) {
                 (Some(SpectrumAct::Unconstrains(term)), Some(value)) => {
                     if let Some(i) = base_index(term) {
                         out.base[i] = *value;
@@ -105,28 +105,28 @@ impl Noise {
         out
     }
 
-    /// Where the fit of a stated coefficient begins: at its claim, or within its bound.
+    /// Value from which the fit of a claimed coefficient begins: its claim, or one within its bound.
     pub fn begin(&self, i: usize) -> f64 {
-        const WITHIN: f64 = 0.1;
-        if self.is_bound(i) { WITHIN * self.bound[i] } else { self.claimed[i] }
+        const BOUND_START_SHARE: f64 = 0.1;
+        if self.is_bound(i) { BOUND_START_SHARE * self.bound[i] } else { self.claimed[i] }
     }
 
-    /// Puts each coefficient that no effect has set free back to where its fit begins.
+    /// Puts each coefficient that no effect unconstrains back to where its fit begins.
     pub fn restate(&mut self) {
         for i in 0..3 {
-            if !self.freed[i] {
+            if !self.unconstrained[i] {
                 self.base[i] = self.begin(i);
             }
         }
     }
 
-    /// Whether a coefficient is claimed as 0 with a bound.
+    /// True for a coefficient that is claimed as 0 with a bound.
     fn is_bound(&self, i: usize) -> bool {
         self.claimed[i] <= 0.0 && self.bound[i] > 0.0
     }
 
     /// The effects that multiply the density of everything else.
-    pub fn filters(&self) -> impl Iterator<Item = &SpectrumIn> {
+    pub fn filters(&self) -> impl Iterator<Item = &SpectralTerm> {
         self.spectra.iter().filter(|s| s.spectrum().is_some_and(|x| x.act() == SpectrumAct::Filters))
     }
 
@@ -168,7 +168,7 @@ impl Noise {
         }
     }
 
-    /// What a part adds to what the claim states, (deg/h)²/Hz by bin: of a coefficient set free, what it exceeds the stated
+    /// Density that a part adds to the claim, (deg/h)²/Hz by bin: of an unconstrained coefficient, the excess over the claimed
     /// one by.
     pub fn added_densities(&self, index: usize, spectral: &SpectralData) -> Vec<f64> {
         let mut out = self.part_densities(index, spectral);
@@ -187,7 +187,7 @@ impl Noise {
         let base = (0..3)
             .filter(|i| {
                 let known = if self.is_bound(*i) { self.bound[*i] } else { self.deviation[*i] };
-                self.freed[*i] || (self.base[*i] > 0.0 && known > 0.0)
+                self.unconstrained[*i] || (self.base[*i] > 0.0 && known > 0.0)
             })
             .map(Which::Base);
         let effects = self.spectra.iter().enumerate().filter(|(_, s)| !s.stated).flat_map(|(e, s)| {
@@ -226,10 +226,10 @@ impl Noise {
     /// −½ Σ (ln c − ln c₀)²/σ² of the stated coefficients.
     pub fn prior(&self) -> f64 {
         let one = |i: usize| {
-            if self.is_bound(i) && !self.freed[i] {
+            if self.is_bound(i) && !self.unconstrained[i] {
                 return -0.5 * (self.base[i] / self.bound[i]).powi(2);
             }
-            if self.freed[i] || self.deviation[i] <= 0.0 || self.claimed[i] <= 0.0 {
+            if self.unconstrained[i] || self.deviation[i] <= 0.0 || self.claimed[i] <= 0.0 {
                 return 0.0;
             }
             -0.5 * ((self.base[i] / self.claimed[i]).ln() / self.deviation[i]).powi(2)
@@ -243,7 +243,7 @@ impl Noise {
             Which::Base(i) => {
                 let c = match self.claimed[i] {
                     claimed if claimed > 0.0 => claimed,
-                    _ if self.is_bound(i) && !self.freed[i] => self.bound[i],
+                    _ if self.is_bound(i) && !self.unconstrained[i] => self.bound[i],
                     _ => self.base[i].max(1e-30),
                 };
                 Bounds::new((c * 1e-4).ln(), (c * 1e4).ln())
@@ -264,14 +264,14 @@ pub fn whittle(spectral: &SpectralData, observed: &[f64], densities: &[f64]) -> 
 }
 
 /// Steps of a whole fit.
-const STEPS: usize = 40;
+const MAX_STEPS: usize = 40;
 
 /// Fits the noise to mean squares of modes, by bin.
 pub fn fit(noise: &mut Noise, spectral: &SpectralData, observed: &[f64]) -> NoiseFit {
-    fit_in(noise, spectral, observed, STEPS)
+    fit_in(noise, spectral, observed, MAX_STEPS)
 }
 
-/// As [`fit`], in so many steps at most: enough to tell which of several beginnings is worth more.
+/// As [`fit`], in so many steps at most: enough to find the better of several starting points.
 pub fn fit_in(noise: &mut Noise, spectral: &SpectralData, observed: &[f64], steps: usize) -> NoiseFit {
     let which = noise.which();
     let expected = noise.densities(spectral);
@@ -352,14 +352,14 @@ fn derivatives(
     }
     for (i, w) in which.iter().enumerate() {
         if let Which::Base(c) = *w
-            && !noise.freed[c]
+            && !noise.unconstrained[c]
             && noise.is_bound(c)
         {
             let square = (noise.base[c] / noise.bound[c]).powi(2);
             gradient[i] -= square;
             fisher[(i, i)] += 2.0 * square;
         } else if let Which::Base(c) = *w
-            && !noise.freed[c]
+            && !noise.unconstrained[c]
             && noise.deviation[c] > 0.0
         {
             let weight = noise.deviation[c].powi(-2);
@@ -380,15 +380,19 @@ fn derivatives(
 /// By differences to one side with a step that a rounded density bears and a narrow resonance does: what is compared with
 /// is at hand.
 fn log_slopes(noise: &Noise, which: &[Which], spectral: &SpectralData, densities: &[f64]) -> Vec<Vec<f64>> {
-    const STEP: f64 = 1e-5;
+    const DERIVATIVE_STEP: f64 = 1e-5;
     let filtered = noise.filters().next().is_some();
     // Of one part at a time.
     let mut alone: Option<(usize, Vec<f64>)> = None;
     let mut one = |which: Which| {
         let whole = || {
             let mut up = noise.clone();
-            up.set(which, noise.value(which) * STEP.exp());
-            up.densities(spectral).iter().zip(densities).map(|(a, b)| (a / b).ln() / STEP).collect()
+            up.set(which, noise.value(which) * DERIVATIVE_STEP.exp());
+            up.densities(spectral)
+                .iter()
+                .zip(densities)
+                .map(|(a, b)| (a / b).ln() / DERIVATIVE_STEP)
+                .collect()
         };
         if filtered {
             return whole();
@@ -410,9 +414,9 @@ fn log_slopes(noise: &Noise, which: &[Which], spectral: &SpectralData, densities
                     return at.map(|(a, s)| power * a / s).collect();
                 }
                 let mut up = part.fitted.clone();
-                up[p] *= STEP.exp();
+                up[p] *= DERIVATIVE_STEP.exp();
                 let up = spectrum.densities(&up, &spectral.bins);
-                up.into_iter().zip(at).map(|(up, (a, s))| (up - a) / (STEP * s)).collect()
+                up.into_iter().zip(at).map(|(up, (a, s))| (up - a) / (DERIVATIVE_STEP * s)).collect()
             }
         }
     };
@@ -430,7 +434,7 @@ mod tests {
             claimed: base,
             deviation: [deviation, 0.0, 0.0],
             bound: [0.0; 3],
-            freed: [false; 3],
+            unconstrained: [false; 3],
             quantization_arcsec: 0.0,
             spectra: vec![],
         }
@@ -458,7 +462,7 @@ mod tests {
         let observed = vec![4.0; spectral.bins.len()];
         // Set free, N doubles.
         let mut free = noise(1.0 / 60.0, 0.0);
-        free.freed[0] = true;
+        free.unconstrained[0] = true;
         fit(&mut free, &spectral, &observed);
         assert!((free.base[0] * 60.0 / 2.0 - 1.0).abs() < 1e-4, "{}", free.base[0]);
         // Claimed to within 1 %: the slopes of −½ · 499 (2x + 4 e^(−2x)) and of −½ (x/0.01)² meet at x = ln(N/N₀).

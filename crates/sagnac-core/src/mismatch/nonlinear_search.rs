@@ -4,11 +4,11 @@ use crate::effect::{Drivers, MeanModel};
 use crate::numeric::optimize::pattern_search;
 use crate::numeric::range::Bounds;
 
-/// Gain of log-likelihood that steps to either side must lose for smaller ones to be worth taking: what is left lies within a
+/// Loss of log-likelihood by steps to either side from which smaller steps are taken: what is left lies within a
 /// hundredth of a standard deviation then.
-const FLAT: f64 = 1e-4;
+const MIN_STEP_LOSS: f64 = 1e-4;
 
-/// Where and in which steps the nonlinear parameters of a mean model are searched.
+/// Bounds and steps of a search of the nonlinear parameters of a mean model.
 pub struct LocalSearch {
     bounds: Vec<Bounds>,
     /// First steps: 0 for a whole number, which is tried and not refined; `None`: by the bounds.
@@ -33,7 +33,7 @@ impl LocalSearch {
 
     /// The nonlinear parameters reached from a start, and their gain, in so many evaluations of it at most.
     pub fn refine(&self, start: &[f64], evaluations: usize, gain: impl Fn(&[f64]) -> f64) -> (Vec<f64>, f64) {
-        pattern_search(start, &self.bounds, &self.steps, (evaluations, FLAT), gain)
+        pattern_search(start, &self.bounds, &self.steps, (evaluations, MIN_STEP_LOSS), gain)
     }
 }
 

@@ -1,4 +1,4 @@
-//! What a user decides about an explanation, and how far the work is.
+//! Decisions of a user about an explanation, and the progress of the work.
 
 use crate::effect::Column;
 
@@ -11,12 +11,12 @@ pub struct Options {
     pub hide: Vec<Column>,
     /// Most effects that are added to the claim.
     pub max_effects: usize,
-    /// Effects that are not thought of, by their kinds.
+    /// Kinds of effects that are excluded from the search.
     pub without: Vec<&'static str>,
 }
 
 impl Options {
-    /// Whether an effect is thought of.
+    /// True for an effect that the search considers.
     pub fn allows(&self, kind: &str) -> bool {
         !self.without.contains(&kind)
     }
@@ -28,10 +28,10 @@ impl Default for Options {
     }
 }
 
-/// How far the work is.
+/// Progress of the work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Progress {
-    /// What is being done: a key of the locale tables.
+    /// Name of the step: a key of the locale tables.
     pub doing: &'static str,
     /// Steps of it that are done.
     pub done: u64,

@@ -5,7 +5,7 @@ use super::finding::Explanation;
 use crate::claim::Claim;
 use crate::figure::Figure;
 
-/// What explaining a recording gives.
+/// Result of an explanation.
 pub struct Outcome {
     /// `explain.json`.
     pub explanation: Explanation,
@@ -20,6 +20,6 @@ pub struct Outcome {
     /// For each cause that has equivalents, what would explain the recording as well: the chosen explanation and the others,
     /// each with its parameters.
     pub alternatives: Vec<Alternative>,
-    /// What there is to see, the located view first.
+    /// Figures, the located view first.
     pub figures: Vec<Figure>,
 }

@@ -1,6 +1,6 @@
-//! How probable each name of a finding is, given that one of the catalogue's effects is there.
+//! Probabilities of the names of a finding, given that one of the catalogue's effects is there.
 
-use super::tried::Candidate;
+use super::fitted_hypothesis::Candidate;
 use crate::numeric::order::SortByNumber;
 
 /// A name with its probability.
@@ -15,35 +15,35 @@ pub struct Probable {
 /// Physics differs from the formulas that are fitted, by more where it is better seen: log-likelihoods that differ by less than this
 /// share of the gain do not tell names apart. Chosen, not fitted: reliability has not been measured yet.
 const MODEL_ERROR: f64 = 0.04;
-/// What names share at least, nats.
-const LEAST: f64 = 1.0;
+/// Least gain that names share, nats.
+const MIN_SHARED_GAIN: f64 = 1.0;
 /// Probability below which a name is not listed.
-const LISTED: f64 = 0.01;
+const MIN_LISTED_PROBABILITY: f64 = 0.01;
 
-/// Probabilities of the names of one finding by how much each explains; `worth` is in nats of log-likelihood less the price of the
-/// parameters. The likeliest first, those below a hundredth left out; the rest of the probability is theirs.
+/// Probabilities of the names of one finding, the likeliest first; a score is log-likelihood, nats, less the price of the
+/// parameters. Names below [`MIN_LISTED_PROBABILITY`] are left out, so that the others may add up to less than 1.
 pub fn probabilities(names: impl IntoIterator<Item = (&'static str, f64)>) -> Vec<Probable> {
     let mut best: Vec<(&'static str, f64)> = vec![];
-    for (kind, worth) in names.into_iter().filter(|n| n.1.is_finite()) {
+    for (kind, score) in names.into_iter().filter(|n| n.1.is_finite()) {
         match best.iter_mut().find(|b| b.0 == kind) {
             // Effects of one kind are one name, as likely as the likelier.
-            Some(b) => b.1 = b.1.max(worth),
-            None => best.push((kind, worth)),
+            Some(b) => b.1 = b.1.max(score),
+            None => best.push((kind, score)),
         }
     }
     let most = best.iter().map(|b| b.1).fold(f64::NEG_INFINITY, f64::max);
-    let scale = LEAST.max(MODEL_ERROR * most);
+    let scale = MIN_SHARED_GAIN.max(MODEL_ERROR * most);
     let sum: f64 = best.iter().map(|b| ((b.1 - most) / scale).exp()).sum();
     let mut out: Vec<Probable> = best
         .into_iter()
-        .map(|(kind, worth)| Probable { kind, probability: ((worth - most) / scale).exp() / sum })
-        .filter(|p| p.probability >= LISTED)
+        .map(|(kind, score)| Probable { kind, probability: ((score - most) / scale).exp() / sum })
+        .filter(|p| p.probability >= MIN_LISTED_PROBABILITY)
         .collect();
     out.sort_descending_by(|a| a.probability);
     out
 }
 
-/// The name of a candidate in reports, that of its law where it takes one, and what it is worth over a hypothesis without it, nats.
+/// The name of a candidate in reports, that of its law where it takes one, and its score over a hypothesis without it, nats.
 pub fn name_of(
     candidate: &Candidate,
     law: Option<&Candidate>,

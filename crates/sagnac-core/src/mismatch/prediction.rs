@@ -4,24 +4,24 @@
 //! record that it was not fitted to. Where a process explains more by some nats and the column predicts more of the stretches
 //! held out, the column is the likelier cause by what it predicts.
 
+use super::fitted_hypothesis::Candidate;
 use super::heldout::Halves;
-use super::tried::Candidate;
 use crate::effect::{Domain, Effect, Model};
 use crate::numeric::order::SortByNumber;
 
 /// Part of the gain of the process from which a course is compared with it.
-const COMPARED: f64 = 0.4;
+const COMPARED_GAIN_SHARE: f64 = 0.4;
 /// Courses that are compared.
-const MOST: usize = 2;
-/// What a course has to predict beyond the process, nats: less is said by the choice of its terms, which saw the whole record.
-const LEAST: f64 = 4.0;
+const MAX_COMPARED: usize = 2;
+/// Least predictive gain of a course over the process, nats: less comes from the choice of its terms, which saw the whole record.
+const MIN_PREDICTION_GAIN: f64 = 4.0;
 
-/// Whether an effect is a process that fits anything slow.
+/// True for a process that fits anything slow.
 fn is_process(effect: &dyn Effect) -> bool {
     matches!(effect.model(), Model::Spectrum(spectrum) if spectrum.has_course())
 }
 
-/// Whether an effect follows what was recorded beside the rate.
+/// True for an effect that follows a recorded column.
 fn follows_column(effect: &dyn Effect) -> bool {
     let recorded = !effect.needs().is_empty() || effect.domain() == Domain::Driver;
     recorded && matches!(effect.model(), Model::Mean(_))
@@ -36,16 +36,16 @@ pub(super) fn weigh(
     passes: impl Fn(&Candidate) -> bool,
 ) {
     let Some(leader) = found.first().filter(|c| is_process(c.effect)) else { return };
-    let least = COMPARED * leader.gain;
+    let least = COMPARED_GAIN_SHARE * leader.gain;
     let compared = |c: &Candidate| c.gain >= least && follows_column(c.effect) && passes(c);
-    let courses: Vec<usize> = (1..found.len()).filter(|i| compared(&found[*i])).take(MOST).collect();
+    let courses: Vec<usize> = (1..found.len()).filter(|i| compared(&found[*i])).take(MAX_COMPARED).collect();
     if courses.is_empty() {
         return;
     }
     let of_process = halves.judge(&leader.tried).log_likelihood;
     for i in courses {
         let more = halves.judge(&found[i].tried).log_likelihood - of_process;
-        if more >= LEAST
+        if more >= MIN_PREDICTION_GAIN
             && let Some((_, odds)) = found[i].tried.odds.last_mut()
         {
             *odds += more;

@@ -1,15 +1,15 @@
 //! Recording and claim brought together: residual, spectral data, and the claim's own fit.
 
 use super::finding::UnusableColumn;
+use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use super::hypothesis::{Hypothesis, fit};
 use super::impute;
 use super::noise_fit::Noise;
 use super::quantization_grid::{self, QuantizationGrid};
 use super::regular::{Grid, Regular};
 use super::spectral_data::{SpectralData, smoothed};
-use super::terms::CourseIn;
-use super::terms::SpectrumIn;
-use super::tried::{SpectralDataSet, Tried};
+use super::terms::MeanTerm;
+use super::terms::SpectralTerm;
 use super::usable::unusable;
 use crate::claim::{Claim, Stated};
 use crate::effect::{
@@ -21,16 +21,17 @@ use crate::recording::sensor;
 use std::sync::Arc;
 
 /// Samples up to which a record is looked at in one resolution.
-const WHOLE: usize = 16_384;
+const MAX_SINGLE_RESOLUTION: usize = 16_384;
 /// Samples of the averages of a longer one, at most.
-const AVERAGES: usize = 12_288;
+const MAX_AVERAGES: usize = 12_288;
 /// Seed of imputed places: a report is a function of recording and claim alone.
-const SEED: u64 = 0x5a67_6e61_6320_0005;
+const IMPUTATION_SEED: u64 = 0x5a67_6e61_6320_0005;
 
-/// Square of the error of a size, by the places where its course was not drawn, from which they are drawn anew, over its variance.
-const MATTERS: f64 = 0.1;
-/// Turns of drawing and fitting at most. Each leaves of the error the share of the places without a sample.
-const TURNS: usize = 12;
+/// Squared error of a size, over its variance, from which missing samples are imputed again: the error that comes from imputing them
+/// without the course.
+const REIMPUTE_TOLERANCE: f64 = 0.1;
+/// Most iterations of imputation and fit. Each reduces the error to the share of the missing samples.
+const MAX_ITERATIONS: usize = 12;
 
 /// Recording and claim.
 pub struct Problem {
@@ -51,7 +52,7 @@ pub struct Problem {
     /// The grid that the values lie on.
     pub quantization_grid: Option<QuantizationGrid>,
     /// The filters, stated or found, for which the ends of the record were drawn.
-    filters: Vec<SpectrumIn>,
+    filters: Vec<SpectralTerm>,
     /// Both resolutions.
     pub spectra: SpectralDataSet,
 }
@@ -91,11 +92,11 @@ impl Problem {
         let quantization_grid = quantization_grid::of(regular);
         let grid_step_arcsec = quantization_grid.map(|l| l.increment_arcsec);
         let noise = Noise::of(&claim);
-        let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
+        let filters: Vec<SpectralTerm> = noise.filters().cloned().collect();
         let even_ends = set_ends_aside(&mut usable, &filters, drivers.dt_s);
         let empty = SpectralData::new(drivers.clone(), &residual, &[]).with_even_ends(even_ends);
         let powers = empty.powers(&noise.densities(&empty));
-        impute::fill(&mut residual, &usable, &powers, SEED);
+        impute::fill(&mut residual, &usable, &powers, IMPUTATION_SEED);
         let spectra = spectra(&drivers, &claim, &residual, &filters, grid_step_arcsec, rows);
         let level = level.map(|(level, _)| level);
         let others = regular.columns.iter().filter(|(c, _)| c.is_other());
@@ -126,10 +127,10 @@ impl Problem {
     }
 
     /// A hypothesis fitted to what the problem has become.
-    pub fn refitted(&self, tried: &Tried) -> Tried {
+    pub fn refitted(&self, tried: &FittedHypothesis) -> FittedHypothesis {
         let mut hypothesis = tried.hypothesis.clone();
         let fit = fit(&mut hypothesis, &self.spectra.full);
-        Tried { hypothesis, fit, ..tried.clone() }
+        FittedHypothesis { hypothesis, fit, ..tried.clone() }
     }
 
     /// Takes a course out of the residual.
@@ -138,13 +139,15 @@ impl Problem {
         self.retransform();
     }
 
-    /// Draws the ends of the record anew where the filters of a hypothesis make them unlike noise that is even about them;
+    /// Draws the ends of the record anew where the filters of a hypothesis make them different from noise that is even about them;
     /// true where that was not done for such filters before. Their few samples are in every mode that a filter leaves next
     /// to nothing, which a likelihood of independent modes does not know. `mean` is fitted to the problem as it is.
-    pub fn impute_edges(&mut self, mean: &Tried, tried: &Tried) -> bool {
+    pub fn impute_edges(&mut self, mean: &FittedHypothesis, tried: &FittedHypothesis) -> bool {
         let noise = &tried.hypothesis.noise;
-        let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
-        if alike(&filters, &self.filters) || !set_ends_aside(&mut self.usable, &filters, self.drivers.dt_s) {
+        let filters: Vec<SpectralTerm> = noise.filters().cloned().collect();
+        if same_filters(&filters, &self.filters)
+            || !set_ends_aside(&mut self.usable, &filters, self.drivers.dt_s)
+        {
             return false;
         }
         self.residual = self.drawn(mean, noise, &self.usable);
@@ -153,9 +156,9 @@ impl Problem {
         true
     }
 
-    /// What would be seen behind the filters of a noise, the ends drawn for them.
-    pub fn edges_imputed(&self, mean: &Tried, noise: &Noise) -> SpectralData {
-        let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
+    /// Spectral data with the ends of the record drawn for the filters of a noise.
+    pub fn edges_imputed(&self, mean: &FittedHypothesis, noise: &Noise) -> SpectralData {
+        let filters: Vec<SpectralTerm> = noise.filters().cloned().collect();
         let mut usable = self.usable.clone();
         set_ends_aside(&mut usable, &filters, self.drivers.dt_s);
         full(&self.drivers, &self.claim, &self.drawn(mean, noise, &usable), &filters)
@@ -163,13 +166,13 @@ impl Problem {
 
     /// The residual with a draw of a noise where no sample is usable. The mean of a fit is taken out while filling, or the
     /// draw would not hold it.
-    fn drawn(&self, mean: &Tried, noise: &Noise, usable: &[bool]) -> Vec<f64> {
-        let filters: Vec<SpectrumIn> = noise.filters().cloned().collect();
+    fn drawn(&self, mean: &FittedHypothesis, noise: &Noise, usable: &[bool]) -> Vec<f64> {
+        let filters: Vec<SpectralTerm> = noise.filters().cloned().collect();
         let rest = inverse_dct2(&mean.residual(&self.spectra));
         let even_ends = has_ends_aside(&filters, self.drivers.dt_s);
         let spectral = SpectralData::new(self.drivers.clone(), &rest, &[]).with_even_ends(even_ends);
         let mut filled = rest.clone();
-        impute::fill(&mut filled, usable, &spectral.powers(&noise.densities(&spectral)), SEED);
+        impute::fill(&mut filled, usable, &spectral.powers(&noise.densities(&spectral)), IMPUTATION_SEED);
         let change = filled.iter().zip(&rest).zip(usable).map(|((f, r), u)| if *u { 0.0 } else { f - r });
         self.residual.iter().zip(change).map(|(r, c)| r + c).collect()
     }
@@ -182,7 +185,7 @@ impl Problem {
     }
 
     /// The same with more samples set aside and the noise of a hypothesis for what is filled in.
-    pub fn without(&mut self, aside: &[usize], tried: &Tried) {
+    pub fn without(&mut self, aside: &[usize], tried: &FittedHypothesis) {
         aside.iter().for_each(|i| self.usable[*i] = false);
         self.residual = self.drawn(tried, &tried.hypothesis.noise, &self.usable);
         self.retransform();
@@ -193,7 +196,7 @@ impl Problem {
     ///
     /// They were drawn about the claim. A course is then missing from them, and so many samples speak against it: its size
     /// comes out too small by their share, and where it is large the noise too large and other effects too small.
-    pub fn settle(&mut self, tried: &Tried) -> bool {
+    pub fn reimpute_until_stable(&mut self, tried: &FittedHypothesis) -> bool {
         let in_gaps = self.grid.places_in_gaps().into_iter();
         let missing: Vec<usize> = in_gaps.filter(|i| self.usable.get(*i) == Some(&false)).collect();
         if missing.is_empty() || tried.hypothesis.courses.is_empty() {
@@ -203,18 +206,18 @@ impl Problem {
         let taken: Vec<f64> = self.spectra.full.modes.iter().zip(&left).map(|(b, l)| b - l).collect();
         let of_course = inverse_dct2(&taken);
         let share = missing.len() as f64 / self.usable.len() as f64;
-        let error = |problem: &Problem, course: &[f64], tried: &Tried| {
+        let error = |problem: &Problem, course: &[f64], tried: &FittedHypothesis| {
             2.0 * share * problem.nats(&missing, course, tried)
         };
-        if error(self, &of_course, tried) < MATTERS {
+        if error(self, &of_course, tried) < REIMPUTE_TOLERANCE {
             return false;
         }
         let mut moved = false;
         let mut tried = tried.clone();
-        for _ in 0..TURNS {
+        for _ in 0..MAX_ITERATIONS {
             let drawn = self.drawn(&tried, &tried.hypothesis.noise, &self.usable);
             let change: Vec<f64> = drawn.iter().zip(&self.residual).map(|(d, r)| d - r).collect();
-            if error(self, &change, &tried) < 0.1 * MATTERS {
+            if error(self, &change, &tried) < 0.1 * REIMPUTE_TOLERANCE {
                 break;
             }
             moved = true;
@@ -226,8 +229,8 @@ impl Problem {
         moved
     }
 
-    /// What a course says in some samples against the white part of a fitted noise, nats.
-    fn nats(&self, samples: &[usize], course: &[f64], tried: &Tried) -> f64 {
+    /// Information of some samples on a course against the white part of a fitted noise, nats.
+    fn nats(&self, samples: &[usize], course: &[f64], tried: &FittedHypothesis) -> f64 {
         let powers = tried.powers(&self.spectra);
         // Modes that a filter leaves next to nothing are not judged.
         let upper: Vec<f64> = powers[powers.len() / 2..].iter().copied().filter(|p| p.is_finite()).collect();
@@ -236,8 +239,8 @@ impl Problem {
     }
 
     /// Sets the samples aside of which the columns do not tell the courses of a hypothesis; true where there are any.
-    pub fn without_bends(&mut self, tried: &Tried) -> bool {
-        let of = |course: &CourseIn| {
+    pub fn without_bends(&mut self, tried: &FittedHypothesis) -> bool {
+        let of = |course: &MeanTerm| {
             let Model::Mean(model) = course.effect.model() else { return vec![] };
             let parameters =
                 model.parameters(&course.nonlinear_parameters, &course.coefficients, &self.drivers);
@@ -257,21 +260,21 @@ impl Problem {
     }
 
     /// The claim alone, its nuisances fitted under their priors.
-    pub fn baseline(&self) -> Tried {
+    pub fn baseline(&self) -> FittedHypothesis {
         self.baseline_with(None)
     }
 
     /// The same with one more stated effect on the spectrum.
-    pub fn baseline_with(&self, stated: Option<SpectrumIn>) -> Tried {
+    pub fn baseline_with(&self, stated: Option<SpectralTerm>) -> FittedHypothesis {
         let mut noise = Noise::of(&self.claim);
         noise.spectra.extend(stated);
         let mut hypothesis = Hypothesis { noise, courses: vec![] };
         let fit = fit(&mut hypothesis, &self.spectra.full);
-        Tried { hypothesis, fit, parameters: 0, odds: vec![] }
+        FittedHypothesis { hypothesis, fit, parameters: 0, odds: vec![] }
     }
 }
 
-/// Samples of which averaged columns do not tell the course of an effect; none where that would be a good part of the record.
+/// Samples for which averaged columns do not determine the course of an effect; none where that would be a good part of the record.
 fn curvature_within_average(effect: &dyn Effect, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
     const MAX_SHARE: f64 = 0.05;
     let Model::Mean(course) = effect.model() else { return vec![] };
@@ -279,32 +282,32 @@ fn curvature_within_average(effect: &dyn Effect, parameters: &[f64], drivers: &D
     if samples.len() as f64 > MAX_SHARE * drivers.samples as f64 { vec![] } else { samples }
 }
 
-/// Samples at either end that filters make unlike noise that is even about the ends.
-fn edge_effect(filters: &[SpectrumIn], dt_s: f64) -> usize {
-    let of = |filter: &SpectrumIn| match filter.effect.model() {
+/// Samples at either end that filters make different from noise that is even about the ends.
+fn edge_effect(filters: &[SpectralTerm], dt_s: f64) -> usize {
+    let of = |filter: &SpectralTerm| match filter.effect.model() {
         Model::Spectrum(s) => s.edge_effect(&filter.fitted, dt_s),
         _ => 0,
     };
     filters.iter().map(of).max().unwrap_or(0)
 }
 
-fn has_ends_aside(filters: &[SpectrumIn], dt_s: f64) -> bool {
+fn has_ends_aside(filters: &[SpectralTerm], dt_s: f64) -> bool {
     edge_effect(filters, dt_s) > 0
 }
 
-/// Sets the samples aside that filters make unlike the rest; true where there are any.
-fn set_ends_aside(usable: &mut [bool], filters: &[SpectrumIn], dt_s: f64) -> bool {
+/// Sets the samples aside that filters make different from the rest; true where there are any.
+fn set_ends_aside(usable: &mut [bool], filters: &[SpectralTerm], dt_s: f64) -> bool {
     let (n, ends) = (usable.len(), edge_effect(filters, dt_s));
     usable[..ends.min(n)].fill(false);
     usable[n.saturating_sub(ends)..].fill(false);
     ends > 0
 }
 
-/// Whether two sets of filters are the same but for a little of their cutoffs.
-fn alike(some: &[SpectrumIn], others: &[SpectrumIn]) -> bool {
-    const LITTLE: f64 = 0.03;
-    let same = |(a, b): (&SpectrumIn, &SpectrumIn)| {
-        a.fitted.iter().zip(&b.fitted).all(|(x, y)| (x - y).abs() <= LITTLE * x.abs().max(y.abs()))
+/// True for two sets of filters whose cutoffs differ by a few per cent at most.
+fn same_filters(some: &[SpectralTerm], others: &[SpectralTerm]) -> bool {
+    const MAX_CUTOFF_CHANGE: f64 = 0.03;
+    let same = |(a, b): (&SpectralTerm, &SpectralTerm)| {
+        a.fitted.iter().zip(&b.fitted).all(|(x, y)| (x - y).abs() <= MAX_CUTOFF_CHANGE * x.abs().max(y.abs()))
     };
     some.len() == others.len() && some.iter().zip(others).all(same)
 }
@@ -339,7 +342,7 @@ pub(super) fn level(claim: &Claim, drivers: &Drivers) -> Option<(Vec<f64>, f64)>
 
 /// Samples to average and how many averages to keep.
 fn slow_grid(samples: usize) -> (usize, usize) {
-    let m = samples.div_ceil(AVERAGES);
+    let m = samples.div_ceil(MAX_AVERAGES);
     (m, fast_length(samples / m))
 }
 
@@ -353,7 +356,7 @@ pub(crate) fn deviations(claim: &Claim) -> [(Nuisance, f64); 2] {
 }
 
 /// The data at the sample rate, the ends drawn for some filters.
-fn full(drivers: &Arc<Drivers>, claim: &Claim, residual: &[f64], filters: &[SpectrumIn]) -> SpectralData {
+fn full(drivers: &Arc<Drivers>, claim: &Claim, residual: &[f64], filters: &[SpectralTerm]) -> SpectralData {
     let whole = SpectralData::new(drivers.clone(), residual, &deviations(claim)).with_states(claim);
     if has_ends_aside(filters, drivers.dt_s) { whole.behind(filters) } else { whole }
 }
@@ -362,13 +365,13 @@ fn spectra(
     drivers: &Arc<Drivers>,
     claim: &Claim,
     residual: &[f64],
-    filters: &[SpectrumIn],
+    filters: &[SpectralTerm],
     grid_step_arcsec: Option<f64>,
     rows: usize,
 ) -> SpectralDataSet {
     let deviations = deviations(claim);
     let full = full(drivers, claim, residual, filters);
-    let slow = (drivers.samples > WHOLE).then(|| {
+    let slow = (drivers.samples > MAX_SINGLE_RESOLUTION).then(|| {
         let (m, n) = slow_grid(drivers.samples);
         let mut slow = drivers.averages(m);
         slow.truncate(n);
@@ -450,12 +453,14 @@ mod tests {
 
     #[test]
     fn filters_alike_but_for_a_little_need_no_new_draw() {
-        let filter = |hz: f64| SpectrumIn {
+        let filter = |hz: f64| SpectralTerm {
             effect: find("bandwidth_filter").unwrap(),
             fitted: vec![hz, 1.0],
             stated: false,
         };
-        assert!(alike(&[filter(10.0)], &[filter(10.2)]) && !alike(&[filter(10.0)], &[filter(10.4)]));
-        assert!(alike(&[], &[]) && !alike(&[], &[filter(1.0)]));
+        assert!(
+            same_filters(&[filter(10.0)], &[filter(10.2)]) && !same_filters(&[filter(10.0)], &[filter(10.4)])
+        );
+        assert!(same_filters(&[], &[]) && !same_filters(&[], &[filter(1.0)]));
     }
 }

@@ -1,4 +1,4 @@
-//! Whether the values of a recording lie on a grid, and its step as an angle increment.
+//! The grid that the values of a recording lie on, and its step as an angle increment.
 
 use super::regular::Regular;
 use crate::numeric::decimal::multiples;
@@ -6,14 +6,14 @@ use crate::numeric::order::SortNumbers;
 use std::collections::BTreeMap;
 
 /// Values looked at.
-const LOOKED: usize = 4096;
+const MAX_VALUES: usize = 4096;
 
 /// A grid that values lie on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QuantizationGrid {
     /// Its step as the angle increment of a sample, arcsec.
     pub increment_arcsec: f64,
-    /// What the digits that the file writes leave open of it, either way, arcsec.
+    /// Uncertainty of it by the digits of the file, either way, arcsec.
     pub open_arcsec: f64,
     /// Values that the digits of the file could write in one step.
     pub digits_in_step: f64,
@@ -21,17 +21,18 @@ pub struct QuantizationGrid {
 
 impl QuantizationGrid {
     /// Least variance of the rounding over that of the noise of a sample from which the grid is more than digits.
-    const COARSE: f64 = 0.01;
+    const MIN_ROUNDING_VARIANCE: f64 = 0.01;
 
     /// The finest step that is more than digits beside white noise of some deviation.
     pub fn finest_arcsec(noise_arcsec: f64) -> f64 {
-        (12.0 * QuantizationGrid::COARSE).sqrt() * noise_arcsec
+        (12.0 * QuantizationGrid::MIN_ROUNDING_VARIANCE).sqrt() * noise_arcsec
     }
 
     /// Log-likelihood of so many values on the grid over values that could be any which the file can write; nothing for a
     /// lattice so fine beside white noise of some deviation that a simulation may leave it out.
     pub fn gain(&self, rows: usize, noise_arcsec: f64) -> f64 {
-        let fine = self.increment_arcsec.powi(2) / 12.0 < QuantizationGrid::COARSE * noise_arcsec.powi(2);
+        let fine = self.increment_arcsec.powi(2) / 12.0
+            < QuantizationGrid::MIN_ROUNDING_VARIANCE * noise_arcsec.powi(2);
         if fine { 0.0 } else { rows as f64 * self.digits_in_step.max(1.0).ln() }
     }
 }
@@ -45,7 +46,7 @@ pub fn of(regular: &Regular) -> Option<QuantizationGrid> {
         .zip(&regular.grid.present)
         .filter(|(_, p)| **p)
         .map(|(v, _)| *v)
-        .take(LOOKED)
+        .take(MAX_VALUES)
         .collect();
     let mut steps: Vec<f64> = values.windows(2).map(|w| (w[1] - w[0]).abs()).filter(|d| *d > 0.0).collect();
     if steps.len() < 32 {

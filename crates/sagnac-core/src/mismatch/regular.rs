@@ -32,7 +32,7 @@ pub struct Grid {
     pub disordered: usize,
 }
 
-/// Why rows cannot be put on the grid.
+/// Reason why rows cannot be put on the grid.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Irregular {
     /// Fewer rows than anything can be said of.
@@ -44,7 +44,7 @@ pub enum Irregular {
 }
 
 /// Rows that are needed for anything to be said.
-pub const FEWEST: usize = 64;
+pub const MIN_ROWS: usize = 64;
 
 impl Grid {
     /// Rows missing inside.
@@ -88,7 +88,7 @@ impl Regular {
         sample_rate_hz: f64,
     ) -> Result<Regular, Irregular> {
         let rows = time_s.len();
-        if rows < FEWEST {
+        if rows < MIN_ROWS {
             return Err(Irregular::Short(rows));
         }
         let mut steps: Vec<f64> = time_s.windows(2).map(|w| w[1] - w[0]).collect();
@@ -158,7 +158,7 @@ fn spread(values: &[f64], places: &[usize], n: usize) -> Vec<f64> {
     out
 }
 
-/// How much rounding and jitter of stamps take from one interval and give to the next, in intervals: what 99 of 100 stay below,
+/// Rounding and jitter of stamps that one interval gives to the next, in intervals: the value that 99 of 100 stay below,
 /// with half as much again. What accumulates beyond is a clock that runs slower than stated, and no missing row.
 fn largest_rounding(time_s: &[f64], sample_rate_hz: f64) -> f64 {
     let off = |w: &[f64]| {

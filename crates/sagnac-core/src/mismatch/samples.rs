@@ -1,14 +1,14 @@
-//! What the detectors of effects on single samples find in a record, and what is done with it.
+//! Detections of effects on single samples in a record, and their consequences.
 
 use super::departures::Departure;
+use super::fitted_hypothesis::FittedHypothesis;
 use super::flat::flat;
 use super::hypothesis::fit;
-use super::named::{Found, Named, worth};
+use super::named::{NamedEffect, SampleFindings, significant_delta_bic};
 use super::options::Options;
 use super::problem::Problem;
 use super::regular::Regular;
-use super::select::ENOUGH;
-use super::tried::Tried;
+use super::select::MIN_DELTA_BIC;
 use crate::claim::Claim;
 use crate::effect::{
     Detection, Detector, EFFECTS, Effect, FlatResidual, Law, Level, LevelLaw, OutlierDetector, Outliers,
@@ -18,11 +18,11 @@ use crate::estimate::chi_square_tail;
 use crate::numeric::order::SortByNumber;
 
 /// Laws that compete: forms over time, over columns, over the rate.
-pub const LAWS: f64 = 16.0;
+pub const COMPETING_LAWS: f64 = 16.0;
 /// Fewest samples from which a level is determined.
-const FEWEST: usize = 128;
+const MIN_LEVEL_SAMPLES: usize = 128;
 
-/// The detectors that are asked: those of effects that are thought of, and of those that the claim states. `true` with the
+/// The detectors that are asked: those of effects that are considered, and of those that the claim states. `true` with the
 /// latter: they are taken out and not reported.
 fn asked<'a>(
     claim: &'a Claim,
@@ -39,7 +39,7 @@ fn asked<'a>(
 pub fn take_invalid(
     regular: &mut Regular,
     claim: &Claim,
-    found: &mut Found,
+    found: &mut SampleFindings,
     options: &Options,
 ) -> Vec<Departure> {
     let mut out = vec![];
@@ -48,30 +48,36 @@ pub fn take_invalid(
         let Some(RowsFound { rows, detection }) = detector.find(&regular.rows()) else { continue };
         let count = regular.grid.present.iter().filter(|p| **p).count();
         let Detection { gain, parameters, p_value, .. } = detection;
-        let Some(delta_bic) = worth(gain, parameters, p_value, count, options.alpha) else { continue };
+        let Some(delta_bic) = significant_delta_bic(gain, parameters, p_value, count, options.alpha) else {
+            continue;
+        };
         for row in &rows {
             regular.grid.present[*row] = false;
         }
         let Some(place) = detection.places.first().copied().filter(|_| !stated) else { continue };
-        found.named.push(Named::detected(effect, &detection, delta_bic));
+        found.named.push(NamedEffect::detected(effect, &detection, delta_bic));
         out.push(Departure { test, place, beside: None, ln_p: -gain, shape: None });
     }
     out
 }
 
 /// Groups of outlying samples in the residual of a hypothesis.
-pub fn outliers(detector: &dyn OutlierDetector, problem: &Problem, tried: &Tried) -> Option<Outliers> {
+pub fn outliers(
+    detector: &dyn OutlierDetector,
+    problem: &Problem,
+    tried: &FittedHypothesis,
+) -> Option<Outliers> {
     detector.find(&flat(tried, problem))
 }
 
 /// Sets outliers aside; the claim's fit without them. `moved` is the hypothesis that they are judged on.
 pub fn take_outliers(
     problem: &mut Problem,
-    base: &Tried,
-    moved: &Tried,
-    found: &mut Found,
+    base: &FittedHypothesis,
+    moved: &FittedHypothesis,
+    found: &mut SampleFindings,
     options: &Options,
-) -> Tried {
+) -> FittedHypothesis {
     let rows = problem.spectra.rows;
     let mut start = base.clone();
     let claim = problem.claim.clone();
@@ -79,13 +85,15 @@ pub fn take_outliers(
         let Detector::Outliers(detector) = detector else { continue };
         let Some(outliers) = outliers(detector, problem, moved) else { continue };
         let (gain, parameters, p_value) = (outliers.gain, outliers.parameters, outliers.p_value);
-        let Some(delta_bic) = worth(gain, parameters, p_value, rows, options.alpha) else { continue };
+        let Some(delta_bic) = significant_delta_bic(gain, parameters, p_value, rows, options.alpha) else {
+            continue;
+        };
         let whole = problem.residual.clone();
         problem.without(&outliers.samples, moved);
         if !stated {
             let removed: Vec<f64> = whole.iter().zip(&problem.residual).map(|(w, r)| w - r).collect();
             let detection = detector.describe(&outliers, &removed, &problem.drivers);
-            found.named.extend(detection.map(|d| Named::detected(effect, &d, delta_bic)));
+            found.named.extend(detection.map(|d| NamedEffect::detected(effect, &d, delta_bic)));
             found.take(removed);
         }
         start = problem.refitted(base);
@@ -94,11 +102,11 @@ pub fn take_outliers(
 }
 
 /// Every law of the level of the noise that says more than one level does, the best by BIC first.
-pub fn levels(problem: &Problem, tried: &Tried) -> Vec<Level> {
+pub fn levels(problem: &Problem, tried: &FittedHypothesis) -> Vec<Level> {
     let residual = flat(tried, problem);
     let samples: Vec<usize> = (0..residual.flat.len()).filter(|i| residual.counts(*i)).collect();
     // Where rounding is coarse, the size of the residual says how near the rate is to a step.
-    if samples.len() < FEWEST || residual.rounding_step > FlatResidual::COARSE {
+    if samples.len() < MIN_LEVEL_SAMPLES || residual.rounding_step > FlatResidual::COARSE_STEPS {
         return vec![];
     }
     let mut out = vec![];
@@ -117,15 +125,17 @@ pub fn levels(problem: &Problem, tried: &Tried) -> Vec<Level> {
 /// level is not the claimed one everywhere.
 pub fn take_level(
     problem: &Problem,
-    start: Tried,
-    moved: &Tried,
-    found: &mut Found,
+    start: FittedHypothesis,
+    moved: &FittedHypothesis,
+    found: &mut SampleFindings,
     options: &Options,
-) -> Tried {
+) -> FittedHypothesis {
     let rows = problem.spectra.rows;
     let mut levels = levels(problem, moved);
     levels.retain(|l| options.allows(l.effect.kind()));
-    let passing = levels.first().and_then(|l| worth(l.gain, l.parameters, l.p_value, rows, options.alpha));
+    let passing = levels
+        .first()
+        .and_then(|l| significant_delta_bic(l.gain, l.parameters, l.p_value, rows, options.alpha));
     let Some(delta_bic) = passing else { return start };
     found.named.extend(level_named(&levels, delta_bic, problem));
     found.level = levels.into_iter().next().map(|l| l.profile);
@@ -133,14 +143,14 @@ pub fn take_level(
 }
 
 /// The leading law as a finding. The second best law of another effect is its equivalent when it is near.
-fn level_named(levels: &[Level], delta_bic: f64, problem: &Problem) -> Option<Named> {
+fn level_named(levels: &[Level], delta_bic: f64, problem: &Problem) -> Option<NamedEffect> {
     let best = levels.first()?;
     let Some(Detector::Level(detector)) = best.effect.detector() else { return None };
     let ratio = best.effect.params().first()?;
     let rows = (problem.spectra.rows as f64).ln();
     let score = |l: &Level| 2.0 * l.gain - l.parameters as f64 * rows;
     let mut others = levels.iter().skip(1).filter(|l| l.effect.kind() != best.effect.kind());
-    let equivalent = others.find(|l| score(l) > score(best) - ENOUGH).map(|l| l.effect.kind());
+    let equivalent = others.find(|l| score(l) > score(best) - MIN_DELTA_BIC).map(|l| l.effect.kind());
     let mut stated = detector.stated(best, &problem.drivers);
     stated.insert(ratio.name.to_owned(), Value::Number(best.ratio));
     let detection = Detection {
@@ -152,7 +162,7 @@ fn level_named(levels: &[Level], delta_bic: f64, problem: &Problem) -> Option<Na
         p_value: best.p_value,
     };
     let equivalents = equivalent.into_iter().collect();
-    Some(Named { equivalents, ..Named::detected(best.effect, &detection, delta_bic) })
+    Some(NamedEffect { equivalents, ..NamedEffect::detected(best.effect, &detection, delta_bic) })
 }
 
 /// A law held against single samples; `None` for one that they do not bear out.
@@ -180,7 +190,7 @@ fn rated(
     // which differences do not have.
     let gain = found.gain.min(on_white).min(on_differences);
     let tail = chi_square_tail(2.0 * gain.max(0.0) / found.dispersion, found.free as f64);
-    let p_value = (LAWS * found.trials * tail).min(1.0);
+    let p_value = (COMPETING_LAWS * found.trials * tail).min(1.0);
     let keep = gain.is_finite() && gain > 0.5 * found.free as f64 && p_value < 0.05;
     keep.then_some(Level {
         effect,
@@ -219,12 +229,12 @@ pub fn missing(problem: &Problem, claim: &Claim) -> Vec<(&'static dyn Effect, De
     EFFECTS.iter().filter_map(one).collect()
 }
 
-/// The same hypothesis with N set free, for a level of the noise that is not the claimed one everywhere.
-pub fn with_free_level(base: &Tried, problem: &Problem) -> Tried {
+/// The same hypothesis with N unconstrained, for a level of the noise that is not the claimed one everywhere.
+pub fn with_free_level(base: &FittedHypothesis, problem: &Problem) -> FittedHypothesis {
     let mut hypothesis = base.hypothesis.clone();
-    hypothesis.noise.freed[0] = true;
+    hypothesis.noise.unconstrained[0] = true;
     let fit = fit(&mut hypothesis, &problem.spectra.full);
-    Tried { hypothesis, fit, parameters: base.parameters + 1, odds: base.odds.clone() }
+    FittedHypothesis { hypothesis, fit, parameters: base.parameters + 1, odds: base.odds.clone() }
 }
 
 #[cfg(test)]

@@ -2,6 +2,7 @@
 //! pruned, then asked what else would have served as well.
 
 use super::candidates;
+use super::fitted_hypothesis::{Candidate, FittedHypothesis, SpectralDataSet};
 use super::heldout::Halves;
 use super::hypothesis::{Hypothesis, fit};
 use super::noise_fit::{Noise, base_index};
@@ -10,23 +11,22 @@ use super::options::Options;
 use super::posterior::{Probable, name_of, probabilities};
 use super::prediction;
 use super::problem::Problem;
-use super::terms::CourseIn;
-use super::terms::SpectrumIn;
-use super::tried::{Candidate, SpectralDataSet, Tried};
+use super::terms::MeanTerm;
+use super::terms::SpectralTerm;
 use crate::effect::{Effect, Model, SpectrumAct};
 use crate::numeric::order::SortByNumber;
 
 /// ΔBIC that an effect must bring, and within which two are equivalent.
-pub const ENOUGH: f64 = 6.0;
+pub const MIN_DELTA_BIC: f64 = 6.0;
 /// Equivalents that are named at most.
 pub const MOST_EQUIVALENTS: usize = 3;
 /// Times that one effect of the chosen is exchanged for another at most: what was best alone need not be the best beside
 /// what was found after it.
-const EXCHANGES: usize = 3;
+const MAX_EXCHANGES: usize = 3;
 /// Hypotheses kept at each depth.
-const WIDTH: usize = 3;
+const BEAM_WIDTH: usize = 3;
 
-/// Where an effect sits in a hypothesis.
+/// Position of an effect in a hypothesis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Slot {
     /// Among the courses.
@@ -40,39 +40,39 @@ pub enum Slot {
 pub struct Chosen {
     /// The effect.
     pub effect: &'static dyn Effect,
-    /// Where it sits.
+    /// Its position in the hypothesis.
     pub slot: Slot,
     /// BIC without it less BIC with it.
     pub delta_bic: f64,
     /// Probability of its gain without it, its search and the catalogue counted.
     pub p_value: f64,
-    /// What would have served as well, the best first.
+    /// Effects that serve as well, the best first.
     pub equivalents: Vec<Candidate>,
     /// For a response that is described by terms: the kind whose law alone explains most, fitted in its place.
     pub law: Option<Candidate>,
-    /// How probable each name is, the likeliest first.
+    /// Probability of each name, the likeliest first.
     pub names: Vec<Probable>,
-    /// What single samples say would have served as well.
+    /// Kind that serves as well by the evidence of single samples.
     pub beside: Option<&'static str>,
     /// The hypothesis without it, fitted.
-    pub without: Tried,
-    /// What does better in its place than it does, the effect itself from another beginning among it.
-    better: Option<Tried>,
+    pub without: FittedHypothesis,
+    /// The best hypothesis with another effect in its place, or with the same one from another starting point, where it is better.
+    better: Option<FittedHypothesis>,
 }
 
-/// What was selected.
+/// Result of the selection.
 pub struct Selection {
     /// The hypothesis.
-    pub best: Tried,
+    pub best: FittedHypothesis,
     /// Its effects, the largest ΔBIC first.
     pub chosen: Vec<Chosen>,
-    /// What was tried on the claim alone.
+    /// Candidates that were fitted to the claim alone.
     pub first: Vec<Candidate>,
 }
 
-/// Whether an addition may be made.
+/// True for a candidate that may be added.
 pub fn passes(candidate: &Candidate, family: f64, alpha: f64) -> bool {
-    candidate.delta_bic >= ENOUGH && candidate.p_value * family < alpha
+    candidate.delta_bic >= MIN_DELTA_BIC && candidate.p_value * family < alpha
 }
 
 /// The slots that a hypothesis has beyond its claim.
@@ -83,7 +83,7 @@ fn slots(hypothesis: &Hypothesis) -> Vec<(Slot, &'static dyn Effect)> {
 }
 
 /// The hypothesis without one effect, fitted.
-fn without(tried: &Tried, slot: Slot, spectra: &SpectralDataSet) -> Tried {
+fn without(tried: &FittedHypothesis, slot: Slot, spectra: &SpectralDataSet) -> FittedHypothesis {
     let mut hypothesis = tried.hypothesis.clone();
     let effect = match slot {
         Slot::Mean(i) => hypothesis.courses[i].effect,
@@ -100,7 +100,7 @@ fn without(tried: &Tried, slot: Slot, spectra: &SpectralDataSet) -> Tried {
         }
     };
     let fit = fit(&mut hypothesis, &spectra.full);
-    Tried {
+    FittedHypothesis {
         hypothesis,
         fit,
         parameters: tried.parameters.saturating_sub(removed),
@@ -108,7 +108,7 @@ fn without(tried: &Tried, slot: Slot, spectra: &SpectralDataSet) -> Tried {
     }
 }
 
-fn course_parameters(course: &CourseIn, spectra: &SpectralDataSet) -> usize {
+fn course_parameters(course: &MeanTerm, spectra: &SpectralDataSet) -> usize {
     let Some(c) = course.course() else { return 0 };
     let spectral = spectra.of(c.resolution());
     let parts = c.regressors(&course.nonlinear_parameters, &spectral.drivers);
@@ -116,8 +116,8 @@ fn course_parameters(course: &CourseIn, spectra: &SpectralDataSet) -> usize {
     c.bic_parameters(parts.columns.len()) + parts.nuisance.len() + nonlinear_parameters
 }
 
-/// BIC of an addition with what it lets free beside its own parameters, as the state of a delay before the record, charged
-/// no more than chance gains by it: it makes a worse guess, but one no less able to do what its rivals do.
+/// BIC of an addition in which a nuisance, such as the state of a delay before the record, is charged only its expected gain by
+/// chance, half a nat: it is estimated less well, but makes the addition no less able to explain what its rivals do.
 fn bic_of_rival(candidate: &Candidate, spectra: &SpectralDataSet) -> f64 {
     let rows = spectra.rows;
     let beside =
@@ -128,9 +128,9 @@ fn bic_of_rival(candidate: &Candidate, spectra: &SpectralDataSet) -> f64 {
     candidate.tried.bic(rows) - beside.map_or(0, |b| b.nuisance.len()) as f64 * ((rows as f64).ln() - 1.0)
 }
 
-/// How many modes tell of a process: the sum of squares of its share of the power. A parameter of it is worth the logarithm
+/// Effective number of modes of a process: the sum of squares of its share of the power. A parameter of it costs the logarithm
 /// of that many, not of all samples.
-fn modes_of_process(slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Option<f64> {
+fn modes_of_process(slot: Slot, best: &FittedHypothesis, spectra: &SpectralDataSet) -> Option<f64> {
     let Slot::Spectrum(i) = slot else { return None };
     let spectral = &spectra.full;
     let added = best.hypothesis.noise.added_densities(i, spectral);
@@ -138,20 +138,20 @@ fn modes_of_process(slot: Slot, best: &Tried, spectra: &SpectralDataSet) -> Opti
     Some(shares.zip(&spectral.bins).map(|(share, bin)| share * spectral.weight(bin)).sum::<f64>().max(2.0))
 }
 
-/// What BIC charges a rival process for parameters beyond those of the process that was chosen, more than they are worth.
-fn bic_excess(candidate: &Candidate, best: &Tried, modes: Option<f64>, rows: usize) -> f64 {
+/// Excess of the charge of BIC for the parameters that a rival process has beyond those of the process that was chosen, nats.
+fn bic_excess(candidate: &Candidate, best: &FittedHypothesis, modes: Option<f64>, rows: usize) -> f64 {
     let process = matches!(candidate.effect.model(), Model::Spectrum(_));
     let more = candidate.tried.parameters.saturating_sub(best.parameters) as f64;
     modes.filter(|_| process).map_or(0.0, |m| more * (rows as f64 / m).ln().max(0.0))
 }
 
-/// Puts a freed coefficient back under its prior; the number of parameters that go.
-fn restore(noise: &mut Noise, part: &SpectrumIn) -> usize {
+/// Puts an unconstrained coefficient back under its prior; the number of parameters that go.
+fn restore(noise: &mut Noise, part: &SpectralTerm) -> usize {
     if let Model::Spectrum(s) = part.effect.model()
         && let SpectrumAct::Unconstrains(term) = s.act()
         && let Some(i) = base_index(term)
     {
-        noise.freed[i] = false;
+        noise.unconstrained[i] = false;
         noise.base[i] = noise.begin(i);
         return 1;
     }
@@ -159,13 +159,13 @@ fn restore(noise: &mut Noise, part: &SpectrumIn) -> usize {
 }
 
 /// A name for a set of effects, to tell equal sets.
-fn set(tried: &Tried) -> Vec<&'static str> {
+fn set(tried: &FittedHypothesis) -> Vec<&'static str> {
     let mut kinds: Vec<&'static str> = slots(&tried.hypothesis).iter().map(|(_, e)| e.kind()).collect();
     kinds.sort_unstable();
     kinds
 }
 
-/// What candidates are found among and judged by.
+/// Data and options of a search.
 struct Search<'a> {
     spectra: &'a SpectralDataSet,
     halves: Halves,
@@ -174,7 +174,7 @@ struct Search<'a> {
 
 impl Search<'_> {
     /// Every addition to a hypothesis, the best first.
-    fn candidates(&self, before: &Tried) -> Vec<Candidate> {
+    fn candidates(&self, before: &FittedHypothesis) -> Vec<Candidate> {
         let mut found = candidates::all(before, self.spectra, self.options);
         let (rows, family) = (self.spectra.rows, family(&found));
         prediction::weigh(&mut found, &self.halves, rows, |c| passes(c, family, self.options.alpha));
@@ -183,7 +183,7 @@ impl Search<'_> {
 }
 
 /// Grows a hypothesis on `base`, which is the claim with what was found in single samples before.
-pub fn select(base: &Tried, problem: &Problem, options: &Options) -> Selection {
+pub fn select(base: &FittedHypothesis, problem: &Problem, options: &Options) -> Selection {
     let (alpha, most) = (options.alpha, options.max_effects);
     let spectra = &problem.spectra;
     let search = Search { spectra, halves: Halves::new(problem), options };
@@ -191,9 +191,9 @@ pub fn select(base: &Tried, problem: &Problem, options: &Options) -> Selection {
     let first = search.candidates(base);
     let family = family(&first);
     let mut best = base.clone();
-    let mut beam: Vec<(Tried, Vec<Candidate>)> = vec![(base.clone(), first.clone())];
+    let mut beam: Vec<(FittedHypothesis, Vec<Candidate>)> = vec![(base.clone(), first.clone())];
     for depth in 0..most {
-        let mut next: Vec<Tried> = vec![];
+        let mut next: Vec<FittedHypothesis> = vec![];
         for (_, candidates) in &beam {
             let passing: Vec<&Candidate> = candidates.iter().filter(|c| passes(c, family, alpha)).collect();
             for candidate in beam_survivors(&passing) {
@@ -203,12 +203,12 @@ pub fn select(base: &Tried, problem: &Problem, options: &Options) -> Selection {
             }
         }
         next.sort_ascending_by(|a| a.rank(rows));
-        let only_jump = |t: &&Tried| matches!(slots(&t.hypothesis)[..], [(_, e)] if is_jump(e));
-        let jump = next.iter().skip(WIDTH).find(only_jump).cloned();
-        next.truncate(WIDTH);
+        let only_jump = |t: &&FittedHypothesis| matches!(slots(&t.hypothesis)[..], [(_, e)] if is_jump(e));
+        let jump = next.iter().skip(BEAM_WIDTH).find(only_jump).cloned();
+        next.truncate(BEAM_WIDTH);
         next.extend(jump);
         let Some(leader) = next.first() else { break };
-        if leader.bic(rows) < best.bic(rows) - ENOUGH {
+        if leader.bic(rows) < best.bic(rows) - MIN_DELTA_BIC {
             best = leader.clone();
         } else if depth > 0 {
             // One more effect did not pay on any path.
@@ -227,7 +227,7 @@ pub fn select(base: &Tried, problem: &Problem, options: &Options) -> Selection {
     }
     best = pruned(best, spectra, rows);
     let mut chosen = self::chosen(&best, base, &first, &search);
-    for _ in 0..EXCHANGES {
+    for _ in 0..MAX_EXCHANGES {
         let better = chosen.iter().filter_map(|c| c.better.as_ref());
         let Some(better) = better.min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows))) else { break };
         best = pruned(better.clone(), spectra, rows);
@@ -241,12 +241,12 @@ pub fn select(base: &Tried, problem: &Problem, options: &Options) -> Selection {
 fn beam_survivors<'a>(passing: &[&'a Candidate]) -> Vec<&'a Candidate> {
     let Some(leader) = passing.first() else { return vec![] };
     let mut out: Vec<&Candidate> =
-        passing.iter().filter(|c| c.delta_bic > 0.6 * leader.delta_bic).take(WIDTH).copied().collect();
+        passing.iter().filter(|c| c.delta_bic > 0.6 * leader.delta_bic).take(BEAM_WIDTH).copied().collect();
     let is_course = |c: &Candidate| matches!(c.effect.model(), Model::Mean(_));
     if !out.iter().any(|c| is_course(c))
         && let Some(course) = passing.iter().find(|c| is_course(c))
     {
-        out.truncate(WIDTH - 1);
+        out.truncate(BEAM_WIDTH - 1);
         out.push(course);
     }
     // A level that leaves and returns is two jumps, of which one alone explains little.
@@ -261,28 +261,28 @@ fn is_jump(effect: &dyn Effect) -> bool {
     effect.reversed_pair().is_some()
 }
 
-/// How many effects were tried, those in single samples among them.
+/// Number of effects that were tried, those in single samples included.
 pub fn family(first: &[Candidate]) -> f64 {
     first.len().max(1) as f64 + 8.0
 }
 
 /// Drops effects that became needless, by what hypotheses are ordered by: of a pair of which each explains the record alone, the
 /// one that came first stays.
-fn pruned(mut best: Tried, spectra: &SpectralDataSet, rows: usize) -> Tried {
+fn pruned(mut best: FittedHypothesis, spectra: &SpectralDataSet, rows: usize) -> FittedHypothesis {
     loop {
         let weakest = slots(&best.hypothesis)
             .into_iter()
             .map(|(slot, _)| without(&best, slot, spectra))
             .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)));
         match weakest {
-            Some(less) if less.rank(rows) < best.rank(rows) + ENOUGH => best = less,
+            Some(less) if less.rank(rows) < best.rank(rows) + MIN_DELTA_BIC => best = less,
             _ => return best,
         }
     }
 }
 
-/// What a law that stands for a response is worth alone, nats.
-fn worth_of_law(law: &Candidate) -> f64 {
+/// Score of a law alone that stands for a response, nats.
+fn law_score(law: &Candidate) -> f64 {
     law.gain - 2.0 * law.parameters as f64
 }
 
@@ -290,33 +290,33 @@ fn worth_of_law(law: &Candidate) -> f64 {
 /// first. The others are its equivalents: the response has something of each.
 fn laws<'a>(effect: &dyn Effect, rivals: &'a [Candidate]) -> Vec<&'a Candidate> {
     /// Share of the best law's gain from which another is no worse a name.
-    const NEAR: f64 = 0.7;
-    let worth = |c: &&Candidate| worth_of_law(c);
+    const NEAR_GAIN_SHARE: f64 = 0.7;
+    let score = |c: &&Candidate| law_score(c);
     let by_law = |c: &&Candidate| effect.named_by_law().iter().any(|law| law.kind() == c.effect.kind());
     let mut laws: Vec<&Candidate> = rivals.iter().filter(by_law).collect();
-    laws.sort_descending_by(|a| worth(a));
-    let best = laws.first().map_or(0.0, worth);
-    laws.retain(|c| worth(c) >= NEAR * best);
+    laws.sort_descending_by(|a| score(a));
+    let best = laws.first().map_or(0.0, score);
+    laws.retain(|c| score(c) >= NEAR_GAIN_SHARE * best);
     laws
 }
 
-/// What a candidate is named by: itself, or the best law of a response; `None` for one without a name.
+/// The candidate that gives another one its name: itself, or the best law of a response; `None` for one without a name.
 fn named<'a>(candidate: &'a Candidate, rivals: &'a [Candidate]) -> Option<&'a Candidate> {
     let law = self::laws(candidate.effect, rivals).into_iter().next();
     law.or_else(|| candidate.effect.in_format().then_some(candidate))
 }
 
-/// How probable the names of a chosen effect are: its own and those of its rivals in its place, or of the laws of a response.
+/// Probabilities of the names of a chosen effect: its own and those of its rivals in its place, or of the laws of a response.
 fn names(
     effect: &'static dyn Effect,
-    best: &Tried,
+    best: &FittedHypothesis,
     rivals: &[Candidate],
     laws: &[&Candidate],
     rank_without: f64,
     rows: usize,
 ) -> Vec<Probable> {
     if !laws.is_empty() {
-        return probabilities(laws.iter().map(|c| (c.effect.reported_kind(), worth_of_law(c))));
+        return probabilities(laws.iter().map(|c| (c.effect.reported_kind(), law_score(c))));
     }
     let own = 0.5 * (rank_without - best.rank(rows));
     let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind());
@@ -325,7 +325,12 @@ fn names(
     probabilities([(effect.reported_kind(), own)].into_iter().chain(others))
 }
 
-fn chosen(best: &Tried, base: &Tried, first: &[Candidate], search: &Search<'_>) -> Vec<Chosen> {
+fn chosen(
+    best: &FittedHypothesis,
+    base: &FittedHypothesis,
+    first: &[Candidate],
+    search: &Search<'_>,
+) -> Vec<Chosen> {
     let (spectra, options) = (search.spectra, search.options);
     let family = family(first);
     let rows = spectra.rows;
@@ -340,7 +345,7 @@ fn chosen(best: &Tried, base: &Tried, first: &[Candidate], search: &Search<'_>) 
             let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
             let modes = modes_of_process(slot, best, spectra);
             let near = |c: &Candidate| {
-                bic_of_rival(c, spectra) - bic_excess(c, best, modes, rows) < best.bic(rows) + ENOUGH
+                bic_of_rival(c, spectra) - bic_excess(c, best, modes, rows) < best.bic(rows) + MIN_DELTA_BIC
             };
             let laws = laws(effect, &rivals);
             let equivalents = if laws.is_empty() {
@@ -361,7 +366,7 @@ fn chosen(best: &Tried, base: &Tried, first: &[Candidate], search: &Search<'_>) 
                 .iter()
                 .filter(|c| !single && passes(c, family, options.alpha))
                 .map(|c| &c.tried)
-                .filter(|t| t.rank(rows) < best.rank(rows) - ENOUGH)
+                .filter(|t| t.rank(rows) < best.rank(rows) - MIN_DELTA_BIC)
                 .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)))
                 .cloned();
             let delta_bic = without.bic(rows) - best.bic(rows);

@@ -6,7 +6,7 @@
 
 use super::estimates::Estimated;
 use super::finding::ParameterValue;
-use super::named::Named;
+use super::named::NamedEffect;
 use super::options::Options;
 use super::problem::Problem;
 use crate::effect::{Domain, Family, Knot, Place};
@@ -14,32 +14,32 @@ use crate::numeric::order::SortByNumber;
 use std::collections::BTreeMap;
 
 /// Ratio of frequencies below which two lines are neighbours.
-const NEIGHBOURS: f64 = 1.15;
+const NEIGHBOUR_RATIO: f64 = 1.15;
 /// Size of a jump.
-const STEP: &str = "step_deg_h";
+const STEP_NAME: &str = "step_deg_h";
 /// Share of a jump within which the next one takes the level back.
-const BACK: f64 = 0.5;
+const RETURN_SHARE: f64 = 0.5;
 /// The same in standard deviations of the two.
 const BACK_DEVIATIONS: f64 = 3.0;
 /// Findings of one family from which they are one cause, where no more were allowed.
-const MANY: usize = 3;
+const MIN_FAMILY_FINDINGS: usize = 3;
 
 /// Several findings that are one cause.
 pub(super) struct Together {
     /// Positions of the findings.
     pub members: Vec<usize>,
-    /// Where they live.
+    /// Intervals in which they show.
     pub places: Vec<Place>,
 }
 
 /// The family of a finding. Rounding that the values themselves show is no part of the shape of a spectrum.
-fn family(named: &Named) -> Option<Family> {
+fn family(named: &NamedEffect) -> Option<Family> {
     let by_values = named.effect.rounding().is_some() && frequency(named).is_none();
     named.effect.family().filter(|_| !by_values)
 }
 
 /// The hull of the places of some findings, one in each domain, at most three.
-fn hull(named: &[Named], members: &[usize]) -> Vec<Place> {
+fn hull(named: &[NamedEffect], members: &[usize]) -> Vec<Place> {
     let mut out: Vec<Place> = vec![];
     for place in members.iter().flat_map(|i| &named[*i].places) {
         match out.iter_mut().find(|p| p.domain == place.domain) {
@@ -51,13 +51,13 @@ fn hull(named: &[Named], members: &[usize]) -> Vec<Place> {
     out
 }
 
-fn frequency(named: &Named) -> Option<f64> {
+fn frequency(named: &NamedEffect) -> Option<f64> {
     let place = named.places.iter().find(|p| p.domain == Domain::Frequency)?;
     Some(0.5 * (place.from + place.to))
 }
 
 /// Lines in the order of their frequencies, cut where neighbours are far apart.
-fn neighbours(named: &[Named], lines: &[usize]) -> Vec<Vec<usize>> {
+fn neighbours(named: &[NamedEffect], lines: &[usize]) -> Vec<Vec<usize>> {
     let mut order: Vec<(f64, usize)> =
         lines.iter().filter_map(|i| Some((frequency(&named[*i])?, *i))).collect();
     order.sort_ascending_by(|a| a.0);
@@ -65,7 +65,7 @@ fn neighbours(named: &[Named], lines: &[usize]) -> Vec<Vec<usize>> {
     let mut last = f64::NAN;
     for (f, i) in order {
         match out.last_mut() {
-            Some(group) if f < NEIGHBOURS * last => group.push(i),
+            Some(group) if f < NEIGHBOUR_RATIO * last => group.push(i),
             _ => out.push(vec![i]),
         }
         last = f;
@@ -74,16 +74,16 @@ fn neighbours(named: &[Named], lines: &[usize]) -> Vec<Vec<usize>> {
 }
 
 /// Positions of the only two jumps, by time, if the second takes back what the first brought.
-fn reversible_step_pair(named: &[Named]) -> Option<[usize; 2]> {
+fn reversible_step_pair(named: &[NamedEffect]) -> Option<[usize; 2]> {
     let jumps: Vec<usize> = (0..named.len()).filter(|i| family(&named[*i]) == Some(Family::Jump)).collect();
     // A gyro that was turned and turned back changed its heading twice.
     let steps = jumps.iter().all(|i| named[*i].effect.reversed_pair().is_some());
     let [a, b] = jumps[..] else { return None };
     let parameter = |i: usize, name: &str| named[i].estimated.reported.get(name);
-    let (first, second) = (parameter(a, STEP)?, parameter(b, STEP)?);
+    let (first, second) = (parameter(a, STEP_NAME)?, parameter(b, STEP_NAME)?);
     let deviation = |p: &ParameterValue| (p.ci95[1] - p.ci95[0]) / 3.92;
     let left = (first.value + second.value).abs();
-    let back = left < BACK * first.value.abs().max(second.value.abs())
+    let back = left < RETURN_SHARE * first.value.abs().max(second.value.abs())
         && left < BACK_DEVIATIONS * deviation(first).hypot(deviation(second));
     let ordered = named[a].instant()?.value <= named[b].instant()?.value;
     (steps && back).then_some(if ordered { [a, b] } else { [b, a] })
@@ -91,12 +91,12 @@ fn reversible_step_pair(named: &[Named]) -> Option<[usize; 2]> {
 
 /// Two jumps, there and back, made the one thing that the format of explanations calls them: something that was not
 /// recorded came and went.
-pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem, options: &Options) {
+pub(super) fn returned(named: &mut Vec<NamedEffect>, problem: &Problem, options: &Options) {
     let Some([first, second]) = reversible_step_pair(named) else { return };
     let pair = named[first].effect.reversed_pair().filter(|e| options.allows(e.kind()));
     let Some((effect, by_course)) = pair.and_then(|e| Some((e, e.claimed_by_course()?))) else { return };
     let value = |i: usize, name: &str| named[i].estimated.reported.get(name).cloned();
-    let (Some(up), Some(down)) = (value(first, STEP), value(second, STEP)) else { return };
+    let (Some(up), Some(down)) = (value(first, STEP_NAME), value(second, STEP_NAME)) else { return };
     let (Some(from), Some(to)) = (named[first].instant().cloned(), named[second].instant().cloned()) else {
         return;
     };
@@ -118,7 +118,7 @@ pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem, options: &Opti
     let knots: Vec<Knot> = times.iter().zip([0.0, height, height, 0.0]).map(knot).collect();
     let stated = by_course.values(&knots);
     let pair = [&named[first], &named[second]];
-    let whole = Named {
+    let whole = NamedEffect {
         effect,
         stated_as: effect,
         estimated: Estimated {
@@ -140,9 +140,9 @@ pub(super) fn returned(named: &mut Vec<Named>, problem: &Problem, options: &Opti
 }
 
 /// The findings that belong together, of a selection that was allowed so many effects.
-pub(super) fn together(named: &[Named], allowed: usize) -> Vec<Together> {
+pub(super) fn together(named: &[NamedEffect], allowed: usize) -> Vec<Together> {
     // Where more findings were allowed than one family took, it was not cut short: each is what it is named.
-    let many = MANY.max(allowed);
+    let many = MIN_FAMILY_FINDINGS.max(allowed);
     let of = |wanted: Family| -> Vec<usize> {
         (0..named.len()).filter(|i| family(&named[*i]) == Some(wanted)).collect()
     };
@@ -172,7 +172,7 @@ mod tests {
     use std::collections::BTreeMap;
 
     /// A jump of some size at an instant.
-    fn jump(kind: &str, size: f64, at: f64) -> Named {
+    fn jump(kind: &str, size: f64, at: f64) -> NamedEffect {
         let value = |value: f64, half: f64| ParameterValue {
             value,
             unit: String::new(),
@@ -182,7 +182,7 @@ mod tests {
             ("step_deg_h".to_owned(), value(size, 0.1)),
             ("time_s".to_owned(), value(at, 1.0)),
         ]);
-        Named {
+        NamedEffect {
             effect: find(kind).unwrap(),
             stated_as: find(kind).unwrap(),
             estimated: Estimated { reported, ..Estimated::default() },
@@ -197,9 +197,9 @@ mod tests {
         }
     }
 
-    fn line(frequency_hz: f64) -> Named {
+    fn line(frequency_hz: f64) -> NamedEffect {
         let place = Place { domain: Domain::Frequency, from: frequency_hz, to: frequency_hz };
-        Named {
+        NamedEffect {
             effect: find("line").unwrap(),
             stated_as: find("line").unwrap(),
             places: vec![place],
@@ -209,7 +209,7 @@ mod tests {
 
     #[test]
     fn a_level_that_comes_back_is_a_pair_in_the_order_of_time() {
-        let pair = |second: Named| reversible_step_pair(&[jump("bias_step", -0.98, 700.0), second]);
+        let pair = |second: NamedEffect| reversible_step_pair(&[jump("bias_step", -0.98, 700.0), second]);
         assert_eq!(pair(jump("bias_step", 1.0, 400.0)), Some([1, 0]));
         // Not back: of the same sign, too much left, or a heading that changed.
         assert_eq!(pair(jump("bias_step", -1.0, 400.0)), None);
@@ -220,14 +220,14 @@ mod tests {
     #[test]
     fn lines_side_by_side_are_one_cause_and_lines_apart_are_two() {
         let groups = |f: &[f64]| {
-            let named: Vec<Named> = f.iter().map(|f| line(*f)).collect();
+            let named: Vec<NamedEffect> = f.iter().map(|f| line(*f)).collect();
             together(&named, 3).into_iter().map(|t| t.members).collect::<Vec<_>>()
         };
         assert_eq!(groups(&[1.14, 1.0]), [[1, 0]]);
         assert!(groups(&[1.16, 1.0]).is_empty());
         assert_eq!(groups(&[1.0, 5.0, 20.0]), [[0, 1, 2]]);
         // Allowed five, three were all there were.
-        let named: Vec<Named> = [1.0, 5.0, 20.0].map(line).into();
+        let named: Vec<NamedEffect> = [1.0, 5.0, 20.0].map(line).into();
         assert!(together(&named, 5).is_empty());
     }
 }

@@ -4,7 +4,7 @@
 //! diagonal exactly and flicker nearly; the coefficients are then independent with variance S(f_k)/Δt. A record may be
 //! cut into blocks of equal length, each transformed by itself and about its own mean.
 
-use super::terms::SpectrumIn;
+use super::terms::SpectralTerm;
 use crate::claim::Claim;
 use crate::effect::{Drivers, ModeBin, Model, Nuisance};
 use crate::noise::data::NoiseType;
@@ -15,16 +15,16 @@ use crate::recording::sensor;
 use std::sync::Arc;
 
 /// Modes that have a bin each.
-const SINGLE: usize = 64;
+const SINGLE_MODES: usize = 64;
 /// Width of the bins above, relative.
-const WIDTH: f64 = 0.006;
+const BIN_WIDTH: f64 = 0.006;
 /// Most of the modes that are left for one bin.
 const TOWARDS_END: f64 = 0.05;
 
 /// A column whose coefficient the claim knows to within a stated deviation.
 #[derive(Debug, Clone)]
 pub struct NuisanceColumn {
-    /// Which.
+    /// The value of the claim.
     pub nuisance: Nuisance,
     /// Its modes, deg/h for a coefficient of 1.
     pub modes: Vec<f64>,
@@ -55,11 +55,12 @@ pub struct SpectralData {
 }
 
 /// N, B, K in the order of arrays.
-pub const BASE: [NoiseType; 3] = [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk];
+pub const BASE_TERMS: [NoiseType; 3] =
+    [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk];
 
 /// Least power of a filter whose modes are judged: below it the noise is that of the last digits or of what comes after the
 /// filter.
-const FAINTEST: f64 = 1e-5;
+const MIN_FILTER_POWER: f64 = 1e-5;
 /// Width of a bin over its distance from the zero of a filter.
 const BESIDE_ZERO: f64 = 0.1;
 
@@ -70,10 +71,10 @@ fn bins(samples: usize, dt_s: f64, zeros: &[f64]) -> Vec<ModeBin> {
     while mode < samples {
         // Towards the highest mode, too: there the mean of two samples has a zero, which no wide bin describes.
         let left = samples - mode;
-        let wide = (mode as f64 * WIDTH).min(left as f64 * TOWARDS_END) as usize;
+        let wide = (mode as f64 * BIN_WIDTH).min(left as f64 * TOWARDS_END) as usize;
         let near = zeros.iter().map(|z| (z - mode as f64).abs()).fold(f64::INFINITY, f64::min);
         let wide = wide.min((near * BESIDE_ZERO) as usize);
-        let modes = if mode < SINGLE { 1 } else { wide.max(1) };
+        let modes = if mode < SINGLE_MODES { 1 } else { wide.max(1) };
         let middle = mode as f64 + 0.5 * (modes - 1) as f64;
         let frequency_hz = middle / (2.0 * samples as f64 * dt_s);
         out.push(ModeBin { frequency_hz, mode, modes, samples, dt_s, even_ends: false });
@@ -93,7 +94,7 @@ fn unit_densities(bin: &ModeBin, averaged: usize) -> [f64; 3] {
         blocks: bin.samples,
         segment: 0,
     };
-    BASE.map(|term| match claimed_unit_density(term, bin.frequency_hz) {
+    BASE_TERMS.map(|term| match claimed_unit_density(term, bin.frequency_hz) {
         Some(stated) if averaged == 1 => stated * bin_ratio(term, &at),
         _ => term.density(&at),
     })
@@ -160,7 +161,7 @@ impl SpectralData {
 
     /// The same behind filters for which the ends of the record were drawn: without the modes that they leave next to
     /// nothing, and with narrow bins beside their zeros.
-    pub fn behind(mut self, filters: &[SpectrumIn]) -> SpectralData {
+    pub fn behind(mut self, filters: &[SpectralTerm]) -> SpectralData {
         let spectra = || {
             filters.iter().filter_map(|f| match f.effect.model() {
                 Model::Spectrum(s) => Some((s, &f.fitted)),
@@ -174,7 +175,7 @@ impl SpectralData {
         self = self.with_even_ends(true);
         for (spectrum, fitted) in spectra() {
             let mut through = spectrum.densities(fitted, &self.bins).into_iter();
-            self.bins.retain(|_| through.next().is_none_or(|power| power >= FAINTEST));
+            self.bins.retain(|_| through.next().is_none_or(|power| power >= MIN_FILTER_POWER));
         }
         self.units = self.bins.iter().map(|bin| unit_densities(bin, self.drivers.averaged)).collect();
         self
@@ -280,7 +281,7 @@ fn nuisance_column(nuisance: Nuisance, drivers: &Drivers) -> Option<Vec<f64>> {
     }
 }
 
-/// The part of a series that its spectrum tells from the white noise of a sensor: each cosine mode is weighted by the
+/// The part of a series that its spectrum separates from the white noise of a sensor: each cosine mode is weighted by the
 /// share of its neighbourhood's power that lies above the floor. Of one that reads in coarse steps, the course between them.
 pub fn smoothed(values: &[f64]) -> Vec<f64> {
     if let Some(course) = sensor::between_steps(values) {

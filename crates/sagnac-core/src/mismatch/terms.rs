@@ -2,9 +2,9 @@
 
 use crate::effect::{Effect, MeanModel, Model, Spectrum};
 
-/// A course in a hypothesis.
+/// An effect on the mean in a hypothesis.
 #[derive(Clone)]
-pub struct CourseIn {
+pub struct MeanTerm {
     /// The effect.
     pub effect: &'static dyn Effect,
     /// Its nonlinear parameters.
@@ -13,7 +13,7 @@ pub struct CourseIn {
     pub coefficients: Vec<f64>,
 }
 
-impl CourseIn {
+impl MeanTerm {
     /// The forward model.
     pub fn course(&self) -> Option<&'static dyn MeanModel> {
         match self.effect.model() {
@@ -25,16 +25,16 @@ impl CourseIn {
 
 /// A spectral effect with its fitted parameters.
 #[derive(Clone)]
-pub struct SpectrumIn {
+pub struct SpectralTerm {
     /// The effect.
     pub effect: &'static dyn Effect,
-    /// Fitted parameters; the whole coefficient for one that frees.
+    /// Fitted parameters; the whole coefficient for an unconstrained one.
     pub fitted: Vec<f64>,
     /// True when the claim states it: its parameters stay.
     pub stated: bool,
 }
 
-impl SpectrumIn {
+impl SpectralTerm {
     /// The forward model.
     pub fn spectrum(&self) -> Option<&'static dyn Spectrum> {
         match self.effect.model() {

@@ -9,15 +9,15 @@ use crate::numeric::order::SortByNumber;
 use std::collections::BTreeMap;
 
 /// A residual test counts as departed below this, its own scan and the number of tests counted.
-pub(super) const DEPARTED: f64 = 1e-4;
+pub(super) const DEPARTURE_PROBABILITY: f64 = 1e-4;
 
-/// What a departure may be that no single event of it shows: short events of the whole bandwidth are groups of outlying samples,
+/// Cause of a departure of which no single event shows: short events of the whole bandwidth are groups of outlying samples,
 /// each too weak to be found.
 fn beside(worst: &Departure, problem: &Problem, options: &Options) -> Vec<String> {
     /// Samples of a short event, at most.
-    const SHORT: f64 = 24.0;
+    const MAX_EVENT_SAMPLES: f64 = 24.0;
     let dt_s = problem.drivers.dt_s;
-    let short = worst.shape.and_then(|s| s.each_s).is_some_and(|s| s <= SHORT * dt_s);
+    let short = worst.shape.and_then(|s| s.each_s).is_some_and(|s| s <= MAX_EVENT_SAMPLES * dt_s);
     // The upper octave and more.
     let broad = worst.place.domain == Domain::Frequency
         && worst.place.to >= 0.45 / dt_s
@@ -26,7 +26,7 @@ fn beside(worst: &Departure, problem: &Problem, options: &Options) -> Vec<String
     events.filter(|_| short && broad).map(|e| e.kind().to_owned()).collect()
 }
 
-/// What departs from the hypothesis and has no name.
+/// A departure from the hypothesis without a name.
 pub(super) fn cause(
     after: &[Departure],
     nothing_found: bool,
@@ -34,7 +34,7 @@ pub(super) fn cause(
     options: &Options,
 ) -> Option<Finding> {
     let alpha = options.alpha;
-    let bound = if nothing_found { (0.3 * alpha).min(1e-3) } else { DEPARTED };
+    let bound = if nothing_found { (0.3 * alpha).min(1e-3) } else { DEPARTURE_PROBABILITY };
     let departed = after.iter().filter(|d| d.below(bound, after.len())).collect();
     let mut cause = of_departures(departed, problem, options)?;
     let ln_p = (cause.ln_p + (after.len().max(1) as f64).ln()).min(0.0);
@@ -42,7 +42,7 @@ pub(super) fn cause(
     Some(cause.finding)
 }
 
-/// What the tests show together where no single effect is justified: their probability is below the significance, so that the
+/// The departures of all tests together, where no single effect is justified: their probability is below the significance, so that the
 /// recording departs from the hypothesis, most plainly where the clearest of them says.
 pub(super) fn of_all_together(
     before: &[Departure],
@@ -93,7 +93,7 @@ fn of_departures(mut departed: Vec<&Departure>, problem: &Problem, options: &Opt
     Some(Unnamed { finding, ln_p: worst.ln_p })
 }
 
-/// What a departure looks like, for a report.
+/// Shape of a departure, for a report.
 fn shape(departure: &Departure) -> ShapeRecord {
     let shape = departure.shape.unwrap_or_default();
     ShapeRecord {

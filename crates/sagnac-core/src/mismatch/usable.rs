@@ -1,12 +1,12 @@
-//! Whether a recorded column can drive anything.
+//! Columns that cannot drive anything.
 
 use super::finding::UnusableColumn;
 use crate::numeric::range::ends;
 
 /// Correlation with time from which a column counts it.
-const COUNTS: f64 = 1.0 - 1e-9;
+const MIN_TIME_CORRELATION: f64 = 1.0 - 1e-9;
 
-/// Why a column cannot drive anything; `None` for one that can.
+/// Reason why a column cannot drive anything; `None` for one that can.
 pub(super) fn unusable(values: &[f64]) -> Option<UnusableColumn> {
     if !ends(values).is_wide() {
         return Some(UnusableColumn::Constant);
@@ -20,7 +20,7 @@ pub(super) fn unusable(values: &[f64]) -> Option<UnusableColumn> {
         of_values += v * v;
         of_time += t * t;
     }
-    (both.abs() >= COUNTS * (of_values * of_time).sqrt()).then_some(UnusableColumn::CountsTime)
+    (both.abs() >= MIN_TIME_CORRELATION * (of_values * of_time).sqrt()).then_some(UnusableColumn::CountsTime)
 }
 
 #[cfg(test)]

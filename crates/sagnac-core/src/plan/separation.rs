@@ -13,8 +13,8 @@ use crate::estimate::chi_square_tail;
 use crate::mismatch::experiment::{Nearest, free_parameters, nearest, share_decided};
 use crate::mismatch::hypothesis::{PartModes, columns, kept};
 use crate::mismatch::noise_fit::{Noise, base_index, fit, whittle};
-use crate::mismatch::select::ENOUGH;
-use crate::mismatch::terms::{CourseIn, SpectrumIn};
+use crate::mismatch::select::MIN_DELTA_BIC;
+use crate::mismatch::terms::{MeanTerm, SpectralTerm};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::least_squares::{Normal, subtract};
 
@@ -23,7 +23,7 @@ const ALPHA: f64 = 0.01;
 /// Kinds that an explanation tries beside those of the catalogue, as `select` counts them.
 const FAMILY_BESIDE: f64 = 8.0;
 /// Probability of deciding between processes, without noise, below which it is not simulated.
-const HOPELESS: f64 = 0.05;
+const MIN_DECIDABLE_PROBABILITY: f64 = 0.05;
 /// Points that the search of a rival goes on from.
 const STARTS: usize = 2;
 
@@ -83,9 +83,9 @@ impl Shown {
                 if let SpectrumAct::Unconstrains(term) = spectrum.act()
                     && let (Some(i), Some(value)) = (base_index(term), fitted.first())
                 {
-                    (out.noise.base[i], out.noise.freed[i]) = (*value, true);
+                    (out.noise.base[i], out.noise.unconstrained[i]) = (*value, true);
                 }
-                out.noise.spectra.push(SpectrumIn { effect: stated.effect, fitted, stated: false });
+                out.noise.spectra.push(SpectralTerm { effect: stated.effect, fitted, stated: false });
             }
             Model::Samples(_) => return None,
         }
@@ -138,13 +138,13 @@ fn left_by(rival: &Shown, modes: &[f64], powers: &[f64], trial: &Trial) -> (Vec<
         let context = SearchContext { score: &score, modes, powers };
         let starts = course.starts(&spectral.drivers, &context).points;
         let from = |start: &Vec<f64>| {
-            let rival = CourseIn { effect, nonlinear_parameters: start.clone(), coefficients: vec![] };
+            let rival = MeanTerm { effect, nonlinear_parameters: start.clone(), coefficients: vec![] };
             (nearest(modes, &rival, course, spectral, powers), rival)
         };
         let best = starts.iter().take(STARTS).map(from).min_by(|a, b| a.0.squared.total_cmp(&b.0.squared));
         if let Some((Nearest { nonlinear_parameters, .. }, rival)) = best {
             parts.push(PartModes::of_shape(course, &nonlinear_parameters, spectral));
-            courses.push(CourseIn { nonlinear_parameters, ..rival });
+            courses.push(MeanTerm { nonlinear_parameters, ..rival });
         }
     }
     let mut left = modes.to_vec();
@@ -212,7 +212,7 @@ pub(super) fn found(truth: &Shown, claim: &Claim, trial: &Trial, asked: f64) -> 
     }
     let squared = squared_distance(truth, &Shown::nothing(claim, trial), trial);
     let chance = ALPHA / (EFFECTS.len() as f64 + FAMILY_BESIDE) / truth.trials(trial);
-    let threshold = (ENOUGH + truth.dof * trial.rows.ln()).max(quantile(chance, truth.dof));
+    let threshold = (MIN_DELTA_BIC + truth.dof * trial.rows.ln()).max(quantile(chance, truth.dof));
     Decision::by_gain(squared, threshold, truth.dof, asked)
 }
 
@@ -222,7 +222,7 @@ pub(super) fn told_apart(truth: &Shown, rival: &Shown, trial: &Trial, asked: f64
     let same = truth.effect.map(|e| e.kind()) == rival.effect.map(|e| e.kind());
     if truth.effect.is_none() {
         // The rival must lose what BIC charges it: chance alone gains χ² of its degrees of freedom.
-        let probability = 1.0 - chi_square_tail(price - ENOUGH, rival.dof);
+        let probability = 1.0 - chi_square_tail(price - MIN_DELTA_BIC, rival.dof);
         return if same { Decision::certain(0.0) } else { Decision::certain(probability) };
     }
     if !truth.applies || same && truth.modes == rival.modes {
@@ -231,8 +231,8 @@ pub(super) fn told_apart(truth: &Shown, rival: &Shown, trial: &Trial, asked: f64
     let squared = squared_distance(truth, rival, trial);
     // What the rival gains by chance is its degrees of freedom in the mean.
     let by_chance = if rival.effect.is_some() { rival.dof } else { 0.0 };
-    let decided = Decision::by_gain(squared, ENOUGH - price + by_chance, truth.dof, asked);
-    if truth.is_process() && rival.is_process() && decided.probability >= HOPELESS {
+    let decided = Decision::by_gain(squared, MIN_DELTA_BIC - price + by_chance, truth.dof, asked);
+    if truth.is_process() && rival.is_process() && decided.probability >= MIN_DECIDABLE_PROBABILITY {
         let probability = share_decided(&truth.noise, &rival.noise, &trial.full, price);
         let reached = if probability >= asked { 1.0 } else { decided.reached.min(0.99) };
         return Decision { probability, reached, squared };

@@ -15,7 +15,7 @@ pub struct BandwidthFilter;
 static PARAMS: [Param; 2] =
     [Param::reported("cutoff_hz", "Hz", 1e-9, 1e9), Param::inner("form", "", 1.0, 7.0)];
 
-/// How an output can be filtered. Stated by number: 1 first order before the samples are averaged, 2 first order on
+/// A filter of the output. Claimed by number: 1 first order before the samples are averaged, 2 first order on
 /// the spectrum of the samples, 3 second order (Butterworth) on it, 4 moving average of whole samples, 5 exponential
 /// smoothing of the samples, 6 first and 7 second order (Butterworth) by the bilinear transform.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,7 +29,7 @@ enum Form {
     BilinearSecond,
 }
 
-const FORMS: [Form; 7] = [
+const FILTER_FORMS: [Form; 7] = [
     Form::BeforeSampling,
     Form::FirstOrder,
     Form::SecondOrder,
@@ -48,8 +48,8 @@ const CUTOFF_REFINEMENTS: i32 = 3;
 const MAX_AVERAGE_SAMPLES: usize = 64;
 
 fn form(fitted: &[f64]) -> Form {
-    let number = fitted.get(1).copied().unwrap_or(1.0).round().clamp(1.0, FORMS.len() as f64);
-    FORMS[number as usize - 1]
+    let number = fitted.get(1).copied().unwrap_or(1.0).round().clamp(1.0, FILTER_FORMS.len() as f64);
+    FILTER_FORMS[number as usize - 1]
 }
 
 /// The filter of samples, of the forms that act on them.
@@ -212,7 +212,7 @@ impl Spectrum for BandwidthFilter {
         };
         let averages =
             (2..=MAX_AVERAGE_SAMPLES).map(|n| vec![average_cutoff_hz(n, first.dt_s), 4.0]).collect();
-        let forms = (1..=FORMS.len()).filter(|n| FORMS[n - 1] != Form::MovingAverage);
+        let forms = (1..=FILTER_FORMS.len()).filter(|n| FILTER_FORMS[n - 1] != Form::MovingAverage);
         forms.map(|n| of(n as f64)).chain([best(averages)]).flatten().collect()
     }
 
@@ -220,7 +220,7 @@ impl Spectrum for BandwidthFilter {
         let (dt, n) = context.bins.first().map_or((1.0, 64), |b| (b.dt_s, b.samples));
         vec![
             Bounds::new((10.0 / (n as f64 * dt)).min(0.1 / dt), 3.0 / dt),
-            Bounds::new(1.0, FORMS.len() as f64),
+            Bounds::new(1.0, FILTER_FORMS.len() as f64),
         ]
     }
 

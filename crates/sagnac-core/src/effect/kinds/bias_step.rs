@@ -17,7 +17,7 @@ static PARAMS: [Param; 2] = [
 describe! {
     BiasStep, "bias_step", Mean in Time, needs [],
     confusers [HeadingChange, RandomTelegraph, ExcessRrw],
-    properties [family Jump, reversed_pair UnobservedDriver],
+    properties [slow, family Jump, reversed_pair UnobservedDriver],
     with {
         fn later(&self, _values: &Values, _claim: &ClaimedMean) -> Later {
             Later::Nothing

@@ -7,8 +7,7 @@ use crate::effect::shared::reach::{beginning_s, record};
 use crate::effect::shared::search::best_of;
 use crate::effect::shared::stated_lines;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values,
-    list, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, list, number,
 };
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::range::Bounds;
@@ -37,10 +36,6 @@ fn per_ppm(i: usize, drivers: &Drivers) -> f64 {
 }
 
 impl MeanModel for ClockDrift {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         claimed_mean_varies(drivers) || stated_lines::any(drivers)
     }

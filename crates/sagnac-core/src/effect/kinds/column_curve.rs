@@ -3,11 +3,11 @@
 use crate::effect::mean::first;
 use crate::effect::shared::polynomial::{Scale, powers, sum};
 use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::response::COEFFICIENTS_LIST;
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::thermal;
 use crate::effect::{
-    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
-    list, number,
+    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -19,20 +19,18 @@ static PARAMS: [Param; 3] = [
     Param::inner("half_range", "", 1e-12, 1e9),
 ];
 
-/// The list of c₁, c₂, ..., deg/h.
-const COEFFICIENTS: &str = "coefficients_deg_h";
-
 describe! {
     ColumnCurve, "column_curve", Mean in Supply, needs [],
     confusers [SupplySensitivity, CrossAxis, TempRate, SfAsymmetry],
     lists [
-        Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
+        Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
     properties [carried_over, outside_format]
 }
 
 /// Quantities that the curve may follow: supply, rate of the other axis, rate of change of temperature, rate of the table.
-const DOMAINS: [Domain; 4] = [Domain::Supply, Domain::OuterRate, Domain::TemperatureRate, Domain::InputRate];
+const CURVE_DOMAINS: [Domain; 4] =
+    [Domain::Supply, Domain::OuterRate, Domain::TemperatureRate, Domain::InputRate];
 /// Highest power.
 const MAX_ORDER: usize = 4;
 
@@ -52,23 +50,19 @@ fn values(domain: Domain, drivers: &Drivers) -> Option<Vec<f64>> {
 /// Column and highest power of a shape.
 fn decode(nonlinear_parameters: &[f64]) -> Option<(Domain, usize)> {
     let [column, order] = nonlinear_parameters else { return None };
-    Some((*DOMAINS.get(column.round() as usize)?, (order.round() as usize).clamp(2, MAX_ORDER)))
+    Some((*CURVE_DOMAINS.get(column.round() as usize)?, (order.round() as usize).clamp(2, MAX_ORDER)))
 }
 
 impl MeanModel for ColumnCurve {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
-        DOMAINS.iter().any(|d| values(*d, drivers).is_some())
+        CURVE_DOMAINS.iter().any(|d| values(*d, drivers).is_some())
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        // Each further order has to be worth its parameter.
+        // Each further order must pay for its parameter.
         let price = 0.5 * (drivers.samples.max(2) as f64).ln();
         let mut scored: Vec<(f64, Vec<f64>)> = vec![];
-        for (i, _) in DOMAINS.iter().enumerate().filter(|(_, d)| values(**d, drivers).is_some()) {
+        for (i, _) in CURVE_DOMAINS.iter().enumerate().filter(|(_, d)| values(**d, drivers).is_some()) {
             for order in 2..=MAX_ORDER {
                 let point = vec![i as f64, order as f64];
                 let gain = gain_of(self.regressors(&point, drivers), context);
@@ -80,7 +74,7 @@ impl MeanModel for ColumnCurve {
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
-        vec![Bounds::new(0.0, (DOMAINS.len() - 1) as f64), Bounds::new(2.0, MAX_ORDER as f64)]
+        vec![Bounds::new(0.0, (CURVE_DOMAINS.len() - 1) as f64), Bounds::new(2.0, MAX_ORDER as f64)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
@@ -97,12 +91,12 @@ impl MeanModel for ColumnCurve {
     }
 
     fn linear_list(&self) -> Option<&'static str> {
-        Some(COEFFICIENTS)
+        Some(COEFFICIENTS_LIST)
     }
 
     fn course(&self, given: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let of = |i: usize| number(given, PARAMS[i].name);
-        let coefficients = list(given, COEFFICIENTS);
+        let coefficients = list(given, COEFFICIENTS_LIST);
         let order = coefficients.len().clamp(1, MAX_ORDER);
         let (domain, _) = decode(&[of(0)?, order as f64])?;
         let half = of(2).filter(|h| *h > 0.0)?;

@@ -5,11 +5,11 @@ use crate::effect::shared::chance::follows_by_chance;
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::response::{
-    self, CENTER, COEFFICIENTS_LIST, HALF_RANGE, ResponseLaw, SCALES_LIST, TERMS_LIST,
+    self, CENTER_NAME, COEFFICIENTS_LIST, HALF_RANGE, ResponseLaw, SCALES_LIST, TERMS_LIST,
 };
 use crate::effect::{
-    Column, Domain, Drivers, MeanModel, OtherDriver, Param, Place, Regressors, SearchContext, Sizing, Starts,
-    Unmodelled, Value, Values, text,
+    COLUMN_TEXT, Column, Domain, Drivers, MeanModel, OtherDriver, Param, Place, Regressors, SearchContext,
+    Sizing, Starts, Unmodelled, Value, Values, text,
 };
 use crate::numeric::range::Bounds;
 
@@ -17,14 +17,12 @@ pub struct ColumnDriver;
 
 static PARAMS: [Param; 3] = [
     Param::reported("coefficient", "", -1e12, 1e12).signed(),
-    Param::inner(CENTER, "", -1e12, 1e12),
+    Param::inner(CENTER_NAME, "", -1e12, 1e12),
     Param::inner(HALF_RANGE, "", 1e-12, 1e12),
 ];
 
-/// Name of the text that says which column.
-const COLUMN: &str = "column";
 /// Name of the text that says by which law.
-const LAW: &str = "law";
+const LAW_TEXT: &str = "law";
 
 describe! {
     ColumnDriver, "column_driver", Mean in Driver, needs [],
@@ -34,8 +32,8 @@ describe! {
         Param::inner(SCALES_LIST, "", 0.0, 1e9),
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
-    texts [COLUMN, LAW],
-    properties [carried_over, follows_any_column]
+    texts [COLUMN_TEXT, LAW_TEXT],
+    properties [slow, carried_over, follows_any_column]
 }
 
 /// A shape, from its nonlinear parameters: a column, terms, a law.
@@ -111,7 +109,7 @@ impl MeanModel for ColumnDriver {
 
     fn texts(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<(&'static str, String)> {
         decode(nonlinear_parameters, drivers).map_or_else(Vec::new, |m| {
-            vec![(COLUMN, m.driver.column.name().to_owned()), (LAW, m.law.id().to_owned())]
+            vec![(COLUMN_TEXT, m.driver.column.name().to_owned()), (LAW_TEXT, m.law.id().to_owned())]
         })
     }
 
@@ -122,9 +120,9 @@ impl MeanModel for ColumnDriver {
     /// Proportional to each column that varies.
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
         let varying = || drivers.others.iter().filter(|o| varies(Some(&o.smooth)));
-        let trials = response::TERMS as f64 * varying().count() as f64;
+        let trials = response::TERM_COUNT as f64 * varying().count() as f64;
         let of = |other: &OtherDriver| {
-            let place = [(COLUMN.to_owned(), Value::Text(other.column.name().to_owned()))].into();
+            let place = [(COLUMN_TEXT.to_owned(), Value::Text(other.column.name().to_owned()))].into();
             let sizing = Sizing::searched(&PARAMS[0], vec![place], 1, trials);
             Sizing { column: Some(other.column), ..sizing }
         };
@@ -138,21 +136,21 @@ impl MeanModel for ColumnDriver {
         size: f64,
         drivers: &Drivers,
     ) -> Option<Vec<f64>> {
-        let column = Column::of_name(text(place, COLUMN)?);
+        let column = Column::of_name(text(place, COLUMN_TEXT)?);
         let driver = drivers.others.iter().find(|o| o.column == column)?;
         Some(driver.smooth.iter().map(|x| size * x).collect())
     }
 
     /// The curve of first order in the units of the column.
     fn claimed_size(&self, _sizing: &Sizing, place: &Values, size: f64, drivers: &Drivers) -> Values {
-        let column = text(place, COLUMN).map(Column::of_name);
+        let column = text(place, COLUMN_TEXT).map(Column::of_name);
         let driver = drivers.others.iter().find(|o| Some(o.column) == column);
         let [center, half] = driver.map_or([0.0, 1.0], |d| response::stated_range(&d.smooth));
         let lists = response::stated_lists(response::FIRST_ORDER, &[size * half]).into_iter();
         let lists = lists.map(|(name, list)| (name.to_owned(), Value::List(list)));
-        let numbers = [(PARAMS[0].name, size), (CENTER, center), (HALF_RANGE, half)];
+        let numbers = [(PARAMS[0].name, size), (CENTER_NAME, center), (HALF_RANGE, half)];
         let numbers = numbers.map(|(name, value)| (name.to_owned(), Value::Number(value)));
-        let law = (LAW.to_owned(), Value::Text(ResponseLaw::Linear.id().to_owned()));
+        let law = (LAW_TEXT.to_owned(), Value::Text(ResponseLaw::Linear.id().to_owned()));
         place.clone().into_iter().chain(lists).chain(numbers).chain([law]).collect()
     }
 
@@ -161,7 +159,7 @@ impl MeanModel for ColumnDriver {
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let column = Column::of_name(text(values, COLUMN)?);
+        let column = Column::of_name(text(values, COLUMN_TEXT)?);
         let driver = drivers.others.iter().find(|o| o.column == column)?;
         response::course(values, &driver.smooth, drivers)
     }
@@ -199,9 +197,9 @@ mod tests {
             .into_iter()
             .map(|(n, l)| (n.to_owned(), Value::List(l)))
             .collect();
-        stated.insert(CENTER.to_owned(), Value::Number(1000.0));
+        stated.insert(CENTER_NAME.to_owned(), Value::Number(1000.0));
         stated.insert(HALF_RANGE.to_owned(), Value::Number(50.0));
-        stated.insert(COLUMN.to_owned(), Value::Text("pressure_hPa".to_owned()));
+        stated.insert(COLUMN_TEXT.to_owned(), Value::Text("pressure_hPa".to_owned()));
         // 2 deg/h for each 50 hPa.
         let course = ColumnDriver.course(&stated, &drivers).unwrap();
         assert!((course[25] - 1.0).abs() < 1e-12, "{}", course[25]);
@@ -209,7 +207,7 @@ mod tests {
             panic!("no coefficient")
         };
         assert!((coefficient - 2.0 / 24.5).abs() < 1e-12);
-        stated.insert(COLUMN.to_owned(), Value::Text("humidity".to_owned()));
+        stated.insert(COLUMN_TEXT.to_owned(), Value::Text("humidity".to_owned()));
         assert!(ColumnDriver.course(&stated, &drivers).is_none());
     }
 }

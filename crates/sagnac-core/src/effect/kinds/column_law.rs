@@ -5,6 +5,7 @@ use crate::effect::shared::law::{self, Columns, Factor, Form, MAX_TERMS, Term};
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::pursuit::choices;
 use crate::effect::shared::reach::reach;
+use crate::effect::shared::response::COEFFICIENTS_LIST;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, text,
 };
@@ -16,10 +17,9 @@ static PARAMS: [Param; 0] = [];
 
 /// Name of the text of the terms.
 const TERMS_TEXT: &str = "terms";
-/// Names of the lists: middle and half width of the range of each factor, coefficient of each term, deg/h.
+/// Names of the lists of the middle and the half width of the range of each factor.
 const CENTERS_LIST: &str = "centers";
 const HALF_RANGES_LIST: &str = "half_ranges";
-const COEFFICIENTS_LIST: &str = "coefficients_deg_h";
 
 describe! {
     ColumnLaw, "column_law", Mean in Driver, needs [],
@@ -30,7 +30,7 @@ describe! {
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
     texts [TERMS_TEXT],
-    properties [carried_over, outside_format]
+    properties [slow, carried_over, outside_format]
 }
 
 /// Terms of nonlinear parameters: positions among the terms of the columns, −1 for none.

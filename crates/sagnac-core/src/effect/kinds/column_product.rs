@@ -1,13 +1,13 @@
-//! A contribution that goes with the product of two columns, or of one with the time. It has no kind of its own in the
+//! A contribution proportional to the product of two columns, or of one with the time. It has no kind of its own in the
 //! format of explanations.
 
 use crate::effect::mean;
 use crate::effect::shared::polynomial::{Scale, sum};
 use crate::effect::shared::reach::{reach, record, varies};
+use crate::effect::shared::response::COEFFICIENTS_LIST;
 use crate::effect::shared::search::gain_of;
 use crate::effect::{
-    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
-    list, number,
+    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, number,
 };
 use crate::numeric::range::{Bounds, ends};
 
@@ -21,14 +21,11 @@ static PARAMS: [Param; 5] = [
     Param::inner("second_half_range", "", 1e-12, 1e9),
 ];
 
-/// The list of c₁, c₂, c₃, deg/h.
-const COEFFICIENTS: &str = "coefficients_deg_h";
-
 describe! {
     ColumnProduct, "column_product", Mean in Temperature, needs [],
     confusers [SupplySensitivity, TempPolynomial, SfTemperature, UnobservedDriver],
     lists [
-        Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
+        Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
     properties [outside_format]
 }
@@ -43,7 +40,7 @@ enum Factor {
 use Column::{OuterRate, Supply, TableRate, Temperature};
 
 /// The products. Temperature and rate of the table are left out: they have a kind of their own.
-const PAIRS: [(Factor, Factor); 9] = [
+const FACTOR_PAIRS: [(Factor, Factor); 9] = [
     (Factor::Of(Temperature), Factor::Of(Supply)),
     (Factor::Of(Temperature), Factor::Of(OuterRate)),
     (Factor::Of(Temperature), Factor::Time),
@@ -70,10 +67,10 @@ fn domain(factor: Factor) -> Domain {
 }
 
 fn pair(nonlinear_parameters: &[f64]) -> Option<(Factor, Factor)> {
-    PAIRS.get(nonlinear_parameters.first()?.round() as usize).copied()
+    FACTOR_PAIRS.get(nonlinear_parameters.first()?.round() as usize).copied()
 }
 
-/// Middle and half width of a factor; a rate is not centred, since nothing goes with it at rest.
+/// Middle and half width of a factor; a rate is not centred, since a product with it is zero at rest.
 fn scale(factor: Factor, values: &[f64]) -> Scale {
     let Bounds { low, high } = ends(values);
     match factor {
@@ -102,16 +99,12 @@ fn own_scales((first, second): (Factor, Factor), drivers: &Drivers) -> Option<[S
 }
 
 impl MeanModel for ColumnProduct {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
-        PAIRS.iter().any(|(a, b)| values(*a, drivers).is_some() && values(*b, drivers).is_some())
+        FACTOR_PAIRS.iter().any(|(a, b)| values(*a, drivers).is_some() && values(*b, drivers).is_some())
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        let points = (0..PAIRS.len()).map(|i| vec![i as f64]);
+        let points = (0..FACTOR_PAIRS.len()).map(|i| vec![i as f64]);
         let scored = points.map(|point| (gain_of(self.regressors(&point, drivers), context), point));
         let scored: Vec<(f64, Vec<f64>)> = scored.filter(|(gain, _)| *gain > 0.0).collect();
         let trials = scored.len() as f64;
@@ -119,7 +112,7 @@ impl MeanModel for ColumnProduct {
     }
 
     fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
-        vec![Bounds::new(0.0, (PAIRS.len() - 1) as f64)]
+        vec![Bounds::new(0.0, (FACTOR_PAIRS.len() - 1) as f64)]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
@@ -134,14 +127,14 @@ impl MeanModel for ColumnProduct {
     }
 
     fn linear_list(&self) -> Option<&'static str> {
-        Some(COEFFICIENTS)
+        Some(COEFFICIENTS_LIST)
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let of = |i: usize| number(values, PARAMS[i].name);
         let scales = [Scale { center: of(1)?, half: of(2)? }, Scale { center: of(3)?, half: of(4)? }];
         let columns = columns(pair(&[of(0)?])?, scales, drivers)?;
-        Some(sum(list(values, COEFFICIENTS), &columns))
+        Some(sum(list(values, COEFFICIENTS_LIST), &columns))
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

@@ -5,11 +5,11 @@ use crate::effect::shared::periodogram::LineGains;
 use crate::effect::shared::phase::Phase;
 use crate::effect::shared::polynomial::{Scale, sum};
 use crate::effect::shared::reach::varies;
-use crate::effect::shared::response::{CENTER, COEFFICIENTS_LIST, HALF_RANGE};
+use crate::effect::shared::response::{CENTER_NAME, COEFFICIENTS_LIST, HALF_RANGE};
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::sinusoid;
 use crate::effect::{
-    Column, Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values,
+    COLUMN_TEXT, Column, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values,
     list, number, text,
 };
 use crate::numeric::order::SortByNumber;
@@ -19,23 +19,21 @@ pub struct Comb;
 
 static PARAMS: [Param; 3] = [
     Param::reported("fundamental_hz", "Hz", 0.0, 1e6),
-    Param::inner(CENTER, "", -1e12, 1e12),
+    Param::inner(CENTER_NAME, "", -1e12, 1e12),
     Param::inner(HALF_RANGE, "", 1e-12, 1e12),
 ];
 
-/// Name of the text that says which column folds it, where one does.
-const COLUMN: &str = "column";
 /// Name of the list of harmonics.
-const HARMONICS: &str = "harmonics";
+const HARMONICS_LIST: &str = "harmonics";
 
 describe! {
     Comb, "comb", Mean in Frequency, needs [],
     confusers [Line, QuasiPeriodic, ResetRipple, TableHarmonic],
     lists [
-        Param::inner(HARMONICS, "", 1.0, 24.0),
+        Param::inner(HARMONICS_LIST, "", 1.0, 24.0),
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
-    texts [COLUMN],
+    texts [COLUMN_TEXT],
     properties [carried_over]
 }
 
@@ -113,7 +111,7 @@ struct Candidate {
     score: f64,
 }
 
-/// The best comb in time: at each fundamental, the harmonics that are worth their price.
+/// The best comb in time: at each fundamental, the harmonics that pay for their parameter.
 fn in_time(drivers: &Drivers, context: &SearchContext<'_>, bounds: Bounds) -> Option<Candidate> {
     let LineGains { gains, step_hz } = LineGains::of(drivers, context);
     let price = price(drivers);
@@ -164,10 +162,6 @@ fn over_ramp(column: usize, drivers: &Drivers, context: &SearchContext<'_>) -> O
 }
 
 impl MeanModel for Comb {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= MIN_SAMPLES
     }
@@ -223,27 +217,27 @@ impl MeanModel for Comb {
     ) -> Vec<(&'static str, Vec<f64>)> {
         let mask = nonlinear_parameters.get(1).copied().unwrap_or(0.0);
         vec![
-            (HARMONICS, harmonics(mask).map(f64::from).collect()),
+            (HARMONICS_LIST, harmonics(mask).map(f64::from).collect()),
             (COEFFICIENTS_LIST, coefficients.to_vec()),
         ]
     }
 
     fn texts(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<(&'static str, String)> {
         let Some(Shape::Ramp { column, .. }) = Shape::of(nonlinear_parameters) else { return vec![] };
-        drivers.others.get(column).map(|o| (COLUMN, o.column.name().to_owned())).into_iter().collect()
+        drivers.others.get(column).map(|o| (COLUMN_TEXT, o.column.name().to_owned())).into_iter().collect()
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let orders: Vec<u32> = list(values, HARMONICS).iter().map(|h| *h as u32).collect();
+        let orders: Vec<u32> = list(values, HARMONICS_LIST).iter().map(|h| *h as u32).collect();
         let coefficients = list(values, COEFFICIENTS_LIST);
         if orders.is_empty() || coefficients.len() != 2 * orders.len() {
             return None;
         }
-        let columns = match text(values, COLUMN) {
+        let columns = match text(values, COLUMN_TEXT) {
             Some(name) => {
                 let column = Column::of_name(name);
                 let driver = drivers.others.iter().find(|o| o.column == column)?;
-                let scale = Scale { center: number(values, CENTER)?, half: number(values, HALF_RANGE)? };
+                let scale = Scale { center: number(values, CENTER_NAME)?, half: number(values, HALF_RANGE)? };
                 let phase = Phase::of(&driver.values, scale)?;
                 orders.iter().flat_map(|h| phase.harmonic(*h)).collect()
             }

@@ -1,7 +1,7 @@
 //! Sensitivity to the rate about the other axis.
 
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::{Domain, Drivers, MeanModel, Param, Place, Resolution};
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place};
 
 pub struct CrossAxis;
 
@@ -13,10 +13,6 @@ describe! {
 }
 
 impl MeanModel for CrossAxis {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         varies(drivers.outer_rate.as_deref())
     }
@@ -34,14 +30,12 @@ impl MeanModel for CrossAxis {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{MeanModel, Value, Values};
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn a_milliradian_sees_a_thousandth_of_the_other_axis() {
         let drivers = Drivers { outer_rate: Some(vec![10.0, -5.0]), ..Drivers::default() };
-        let course = CrossAxis
-            .course(&Values::from([("misalignment_mrad".to_owned(), Value::Number(2.0))]), &drivers)
-            .unwrap();
+        let course = CrossAxis.course(&numbers([("misalignment_mrad", 2.0)]), &drivers).unwrap();
         assert!((course[0] - 72.0).abs() < 1e-12 && (course[1] + 36.0).abs() < 1e-12, "{course:?}");
     }
 }

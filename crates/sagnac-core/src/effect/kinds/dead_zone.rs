@@ -3,8 +3,7 @@
 use crate::effect::shared::search::{best_of, fast_level, log_grid, peaks};
 use crate::effect::sizing::numbers;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values,
-    number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::order::SortByNumber;
 use crate::numeric::range::Bounds;
@@ -85,10 +84,6 @@ fn widths(drivers: &Drivers, context: &SearchContext<'_>, keep: usize) -> Vec<f6
 }
 
 impl MeanModel for DeadZone {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         sizes(drivers).is_some_and(|(_, _, between)| between > 0)
     }
@@ -163,19 +158,15 @@ impl MeanModel for DeadZone {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
 
     #[test]
     fn within_the_zone_all_of_the_rate_is_lost_and_beyond_what_stays_behind() {
         // 0.36, 3.6 and −7.2 deg/h.
         let drivers = Drivers { table_rate: Some(vec![1e-4, 1e-3, -2e-3]), ..Drivers::default() };
-        let stated = Values::from([("half_width_deg_h".to_owned(), Value::Number(3.0))]);
+        let stated = numbers([("half_width_deg_h", 3.0)]);
         let course = DeadZone.course(&stated, &drivers).unwrap();
         assert!((course[0] + 0.36).abs() < 1e-12 && course[1..] == [0.0, 0.0], "{course:?}");
-        let stated = Values::from([
-            ("half_width_deg_h".to_owned(), Value::Number(3.0)),
-            ("stays_behind".to_owned(), Value::Number(1.0)),
-        ]);
+        let stated = numbers([("half_width_deg_h", 3.0), ("stays_behind", 1.0)]);
         let course = DeadZone.course(&stated, &drivers).unwrap();
         assert!((course[0] + 0.36).abs() < 1e-12 && course[1..] == [-3.0, 3.0], "{course:?}");
     }

@@ -20,7 +20,8 @@ static PARAMS: [Param; 3] = [
 
 describe! {
     Diurnal, "diurnal", Mean in Frequency, needs [],
-    confusers [Line, TempLinear, UnobservedDriver, RateRamp]
+    confusers [Line, TempLinear, UnobservedDriver, RateRamp],
+    properties [slow]
 }
 
 /// Length of a day, s.
@@ -90,14 +91,11 @@ impl MeanModel for Diurnal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
 
     #[test]
     fn half_a_day_turns_the_sign() {
         let drivers = Drivers { dt_s: 3600.0, start_s: 0.0, samples: 24, ..Drivers::default() };
-        let course = Diurnal
-            .course(&Values::from([("amplitude_deg_h".to_owned(), Value::Number(3.0))]), &drivers)
-            .unwrap();
+        let course = Diurnal.course(&numbers([("amplitude_deg_h", 3.0)]), &drivers).unwrap();
         for i in 0..12 {
             assert!((course[i] + course[i + 12]).abs() < 1e-9, "{i}");
         }

@@ -3,7 +3,7 @@
 use crate::effect::shared::reach::record;
 use crate::effect::shared::sinusoid::{Sweep, polar, wave};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 use sagnac_fft::real_forward;
@@ -55,10 +55,6 @@ fn columns(frequency: f64, drift: f64, middle_s: f64, drivers: &Drivers) -> Vec<
 }
 
 impl MeanModel for DriftingLine {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= MIN_SAMPLES
     }

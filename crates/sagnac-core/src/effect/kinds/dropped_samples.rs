@@ -1,8 +1,9 @@
 //! Rows are missing.
 
+use crate::effect::sizing::numbers;
 use crate::effect::{
     Detection, Detector, Domain, Drivers, Param, Place, Reported, RowDetector, Rows, RowsFound, Samples,
-    Value, Values, list, number,
+    Values, list, number,
 };
 use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -13,15 +14,15 @@ static PARAMS: [Param; 2] =
     [Param::reported("missing_rows", "", 1.0, 1e7).count(10.0), Param::inner("gaps", "", 1.0, 1e6)];
 
 /// Last instant before each gap is later than this; rows that the gap swallows.
-const TIMES: &str = "gaps_time_s";
-const ROWS: &str = "gaps_rows";
+const TIMES_LIST: &str = "gaps_time_s";
+const ROWS_LIST: &str = "gaps_rows";
 
 describe! {
     DroppedSamples, "dropped_samples", Samples in Timestamps, needs [],
     confusers [ClockDrift, TimeOffset],
     lists [
-        Param::inner(TIMES, "s", f64::MIN, f64::MAX),
-        Param::inner(ROWS, "", 0.0, 1e7)
+        Param::inner(TIMES_LIST, "s", f64::MIN, f64::MAX),
+        Param::inner(ROWS_LIST, "", 0.0, 1e7)
     ]
 }
 
@@ -33,9 +34,9 @@ impl Samples for DroppedSamples {
         if n < 3 {
             return;
         }
-        let times = list(values, TIMES);
+        let times = list(values, TIMES_LIST);
         if !times.is_empty() {
-            for (time, rows) in times.iter().zip(list(values, ROWS)) {
+            for (time, rows) in times.iter().zip(list(values, ROWS_LIST)) {
                 let first =
                     ((time - drivers.start_s) / drivers.dt_s).round().clamp(1.0, n as f64 - 1.0) as usize;
                 let rows = rows.clamp(0.0, n as f64) as usize;
@@ -81,7 +82,7 @@ impl RowDetector for DroppedSamples {
         };
         let detection = Detection {
             reported: vec![Reported::new(PARAMS[0].name, PARAMS[0].unit, count, [count, count])],
-            stated: Values::from([(PARAMS[0].name.to_owned(), Value::Number(count))]),
+            stated: numbers([(PARAMS[0].name, count)]),
             places: vec![place],
             gain: f64::INFINITY,
             parameters: missing.len(),
@@ -94,6 +95,7 @@ impl RowDetector for DroppedSamples {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::Value;
 
     fn lost(values: &Values, n: usize, seed: u64) -> Vec<usize> {
         let drivers = Drivers { dt_s: 0.1, start_s: 5.0, samples: n, ..Drivers::default() };
@@ -105,8 +107,8 @@ mod tests {
     #[test]
     fn listed_gaps_are_where_they_are_said_to_be() {
         let values = Values::from([
-            (TIMES.to_owned(), Value::List(vec![5.3, 6.0, 99.0])),
-            (ROWS.to_owned(), Value::List(vec![2.0, 1.0, 5.0])),
+            (TIMES_LIST.to_owned(), Value::List(vec![5.3, 6.0, 99.0])),
+            (ROWS_LIST.to_owned(), Value::List(vec![2.0, 1.0, 5.0])),
         ]);
         assert_eq!(lost(&values, 20, 0), [3, 4, 10]);
     }
@@ -126,10 +128,7 @@ mod tests {
     #[test]
     fn as_many_rows_are_lost_as_asked_for() {
         for (missing, gaps) in [(1.0, 1.0), (37.0, 5.0), (400.0, 400.0)] {
-            let values = Values::from([
-                ("missing_rows".to_owned(), Value::Number(missing)),
-                ("gaps".to_owned(), Value::Number(gaps)),
-            ]);
+            let values = numbers([("missing_rows", missing), ("gaps", gaps)]);
             let lost = lost(&values, 1000, 4);
             assert_eq!(lost.len(), missing as usize);
             assert!(!lost.contains(&0) && !lost.contains(&999));

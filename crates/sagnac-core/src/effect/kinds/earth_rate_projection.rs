@@ -4,7 +4,7 @@ use crate::effect::shared::reach::varies;
 use crate::effect::shared::sinusoid::{polar, wave};
 use crate::effect::shared::table_angle::{columns, visited};
 use crate::effect::sizing::numbers;
-use crate::effect::{Drivers, MeanModel, Param, Place, Regressors, Resolution, Sizing, Values, number};
+use crate::effect::{Drivers, MeanModel, Param, Place, Regressors, Sizing, Values, number};
 
 pub struct EarthRateProjection;
 
@@ -25,10 +25,6 @@ impl EarthRateProjection {
 }
 
 impl MeanModel for EarthRateProjection {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         varies(drivers.table_angle.as_deref())
     }
@@ -73,21 +69,15 @@ impl MeanModel for EarthRateProjection {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
 
     #[test]
     fn a_resting_table_shows_the_projection_at_its_angle() {
         let drivers =
             Drivers { dt_s: 1.0, samples: 3, table_angle: Some(vec![60.0; 3]), ..Drivers::default() };
-        let stated = Values::from([
-            ("amplitude_deg_h".to_owned(), Value::Number(10.0)),
-            ("phase_deg".to_owned(), Value::Number(30.0)),
-        ]);
+        let stated = numbers([("amplitude_deg_h", 10.0), ("phase_deg", 30.0)]);
         let course = EarthRateProjection.course(&stated, &drivers).unwrap();
         assert!(course.iter().all(|x| x.abs() < 1e-12), "{course:?}");
-        let course = EarthRateProjection
-            .course(&Values::from([("amplitude_deg_h".to_owned(), Value::Number(10.0))]), &drivers)
-            .unwrap();
+        let course = EarthRateProjection.course(&numbers([("amplitude_deg_h", 10.0)]), &drivers).unwrap();
         assert!(course.iter().all(|x| (x - 5.0).abs() < 1e-12), "{course:?}");
     }
 }

@@ -9,26 +9,26 @@ pub struct ExcessFlicker;
 
 pub struct ExcessRrw;
 
-static N: [Param; 1] = [Param::reported("N_deg_rt_h", "deg/√h", 0.0, 1e3).corrects_claim()];
-static B: [Param; 1] = [Param::reported("B_deg_h", "deg/h", 0.0, 1e4).corrects_claim()];
-static K: [Param; 1] = [Param::reported("K_deg_h_rt_h", "deg/h/√h", 0.0, 1e4).corrects_claim()];
+static ARW_PARAMS: [Param; 1] = [Param::reported("N_deg_rt_h", "deg/√h", 0.0, 1e3).corrects_claim()];
+static FLICKER_PARAMS: [Param; 1] = [Param::reported("B_deg_h", "deg/h", 0.0, 1e4).corrects_claim()];
+static RRW_PARAMS: [Param; 1] = [Param::reported("K_deg_h_rt_h", "deg/h/√h", 0.0, 1e4).corrects_claim()];
 
 describe! {
     ExcessArw, "excess_arw", Spectrum in Frequency, needs [],
     confusers [MarkovShort, NoiseVarianceTime, OutlierBursts],
-    params N, properties [family Spectrum]
+    params ARW_PARAMS, properties [family Spectrum]
 }
 
 describe! {
     ExcessFlicker, "excess_flicker", Spectrum in Frequency, needs [],
     confusers [MarkovLong, ExcessRrw, UnobservedDriver],
-    params B, properties [family Spectrum]
+    params FLICKER_PARAMS, properties [family Spectrum]
 }
 
 describe! {
     ExcessRrw, "excess_rrw", Spectrum in Frequency, needs [],
     confusers [UnobservedDriver, MarkovLong, ExcessFlicker, BiasStep],
-    params K, properties [family Spectrum]
+    params RRW_PARAMS, properties [family Spectrum]
 }
 
 impl Spectrum for ExcessArw {

@@ -4,8 +4,8 @@ use super::earth_rate_projection::EarthRateProjection;
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::step::{around, instant_bounds, instants, sizing, step};
 use crate::effect::{
-    ClaimedMean, Drivers, Earth, Later, MeanModel, Param, Place, Regressors, Resolution, SearchContext,
-    Sizing, Starts, Values, number,
+    ClaimedMean, Drivers, Earth, Later, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts,
+    Values, number,
 };
 use crate::numeric::order::{SortByNumber, SortNumbers};
 use crate::numeric::range::Bounds;
@@ -21,7 +21,7 @@ static PARAMS: [Param; 4] = [
     Param::inner("sine_deg_h", "deg/h", -1e3, 1e3),
 ];
 
-/// The table's angle where it takes on headings apart enough for the projection to be told from a step.
+/// The table's angle where it takes on headings apart enough to distinguish the projection from a step.
 fn turning(drivers: &Drivers) -> Option<&[f64]> {
     let angle = drivers.table_angle.as_deref()?;
     let n = angle.len().max(1) as f64;
@@ -94,11 +94,6 @@ fn turned_instants(drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
 }
 
 impl MeanModel for HeadingChange {
-    /// Averages hold no angles.
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= 8
     }

@@ -6,8 +6,8 @@ use crate::effect::shared::search::{log_grid, peaks};
 use crate::effect::shared::sinusoid::{averaged, columns, polar, wave};
 use crate::effect::sizing::numbers;
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts,
-    StatedLine, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, StatedLine, Values,
+    number,
 };
 use crate::numeric::cosine::sinusoid_modes;
 use crate::numeric::optimize::parabolic_peak;
@@ -32,10 +32,6 @@ describe! {
 const MIN_CYCLES: f64 = 2.5;
 
 impl MeanModel for Line {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         drivers.samples >= 32
     }

@@ -7,8 +7,8 @@ use crate::effect::shared::variance::{
     GammaFit, Group, between, by_value, contrast, fit, overdispersion, raised, thinned,
 };
 use crate::effect::{
-    Column, Detector, Drivers, FlatResidual, Knot, Law, Level, LevelDetector, LevelLaw, Param, Place,
-    Samples, Value, Values, list, text,
+    COLUMN_TEXT, Column, Detector, Drivers, FlatResidual, Knot, Law, Level, LevelDetector, LevelLaw, Param,
+    Place, Samples, Value, Values, list, text,
 };
 use crate::numeric::range::{Bounds, ends};
 
@@ -16,8 +16,6 @@ pub struct NoiseVarianceDriver;
 
 static PARAMS: [Param; 1] = [Param::reported("ratio", "", 1.0, 1e3)];
 
-/// Name of the text that says which column.
-const COLUMN: &str = "column";
 /// Names of the lists of values of the column and of the ratios to the claimed level there.
 const KNOT_VALUES: &str = "knots_value";
 const KNOT_RATIOS: &str = "knots_ratio";
@@ -29,13 +27,14 @@ describe! {
         Param::inner(KNOT_VALUES, "", f64::MIN, f64::MAX),
         Param::inner(KNOT_RATIOS, "", 0.0, 1e3)
     ],
-    texts [COLUMN],
+    texts [COLUMN_TEXT],
     properties [carried_over]
 }
 
 impl Samples for NoiseVarianceDriver {
     fn apply(&self, values: &Values, drivers: &Drivers, _seed: u64, rate: &mut [f64], _keep: &mut [bool]) {
-        let Some(column) = text(values, COLUMN).and_then(|name| drivers.column(Column::of_name(name))) else {
+        let Some(column) = text(values, COLUMN_TEXT).and_then(|name| drivers.column(Column::of_name(name)))
+        else {
             return;
         };
         if let Some(knots) = Knots::new(list(values, KNOT_VALUES), list(values, KNOT_RATIOS)) {
@@ -64,7 +63,7 @@ impl LevelDetector for NoiseVarianceDriver {
 
     fn stated(&self, level: &Level, _drivers: &Drivers) -> Values {
         let Law::Column(column, knots) = &level.law else { return Values::new() };
-        let named = (COLUMN.to_owned(), Value::Text(column.name().to_owned()));
+        let named = (COLUMN_TEXT.to_owned(), Value::Text(column.name().to_owned()));
         values_of_knots(knots, KNOT_VALUES, KNOT_RATIOS).into_iter().chain([named]).collect()
     }
 }
@@ -73,7 +72,7 @@ impl LevelDetector for NoiseVarianceDriver {
 const MAX_EVEN_GAIN: f64 = 8.0;
 
 /// A level fitted over the values of a column.
-struct Over {
+struct LevelFit {
     groups: Vec<Group>,
     /// Mean value of each group.
     means: Vec<f64>,
@@ -83,7 +82,7 @@ struct Over {
 }
 
 /// The level of `flat` over the values of a column: a line or a parabola in its logarithm.
-fn over(values: &[f64], flat: &[f64], samples: &[usize]) -> Option<Over> {
+fn over(values: &[f64], flat: &[f64], samples: &[usize]) -> Option<LevelFit> {
     let (groups, means) = by_value(|i| values[i], flat, samples);
     let Bounds { low, high } = ends(&means);
     if !ends(&means).is_wide() {
@@ -99,7 +98,7 @@ fn over(values: &[f64], flat: &[f64], samples: &[usize]) -> Option<Over> {
         let score = |f: &f64, p: usize| 2.0 * f - p as f64 * rows;
         score(&a.0.gain, a.1.len()).total_cmp(&score(&b.0.gain, b.1.len()))
     })?;
-    Some(Over { groups, means, columns, best })
+    Some(LevelFit { groups, means, columns, best })
 }
 
 /// The law over the values of a column that the level follows; `None` where the level that it leaves follows the same column shifted
@@ -114,7 +113,7 @@ fn over_column(
     if matches!(column, Column::TableRate | Column::TableAngle) {
         return None;
     }
-    let Over { groups, means, columns, best } = over(values, &residual.flat, samples)?;
+    let LevelFit { groups, means, columns, best } = over(values, &residual.flat, samples)?;
     let (ratio, ci95) = contrast(&best.log_squares, &best.covariance, &columns);
     let knots: Vec<Knot> =
         means.iter().zip(&best.log_squares).map(|(v, l)| Knot { at: *v, value: (0.5 * l).exp() }).collect();
@@ -122,13 +121,14 @@ fn over_column(
     let free = columns.len();
     let profile: Vec<f64> = values.iter().map(|v| between(&knots, *v)).collect();
     let left: Vec<f64> = residual.flat.iter().zip(&profile).map(|(e, g)| e / g).collect();
-    let score = |o: &Over| o.best.gain / overdispersion(&o.groups, &o.best.log_squares, o.columns.len() + 1);
+    let score =
+        |o: &LevelFit| o.best.gain / overdispersion(&o.groups, &o.best.log_squares, o.columns.len() + 1);
     let of_slide = |slide: usize| over(&moved(values, slide), &left, samples).as_ref().map_or(0.0, score);
-    let own = Over { groups, means, columns, best };
+    let own = LevelFit { groups, means, columns, best };
     if is_chance(score(&own), MAX_EVEN_GAIN, of_slide) {
         return None;
     }
-    let Over { groups, best, .. } = own;
+    let LevelFit { groups, best, .. } = own;
     Some(LevelLaw {
         profile,
         law: Law::Column(column, thinned(&knots)),
@@ -155,7 +155,7 @@ mod tests {
         let drivers = Drivers { dt_s: 1.0, samples: 3, others: vec![other], ..Drivers::default() };
         let stated = |column: &str| {
             Values::from([
-                (COLUMN.to_owned(), Value::Text(column.to_owned())),
+                (COLUMN_TEXT.to_owned(), Value::Text(column.to_owned())),
                 (KNOT_VALUES.to_owned(), Value::List(vec![0.0, 10.0])),
                 (KNOT_RATIOS.to_owned(), Value::List(vec![1.0, 3.0])),
             ])

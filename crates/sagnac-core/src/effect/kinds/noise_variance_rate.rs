@@ -3,9 +3,10 @@
 use crate::effect::shared::noise_level::scale;
 use crate::effect::shared::reach::largest_rate;
 use crate::effect::shared::variance::{Group, by_value, mean_square, overdispersion};
+use crate::effect::sizing::numbers;
 use crate::effect::{
     Detector, Domain, Drivers, FlatResidual, Law, Level, LevelDetector, LevelLaw, Param, Place, Samples,
-    Value, Values, number,
+    Values, number,
 };
 use crate::numeric::optimize::{bisect, golden_section};
 use crate::numeric::range::ends;
@@ -50,7 +51,7 @@ impl LevelDetector for NoiseVarianceRate {
 
     fn stated(&self, level: &Level, _drivers: &Drivers) -> Values {
         let Law::Rate { exponent, .. } = &level.law else { return Values::new() };
-        Values::from([(PARAMS[1].name.to_owned(), Value::Number(f64::from(*exponent)))])
+        numbers([(PARAMS[1].name, f64::from(*exponent))])
     }
 }
 
@@ -137,7 +138,7 @@ fn likelihood(groups: &[Group], shares: &[f64], log_ratio: f64) -> f64 {
     -0.5 * logs - 0.5 * dof * mean_square(&scaled).max(1e-300).ln()
 }
 
-/// Where the value falls to `down` between `at` and `at + reach`.
+/// The place where the value falls to `down` between `at` and `at + reach`.
 fn crossing(value: impl Fn(f64) -> f64, at: f64, reach: f64, down: f64) -> f64 {
     let outside = at + reach;
     if value(outside) > down {
@@ -175,7 +176,7 @@ mod tests {
         let drivers =
             Drivers { dt_s: 1.0, samples: 4, table_rate: Some(table.clone()), ..Drivers::default() };
         let mut rate: Vec<f64> = table.iter().map(|r| 3600.0 * r + 1.0).collect();
-        let values = Values::from([("ratio".to_owned(), Value::Number(2.0))]);
+        let values = numbers([("ratio", 2.0)]);
         NoiseVarianceRate.apply(&values, &drivers, 1, &mut rate, &mut [true; 4]);
         let left: Vec<f64> = rate.iter().zip(&table).map(|(y, r)| y - 3600.0 * r).collect();
         for (got, expected) in left.iter().zip([1.0, 1.75f64.sqrt(), 2.0, 2.0]) {

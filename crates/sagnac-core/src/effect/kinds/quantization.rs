@@ -1,8 +1,9 @@
 //! The output is quantised in angle.
 
+use crate::effect::sizing::numbers;
 use crate::effect::{
     Detection, Domain, ModeBin, Param, Place, Reported, Rounding, SpectralContext, SpectralSizing, Spectrum,
-    Value, Values, number,
+    Values, number,
 };
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
@@ -39,7 +40,7 @@ impl Rounding for Quantization {
                 Reported::new(PARAMS[0].name, PARAMS[0].unit, step_arcsec, ci95),
                 Reported::new("rms_deg_h", "deg/h", rms, [rms * 0.999, rms * 1.001]),
             ],
-            stated: Values::from([(PARAMS[0].name.to_owned(), Value::Number(step_arcsec))]),
+            stated: numbers([(PARAMS[0].name, step_arcsec)]),
             places: vec![Place { domain: Domain::Amplitude, from: 0.0, to: step }],
             parameters: 1,
             ..Detection::default()

@@ -9,7 +9,8 @@ static PARAMS: [Param; 1] = [Param::reported("slope_deg_h_per_h", "deg/h/h", -1e
 
 describe! {
     RateRamp, "rate_ramp", Mean in Time, needs [],
-    confusers [ExcessRrw, WarmupExponential, UnobservedDriver]
+    confusers [ExcessRrw, WarmupExponential, UnobservedDriver],
+    properties [slow]
 }
 
 impl MeanModel for RateRamp {
@@ -31,14 +32,12 @@ impl MeanModel for RateRamp {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{Value, Values};
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn a_ramp_turns_about_the_middle_of_the_record() {
         let drivers = Drivers { dt_s: 900.0, samples: 8, ..Drivers::default() };
-        let course = RateRamp
-            .course(&Values::from([("slope_deg_h_per_h".to_owned(), Value::Number(0.5))]), &drivers)
-            .unwrap();
+        let course = RateRamp.course(&numbers([("slope_deg_h_per_h", 0.5)]), &drivers).unwrap();
         // Two hours: −1 h at the first sample, a quarter of an hour each.
         for (i, got) in course.iter().enumerate() {
             assert!((got - 0.5 * (0.25 * i as f64 - 1.0)).abs() < 1e-12, "{course:?}");

@@ -1,5 +1,6 @@
 //! Samples that repeat the one before them. They have no kind of their own in the format of explanations.
 
+use crate::effect::sizing::numbers;
 use crate::effect::{
     Detection, Detector, Domain, Drivers, Param, Place, Reported, RowDetector, Rows, RowsFound, Samples,
     Value, Values, list, number,
@@ -15,15 +16,15 @@ static PARAMS: [Param; 2] =
     [Param::reported("repeated_share", "", 1e-9, 1.0), Param::inner("repeated_rows_each", "", 1.0, 1e7)];
 
 /// First row that repeats, and how many do, of each run.
-const TIMES: &str = "repeats_time_s";
-const ROWS: &str = "repeats_rows";
+const TIMES_LIST: &str = "repeats_time_s";
+const ROWS_LIST: &str = "repeats_rows";
 
 describe! {
     RepeatedSamples, "repeated_samples", Samples in Time, needs [],
     confusers [MarkovShort, Quantization, Saturation],
     lists [
-        Param::inner(TIMES, "s", f64::MIN, f64::MAX),
-        Param::inner(ROWS, "", 0.0, 1e7)
+        Param::inner(TIMES_LIST, "s", f64::MIN, f64::MAX),
+        Param::inner(ROWS_LIST, "", 0.0, 1e7)
     ],
     properties [outside_format]
 }
@@ -38,9 +39,9 @@ impl Samples for RepeatedSamples {
                 rate[i] = rate[i - 1];
             }
         };
-        let times = list(values, TIMES);
+        let times = list(values, TIMES_LIST);
         if !times.is_empty() {
-            for (time, rows) in times.iter().zip(list(values, ROWS)) {
+            for (time, rows) in times.iter().zip(list(values, ROWS_LIST)) {
                 let first = ((time - drivers.start_s) / drivers.dt_s).round().clamp(0.0, n as f64) as usize;
                 repeat(first, rows.clamp(0.0, n as f64) as usize);
             }
@@ -67,15 +68,15 @@ impl Samples for RepeatedSamples {
 }
 
 /// Fewest repeats that are more than chance.
-const FEWEST: usize = 10;
+const MIN_REPEATS: usize = 10;
 /// Smallest differences that chance is judged by.
-const NEAREST: usize = 200;
+const NEAREST_DIFFERENCES: usize = 200;
 /// Least share of the differences within one step of the values from which the step is too coarse to tell a repeat by.
-const COARSE: f64 = 0.1;
+const MAX_SHARE_WITHIN_STEP: f64 = 0.1;
 /// Differences up to this share of the largest value are rounding of the digits that a number holds.
-const ROUNDING: f64 = 1e-9;
+const DIGIT_ROUNDING: f64 = 1e-9;
 /// Density of differences at zero over that of the nearest: a normal law is flatter by far at such shares.
-const PEAK: f64 = 1.2;
+const ZERO_DENSITY_RATIO: f64 = 1.2;
 
 /// Repeats that were found.
 #[derive(Debug, Clone, PartialEq)]
@@ -123,25 +124,25 @@ fn repeats(recorded: &Rows<'_>) -> Option<Repeats> {
     let held = |i: &usize| rate[*i] == rate[*i - 1];
     let own = |i: &usize| rate[*i] > low && rate[*i] < high && rate[*i] != 0.0;
     let rows: Vec<usize> = pairs().filter(held).filter(own).collect();
-    if rows.len() < FEWEST {
+    if rows.len() < MIN_REPEATS {
         return None;
     }
-    let rounding = ROUNDING * low.abs().max(high.abs());
+    let rounding = DIGIT_ROUNDING * low.abs().max(high.abs());
     let mut apart: Vec<f64> =
         pairs().map(|i| (rate[i] - rate[i - 1]).abs()).filter(|d| *d > rounding).collect();
-    let nearest = NEAREST.min(apart.len() / 10);
-    if nearest < FEWEST {
+    let nearest = NEAREST_DIFFERENCES.min(apart.len() / 10);
+    if nearest < MIN_REPEATS {
         return None;
     }
     let step = spacing(rate, present, rounding)?;
     let within = *apart.select_nth_unstable_by(nearest - 1, f64::total_cmp).1;
     let near = apart.iter().filter(|d| **d <= within.max(1.5 * step)).count();
-    if near as f64 > COARSE * apart.len() as f64 {
+    if near as f64 > MAX_SHARE_WITHIN_STEP * apart.len() as f64 {
         return None;
     }
     // Differences up to `within` either way are so many steps; a repeat is one more.
     let steps = 2.0 * (within / step).max(1.0);
-    let by_chance = PEAK / (PEAK + steps);
+    let by_chance = ZERO_DENSITY_RATIO / (ZERO_DENSITY_RATIO + steps);
     let (k, c) = (rows.len() as f64, near as f64);
     let share = k / (k + c);
     if share <= by_chance {
@@ -159,7 +160,7 @@ fn spacing(rate: &[f64], present: &[bool], rounding: f64) -> Option<f64> {
 }
 
 /// Runs that a claim lists one by one.
-const LISTED: usize = 256;
+const MAX_LISTED_RUNS: usize = 256;
 
 impl RowDetector for RepeatedSamples {
     fn find(&self, rows: &Rows<'_>) -> Option<RowsFound> {
@@ -171,14 +172,11 @@ impl RowDetector for RepeatedSamples {
         // Rows of one run repeat together.
         let half = 1.96 * (share * (1.0 - share) * each / n).sqrt();
         let ci95 = [(share - half).max(0.0), (share + half).min(1.0)];
-        let mut stated = Values::from([
-            (PARAMS[0].name.to_owned(), Value::Number(share)),
-            (PARAMS[1].name.to_owned(), Value::Number(each)),
-        ]);
-        if runs.len() <= LISTED {
+        let mut stated = numbers([(PARAMS[0].name, share), (PARAMS[1].name, each)]);
+        if runs.len() <= MAX_LISTED_RUNS {
             let times = runs.iter().map(|r| rows.time_s(r.0)).collect();
-            stated.insert(TIMES.to_owned(), Value::List(times));
-            stated.insert(ROWS.to_owned(), Value::List(runs.iter().map(|r| r.1 as f64).collect()));
+            stated.insert(TIMES_LIST.to_owned(), Value::List(times));
+            stated.insert(ROWS_LIST.to_owned(), Value::List(runs.iter().map(|r| r.1 as f64).collect()));
         }
         let (first, last) = found.stretch()?;
         let place = Place { domain: Domain::Time, from: rows.time_s(first - 1), to: rows.time_s(last) };
@@ -209,8 +207,8 @@ mod tests {
     #[test]
     fn listed_runs_hold_the_value_before_them() {
         let values = Values::from([
-            (TIMES.to_owned(), Value::List(vec![9.0, 11.0, 13.5])),
-            (ROWS.to_owned(), Value::List(vec![1.0, 2.0, 9.0])),
+            (TIMES_LIST.to_owned(), Value::List(vec![9.0, 11.0, 13.5])),
+            (ROWS_LIST.to_owned(), Value::List(vec![1.0, 2.0, 9.0])),
         ]);
         assert_eq!(applied(&values, 9), [0.0, 1.0, 1.0, 1.0, 4.0, 5.0, 6.0, 6.0, 6.0]);
     }
@@ -218,10 +216,7 @@ mod tests {
     #[test]
     fn a_share_of_the_rows_repeats_in_runs_of_the_length_asked_for() {
         for (share, each) in [(0.02, 1.0), (0.3, 2.5), (0.8, 10.0)] {
-            let values = Values::from([
-                ("repeated_share".to_owned(), Value::Number(share)),
-                ("repeated_rows_each".to_owned(), Value::Number(each)),
-            ]);
+            let values = numbers([("repeated_share", share), ("repeated_rows_each", each)]);
             let rate = applied(&values, 200_000);
             let repeats: Vec<bool> = rate.windows(2).map(|w| w[0] == w[1]).collect();
             let rows = repeats.iter().filter(|r| **r).count() as f64;
@@ -277,10 +272,7 @@ mod tests {
             let mut rate: Vec<f64> = white(n, 3).into_iter().map(|x| (x / step).round() * step).collect();
             let before = rate.clone();
             let drivers = Drivers { dt_s: 1.0, samples: n, ..Drivers::default() };
-            let values = Values::from([
-                ("repeated_share".to_owned(), Value::Number(0.02)),
-                ("repeated_rows_each".to_owned(), Value::Number(2.0)),
-            ]);
+            let values = numbers([("repeated_share", 0.02), ("repeated_rows_each", 2.0)]);
             RepeatedSamples.apply(&values, &drivers, 4, &mut rate, &mut []);
             let put: Vec<usize> = (1..n).filter(|i| rate[*i] != before[*i] && rate[*i] != 0.0).collect();
             let found = found(&rate).expect("repeats");

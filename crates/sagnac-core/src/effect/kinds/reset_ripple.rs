@@ -4,7 +4,7 @@ use crate::effect::shared::reach::varies;
 use crate::effect::shared::search::{best_of, fast_level, peaks};
 use crate::effect::shared::sinusoid::{averaged, pair, polar, wave};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
 use crate::numeric::optimize::parabolic_peak;
 use crate::numeric::order::SortByNumber;
@@ -52,7 +52,7 @@ fn sensed(bias: f64, drivers: &Drivers) -> Option<(Vec<f64>, Vec<f64>)> {
     Some((middles, steps))
 }
 
-/// How far the sensed angle goes, arcsec.
+/// Range of the sensed angle, arcsec.
 fn extent(bias: f64, drivers: &Drivers) -> f64 {
     sensed(bias, drivers).map_or(1.0, |(angle, _)| {
         let Bounds { low, high } = ends(&angle);
@@ -177,10 +177,6 @@ impl Octave {
 }
 
 impl MeanModel for ResetRipple {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         let slow = |r: &&f64| (3600.0 * **r * drivers.dt_s).abs() < 3600.0;
         varies(drivers.table_rate.as_deref())

@@ -4,7 +4,7 @@ use crate::effect::mean::first;
 use crate::effect::shared::reach::{largest_rate, varies};
 use crate::effect::shared::search::{best_of, log_grid, shortlist};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, number,
 };
 use crate::numeric::range::{Bounds, ends};
 
@@ -23,10 +23,6 @@ fn beyond(limit: f64, drivers: &Drivers) -> Option<Vec<f64>> {
 }
 
 impl MeanModel for Saturation {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         varies(drivers.table_rate.as_deref()) && largest_rate(drivers) > 0.0
     }
@@ -90,7 +86,7 @@ impl MeanModel for Saturation {
         vec![1e-3 * largest_rate(drivers)]
     }
 
-    /// Where the rate passes the limit on its way from one neighbour to the other: how long it was beyond within the sample,
+    /// Samples in which the rate passes the limit on its way from one neighbour to the other: how long it was beyond within the sample,
     /// its mean does not say. None where too few samples lie beyond altogether to do without them.
     fn curvature_within_average(&self, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
         let (Some(limit), Some(rate)) = (parameters.first(), &drivers.table_rate) else { return vec![] };

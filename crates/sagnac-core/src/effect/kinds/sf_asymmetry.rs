@@ -1,7 +1,7 @@
 //! Different scale factors for positive and negative rate.
 
 use crate::effect::shared::reach::large_rates;
-use crate::effect::{Drivers, MeanModel, Param, Place, Resolution};
+use crate::effect::{Drivers, MeanModel, Param, Place};
 use crate::numeric::range::{Bounds, ends};
 
 pub struct SfAsymmetry;
@@ -15,10 +15,6 @@ describe! {
 }
 
 impl MeanModel for SfAsymmetry {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     /// Rates of one sign alone cannot show it.
     fn applies(&self, drivers: &Drivers) -> bool {
         let Some(rate) = &drivers.table_rate else { return false };
@@ -38,14 +34,12 @@ impl MeanModel for SfAsymmetry {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{MeanModel, Value, Values};
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn both_signs_of_the_rate_are_off_by_half_of_the_asymmetry() {
         let drivers = Drivers { table_rate: Some(vec![-2.0, 0.0, 2.0]), ..Drivers::default() };
-        let course = SfAsymmetry
-            .course(&Values::from([("asymmetry_ppm".to_owned(), Value::Number(100.0))]), &drivers)
-            .unwrap();
+        let course = SfAsymmetry.course(&numbers([("asymmetry_ppm", 100.0)]), &drivers).unwrap();
         // 7200 deg/h · 50 ppm.
         for (got, expected) in course.iter().zip([0.36, 0.0, 0.36]) {
             assert!((got - expected).abs() < 1e-12, "{course:?}");

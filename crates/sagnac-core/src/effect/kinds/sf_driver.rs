@@ -5,7 +5,7 @@ use crate::effect::shared::reach::{large_rates, reach, varies};
 use crate::effect::shared::scale_factor;
 use crate::effect::sizing::numbers;
 use crate::effect::{
-    Column, Drivers, MeanModel, Param, Place, Resolution, SearchContext, Sizing, Starts, Value, Values,
+    COLUMN_TEXT, Column, Drivers, MeanModel, Param, Place, SearchContext, Sizing, Starts, Value, Values,
     number, text,
 };
 use crate::numeric::range::Bounds;
@@ -17,13 +17,10 @@ static PARAMS: [Param; 2] = [
     Param::inner("reference", "", -1e12, 1e12),
 ];
 
-/// Name of the text that says which column.
-const COLUMN: &str = "column";
-
 describe! {
     SfDriver, "sf_driver", Mean in InputRate, needs [TableRate],
     confusers [SfTemperature, SfError, ColumnProduct],
-    texts [COLUMN],
+    texts [COLUMN_TEXT],
     properties [carried_over]
 }
 
@@ -49,10 +46,6 @@ fn product(column: Column, reference: f64, drivers: &Drivers) -> Option<Vec<f64>
 }
 
 impl MeanModel for SfDriver {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         scale_factor::is_moving(drivers) && !columns(drivers).is_empty()
     }
@@ -84,7 +77,7 @@ impl MeanModel for SfDriver {
 
     fn texts(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<(&'static str, String)> {
         let column = decode(nonlinear_parameters, drivers);
-        column.map(|c| (COLUMN, c.name().to_owned())).into_iter().collect()
+        column.map(|c| (COLUMN_TEXT, c.name().to_owned())).into_iter().collect()
     }
 
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
@@ -92,7 +85,7 @@ impl MeanModel for SfDriver {
         let trials = candidates.len() as f64;
         let of = |column: &Column| {
             let reference = mean(drivers.column(*column)?);
-            let texts = [(COLUMN.to_owned(), Value::Text(column.name().to_owned()))];
+            let texts = [(COLUMN_TEXT.to_owned(), Value::Text(column.name().to_owned()))];
             let place = texts.into_iter().chain(numbers([(PARAMS[1].name, reference)])).collect();
             let sizing = Sizing::searched(&PARAMS[0], vec![place], 1, trials);
             Some(Sizing { column: Some(*column), ..sizing })
@@ -101,7 +94,7 @@ impl MeanModel for SfDriver {
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-        let column = Column::of_name(text(values, COLUMN)?);
+        let column = Column::of_name(text(values, COLUMN_TEXT)?);
         let (coefficient, reference) =
             (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name).unwrap_or(0.0));
         Some(product(column, reference, drivers)?.into_iter().map(|x| coefficient * x).collect())

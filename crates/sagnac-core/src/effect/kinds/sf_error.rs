@@ -1,7 +1,7 @@
 //! A scale factor that differs from the claimed one.
 
 use crate::effect::shared::reach::{large_rates, varies};
-use crate::effect::{Drivers, MeanModel, Nuisance, Param, Place, Resolution};
+use crate::effect::{Drivers, MeanModel, Nuisance, Param, Place};
 
 pub struct SfError;
 
@@ -13,10 +13,6 @@ describe! {
 }
 
 impl MeanModel for SfError {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn replaces(&self) -> Option<Nuisance> {
         Some(Nuisance::ScaleFactor)
     }
@@ -37,13 +33,13 @@ impl MeanModel for SfError {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{MeanModel, Value, Values};
+    use crate::effect::sizing::numbers;
+    use crate::effect::Values;
 
     #[test]
     fn a_millionth_of_one_deg_s_is_0_0036_deg_h() {
         let drivers = Drivers { table_rate: Some(vec![-2.0, 0.0, 5.0]), ..Drivers::default() };
-        let course =
-            SfError.course(&Values::from([("error_ppm".to_owned(), Value::Number(50.0))]), &drivers).unwrap();
+        let course = SfError.course(&numbers([("error_ppm", 50.0)]), &drivers).unwrap();
         for (got, expected) in course.iter().zip([-0.36, 0.0, 0.9]) {
             assert!((got - expected).abs() < 1e-12, "{course:?}");
         }

@@ -2,7 +2,7 @@
 
 use crate::effect::mean::first;
 use crate::effect::shared::reach::{large_rates, largest_rate, varies};
-use crate::effect::{Drivers, MeanModel, Param, Place, Resolution, Values, number};
+use crate::effect::{Drivers, MeanModel, Param, Place, Values, number};
 
 pub struct SfNonlinearity;
 
@@ -24,10 +24,6 @@ fn cubic(largest: f64, drivers: &Drivers) -> Option<Vec<f64>> {
 }
 
 impl MeanModel for SfNonlinearity {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     /// With a single size of rate the cubic term is a scale factor.
     fn applies(&self, drivers: &Drivers) -> bool {
         let most = largest_rate(drivers);
@@ -57,14 +53,12 @@ impl MeanModel for SfNonlinearity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::Value;
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn the_error_grows_with_the_square_of_the_rate_to_its_value_at_the_largest() {
         let drivers = Drivers { table_rate: Some(vec![-10.0, 5.0, 10.0]), ..Drivers::default() };
-        let course = SfNonlinearity
-            .course(&Values::from([("cubic_ppm_at_max".to_owned(), Value::Number(20.0))]), &drivers)
-            .unwrap();
+        let course = SfNonlinearity.course(&numbers([("cubic_ppm_at_max", 20.0)]), &drivers).unwrap();
         // 36 000 deg/h · 20 ppm; at half the rate an eighth of it.
         for (got, expected) in course.iter().zip([-0.72, 0.09, 0.72]) {
             assert!((got - expected).abs() < 1e-12, "{course:?}");

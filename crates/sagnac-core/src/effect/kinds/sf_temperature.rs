@@ -4,7 +4,7 @@ use super::temp_linear::reference;
 use crate::effect::shared::reach::{large_rates, reach, varies};
 use crate::effect::shared::scale_factor::{is_moving, product};
 use crate::effect::shared::thermal::smooth;
-use crate::effect::{Domain, Drivers, MeanModel, Param, Place, Resolution};
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place};
 
 pub struct SfTemperature;
 
@@ -17,10 +17,6 @@ describe! {
 }
 
 impl MeanModel for SfTemperature {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         is_moving(drivers) && varies(drivers.temperature.as_deref())
     }
@@ -40,7 +36,7 @@ impl MeanModel for SfTemperature {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{Value, Values};
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn the_scale_factor_is_the_claimed_one_at_the_reference() {
@@ -49,9 +45,7 @@ mod tests {
             temperature: Some(vec![20.0, 30.0]),
             ..Drivers::default()
         };
-        let course = SfTemperature
-            .course(&Values::from([("coefficient_ppm_per_degC".to_owned(), Value::Number(2.0))]), &drivers)
-            .unwrap();
+        let course = SfTemperature.course(&numbers([("coefficient_ppm_per_degC", 2.0)]), &drivers).unwrap();
         // 36 000 deg/h · 20 ppm.
         assert!(course[0] == 0.0 && (course[1] - 0.72).abs() < 1e-12, "{course:?}");
     }

@@ -6,7 +6,7 @@ use crate::effect::shared::reach::{large_rates, record};
 use crate::effect::shared::scale_factor::is_moving;
 use crate::effect::shared::search::gain_of;
 use crate::effect::{
-    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Starts, Values, list, number,
+    Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, number,
 };
 use crate::numeric::range::Bounds;
 use std::f64::consts::PI;
@@ -17,14 +17,14 @@ static PARAMS: [Param; 2] =
     [Param::inner("start_s", "s", -1e12, 1e12), Param::inner("length_s", "s", 1e-6, 1e12)];
 
 /// Name of the list of the coefficients of the cosines, ppm.
-const COEFFICIENTS: &str = "coefficients_ppm";
+const COEFFICIENTS_LIST: &str = "coefficients_ppm";
 /// Most cosines: the shortest period is a fourth of the record.
 const MAX_COSINES: usize = 8;
 
 describe! {
     SfUnrecorded, "sf_unrecorded", Mean in InputRate, needs [TableRate],
     confusers [SfDriver, SfTemperature, SfError],
-    lists [Param::inner(COEFFICIENTS, "ppm", -1e9, 1e9)],
+    lists [Param::inner(COEFFICIENTS_LIST, "ppm", -1e9, 1e9)],
     properties [reported_as SfDriver]
 }
 
@@ -38,10 +38,6 @@ fn columns(start_s: f64, length_s: f64, count: usize, drivers: &Drivers) -> Vec<
 }
 
 impl MeanModel for SfUnrecorded {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         is_moving(drivers) && drivers.table_rate.as_ref().is_some_and(|r| r.len() >= 64)
     }
@@ -83,12 +79,12 @@ impl MeanModel for SfUnrecorded {
         coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<(&'static str, Vec<f64>)> {
-        vec![(COEFFICIENTS, coefficients.to_vec())]
+        vec![(COEFFICIENTS_LIST, coefficients.to_vec())]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let of = |i: usize| number(values, PARAMS[i].name);
-        let coefficients = list(values, COEFFICIENTS);
+        let coefficients = list(values, COEFFICIENTS_LIST);
         let columns = columns(of(0)?, of(1)?, coefficients.len(), drivers);
         (!columns.is_empty()).then(|| sum(coefficients, &columns))
     }
@@ -128,7 +124,7 @@ mod tests {
         let stated = Values::from([
             ("start_s".to_owned(), Value::Number(0.0)),
             ("length_s".to_owned(), Value::Number(100.0)),
-            (COEFFICIENTS.to_owned(), Value::List(vec![20.0])),
+            (COEFFICIENTS_LIST.to_owned(), Value::List(vec![20.0])),
         ]);
         let course = SfUnrecorded.course(&stated, &drivers).unwrap();
         // 20 ppm of 36 000 deg/h at the start, nothing in the middle, as much the other way at the end.

@@ -1,7 +1,7 @@
 //! The bias follows the supply voltage.
 
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::{Domain, Drivers, MeanModel, Param, Place, Resolution};
+use crate::effect::{Domain, Drivers, MeanModel, Param, Place};
 
 pub struct SupplySensitivity;
 
@@ -14,10 +14,6 @@ describe! {
 }
 
 impl MeanModel for SupplySensitivity {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         varies(drivers.supply.as_deref())
     }
@@ -38,14 +34,13 @@ impl MeanModel for SupplySensitivity {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{Value, Values};
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn the_bias_follows_the_voltage_about_its_mean() {
         let drivers = Drivers { supply: Some(vec![5.0, 5.2, 4.8, 5.0]), ..Drivers::default() };
-        let course = SupplySensitivity
-            .course(&Values::from([("coefficient_deg_h_per_V".to_owned(), Value::Number(-3.0))]), &drivers)
-            .unwrap();
+        let course =
+            SupplySensitivity.course(&numbers([("coefficient_deg_h_per_V", -3.0)]), &drivers).unwrap();
         for (got, expected) in course.iter().zip([0.0, -0.6, 0.6, 0.0]) {
             assert!((got - expected).abs() < 1e-12, "{course:?}");
         }

@@ -7,7 +7,7 @@ use crate::effect::shared::sinusoid::{polar, wave};
 use crate::effect::shared::table_angle::{columns, visited};
 use crate::effect::sizing::numbers;
 use crate::effect::{
-    Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values, number,
+    Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::range::Bounds;
 
@@ -25,10 +25,6 @@ describe! {
 }
 
 impl MeanModel for TableHarmonic {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         varies(drivers.table_angle.as_deref())
     }

@@ -14,18 +14,18 @@ use crate::numeric::range::{Bounds, ends};
 pub struct TempHysteresis;
 
 /// Distance of the branches.
-pub(super) const WIDTH: Param = Param::reported("loop_width_deg_h", "deg/h", -1e6, 1e6);
+pub(super) const LOOP_WIDTH: Param = Param::reported("loop_width_deg_h", "deg/h", -1e6, 1e6);
 /// Half of what the temperature turns by before the state turns.
-const PLAY: Param = Param::inner("play_degC", "°C", 1e-6, 300.0);
+const PLAY_WIDTH: Param = Param::inner("play_degC", "°C", 1e-6, 300.0);
 /// 1: higher while heating; −1: higher while cooling. The width of a loop has no sign.
-const SENSE: Param = Param::inner("sense", "", -1.0, 1.0);
+const LOOP_SENSE: Param = Param::inner("sense", "", -1.0, 1.0);
 
-static PARAMS: [Param; 4] = [WIDTH, PLAY, Param::inner("first_state", "", -1.0, 1.0), SENSE];
+static PARAMS: [Param; 4] = [LOOP_WIDTH, PLAY_WIDTH, Param::inner("first_state", "", -1.0, 1.0), LOOP_SENSE];
 
 describe! {
     TempHysteresis, "temp_hysteresis", Mean in Temperature, needs [Temperature],
     confusers [TempRate, ThermalLag, TempPolynomial],
-    properties [carried_over, law Hysteresis]
+    properties [slow, carried_over, law Hysteresis]
 }
 
 /// Half the play's state, −1/2 on a cooling branch to 1/2 on a heating one: multiplied by the width of the loop.

@@ -1,10 +1,10 @@
 //! A bias that depends on the direction from which a temperature was reached, as a sum of loops of several widths: large turns
 //! of the temperature and small ones leave their own. It is reported as temperature hysteresis.
 
-use super::temp_hysteresis::{WIDTH, reverses};
+use super::temp_hysteresis::{LOOP_WIDTH, reverses};
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::response::{ANY_SHAPE, PLAYS, play};
+use crate::effect::shared::response::{ANY_SHAPE, COEFFICIENTS_LIST, PLAY_WIDTHS, play};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{Domain, Drivers, MeanModel, Param, Place, Regressors, Unmodelled, Values, list, number};
 use crate::numeric::range::{Bounds, ends};
@@ -12,7 +12,7 @@ use crate::numeric::range::{Bounds, ends};
 pub struct TempHysteresisLoops;
 
 static PARAMS: [Param; 3] = [
-    WIDTH,
+    LOOP_WIDTH,
     Param::inner("middle_degC", "°C", -300.0, 1000.0),
     Param::inner("half_range_degC", "°C", 1e-6, 1000.0),
 ];
@@ -23,20 +23,17 @@ const TEMPERATURE_BINS: usize = 24;
 const COMPARED_POINTS: usize = 2000;
 /// Change from one such point to the next, in parts of the range, below which a temperature neither rises nor falls.
 const STEADY_CHANGE: f64 = 0.002;
-/// Name of the list of the coefficients: that of the temperature in units of half its range, then those of the states.
-const COEFFICIENTS: &str = "coefficients_deg_h";
-
 describe! {
     TempHysteresisLoops, "temp_hysteresis_loops", Mean in Temperature, needs [Temperature],
     confusers [TempHysteresis, TempRateDelayed, ThermalLag],
-    lists [Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)],
-    properties [reported_as TempHysteresis]
+    lists [Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)],
+    properties [slow, reported_as TempHysteresis]
 }
 
 /// The temperature in units of half its range, and the state of each play.
 fn columns(t: &[f64], middle: f64, half: f64) -> Vec<Vec<f64>> {
     let scaled: Vec<f64> = t.iter().map(|t| (t - middle) / half).collect();
-    let states: Vec<Vec<f64>> = PLAYS.iter().map(|width| play(&scaled, *width)).collect();
+    let states: Vec<Vec<f64>> = PLAY_WIDTHS.iter().map(|width| play(&scaled, *width)).collect();
     std::iter::once(scaled).chain(states).collect()
 }
 
@@ -91,13 +88,13 @@ impl MeanModel for TempHysteresisLoops {
     }
 
     fn linear_list(&self) -> Option<&'static str> {
-        Some(COEFFICIENTS)
+        Some(COEFFICIENTS_LIST)
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let [middle, half] = [1, 2].map(|i: usize| number(values, PARAMS[i].name));
         let (middle, half) = (middle?, half.filter(|h| *h > 0.0)?);
-        let coefficients = list(values, COEFFICIENTS);
+        let coefficients = list(values, COEFFICIENTS_LIST);
         let columns = columns(smooth(drivers)?, middle, half);
         (coefficients.len() == columns.len()).then(|| sum(coefficients, &columns))
     }
@@ -111,6 +108,7 @@ impl MeanModel for TempHysteresisLoops {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn branches_are_apart_by_the_sum_of_the_states_where_all_have_turned() {
@@ -119,9 +117,8 @@ mod tests {
         let drivers =
             Drivers { dt_s: 1.0, samples: 2000, temperature: Some(t.clone()), ..Drivers::default() };
         let coefficients = [0.3, 0.1, 0.2, 0.0, 0.0];
-        let mut stated: Values =
-            crate::effect::sizing::numbers([(PARAMS[1].name, 20.0), (PARAMS[2].name, 10.0)]);
-        stated.insert(COEFFICIENTS.to_owned(), crate::effect::Value::List(coefficients.to_vec()));
+        let mut stated: Values = numbers([(PARAMS[1].name, 20.0), (PARAMS[2].name, 10.0)]);
+        stated.insert(COEFFICIENTS_LIST.to_owned(), crate::effect::Value::List(coefficients.to_vec()));
         let course = TempHysteresisLoops.course(&stated, &drivers).unwrap();
         // The middle of a heating and of the next cooling.
         let (up, down) = (250, 750);
@@ -131,7 +128,7 @@ mod tests {
         };
         assert!((width - 0.3).abs() < 1e-12 && (middle - 20.0).abs() < 1e-9 && (half - 10.0).abs() < 1e-9);
         // Too few coefficients state nothing.
-        stated.insert(COEFFICIENTS.to_owned(), crate::effect::Value::List(vec![0.3]));
+        stated.insert(COEFFICIENTS_LIST.to_owned(), crate::effect::Value::List(vec![0.3]));
         assert!(TempHysteresisLoops.course(&stated, &drivers).is_none());
     }
 }

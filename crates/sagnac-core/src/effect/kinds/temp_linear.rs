@@ -8,15 +8,15 @@ use crate::numeric::range::{Bounds, ends};
 pub struct TempLinear;
 
 /// The coefficient in all, that of the claim included.
-pub(super) const COEFFICIENT: Param =
+pub(super) const LINEAR_COEFFICIENT: Param =
     Param::reported("coefficient_deg_h_per_degC", "deg/h/°C", -1e5, 1e5).corrects_claim();
 
-static PARAMS: [Param; 1] = [COEFFICIENT];
+static PARAMS: [Param; 1] = [LINEAR_COEFFICIENT];
 
 describe! {
     TempLinear, "temp_linear", Mean in Temperature, needs [Temperature],
     confusers [TempPolynomial, TempRate, ThermalLag],
-    properties [carried_over, law Linear]
+    properties [slow, carried_over, law Linear]
 }
 
 /// The claimed coefficient, deg/h/°C; 0 where the claim states none.
@@ -59,16 +59,14 @@ impl MeanModel for TempLinear {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{Value, Values};
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn a_stated_coefficient_adds_what_it_exceeds_the_claimed_one_by() {
         let claimed = crate::effect::Temperature { coefficient_deg_h_per_degc: 0.1, reference_degc: 25.0 };
         let claim = crate::effect::ClaimedMean { temperature: Some(claimed), ..Default::default() };
         let drivers = Drivers { temperature: Some(vec![25.0, 35.0]), claim, ..Drivers::default() };
-        let course = TempLinear
-            .course(&Values::from([("coefficient_deg_h_per_degC".to_owned(), Value::Number(0.3))]), &drivers)
-            .unwrap();
+        let course = TempLinear.course(&numbers([("coefficient_deg_h_per_degC", 0.3)]), &drivers).unwrap();
         assert!(course[0] == 0.0 && (course[1] - 2.0).abs() < 1e-12, "{course:?}");
         assert_eq!(TempLinear.parameters(&[], &[0.2], &drivers), [0.1 + 0.2]);
     }

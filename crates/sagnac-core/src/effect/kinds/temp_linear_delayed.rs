@@ -1,7 +1,7 @@
 //! A linear temperature coefficient that differs from the claimed one and acts behind a delay: on the temperature of the coil, of
 //! which the thermometer on the housing is ahead. It is reported as a linear coefficient that differs.
 
-use super::temp_linear::{COEFFICIENT, claimed, reference};
+use super::temp_linear::{LINEAR_COEFFICIENT, claimed, reference};
 use crate::effect::shared::behind_delay::{self, late};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::thermal::smooth;
@@ -10,12 +10,12 @@ use crate::numeric::range::Bounds;
 
 pub struct TempLinearDelayed;
 
-static PARAMS: [Param; 2] = [COEFFICIENT, Param::inner("time_constant_s", "s", 1e-6, 1e6)];
+static PARAMS: [Param; 2] = [LINEAR_COEFFICIENT, Param::inner("time_constant_s", "s", 1e-6, 1e6)];
 
 describe! {
     TempLinearDelayed, "temp_linear_delayed", Mean in Temperature, needs [Temperature],
     confusers [TempLinear, ThermalLag, TempHysteresis],
-    properties [carried_over, reported_as TempLinear]
+    properties [slow, carried_over, reported_as TempLinear]
 }
 
 /// The delayed temperature from that at which the claimed dependence is 0, °C.
@@ -59,6 +59,7 @@ impl MeanModel for TempLinearDelayed {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::sizing::numbers;
     use crate::effect::{ClaimedMean, Temperature, Values};
 
     #[test]
@@ -70,7 +71,7 @@ mod tests {
         let drivers =
             Drivers { dt_s: 1.0, samples: 1000, temperature: Some(ramp), claim, ..Drivers::default() };
         // 2 deg/h/°C in all, of which the claim has 0.5.
-        let values = crate::effect::sizing::numbers([(PARAMS[0].name, 2.0), (PARAMS[1].name, 40.0)]);
+        let values = numbers([(PARAMS[0].name, 2.0), (PARAMS[1].name, 40.0)]);
         let course = TempLinearDelayed.course(&values, &drivers).unwrap();
         assert!(course[0] == 0.0 && (course[999] - 1.5 * (19.98 - 0.8)).abs() < 1e-9, "{}", course[999]);
         assert_eq!(TempLinearDelayed.parameters(&[40.0], &[1.5], &drivers), [2.0, 40.0]);

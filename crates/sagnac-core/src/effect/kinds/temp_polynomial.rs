@@ -2,7 +2,7 @@
 
 use crate::effect::shared::polynomial::{Scale, powers, sum};
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::response;
+use crate::effect::shared::response::{self, COEFFICIENTS_LIST};
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{
@@ -16,16 +16,13 @@ pub struct TempPolynomial;
 static PARAMS: [Param; 2] =
     [Param::inner("center_degC", "°C", -200.0, 300.0), Param::inner("half_range_degC", "°C", 1e-9, 500.0)];
 
-/// The list of c₁, c₂, ..., deg/h.
-const COEFFICIENTS: &str = "coefficients_deg_h";
-
 describe! {
     TempPolynomial, "temp_polynomial", Mean in Temperature, needs [Temperature],
     confusers [TempLinear, TempHysteresis, TempRate],
     lists [
-        Param::inner(COEFFICIENTS, "deg/h", -1e6, 1e6)
+        Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
-    properties [carried_over, law Curve]
+    properties [slow, carried_over, law Curve]
 }
 
 /// Middle and half width of the temperatures.
@@ -49,7 +46,7 @@ impl MeanModel for TempPolynomial {
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        // Each further order has to be worth its parameter.
+        // Each further order must pay for its parameter.
         let price = 0.5 * (drivers.samples.max(2) as f64).ln();
         let scored = (2..=4).map(|order| {
             let point = vec![f64::from(order)];
@@ -83,12 +80,12 @@ impl MeanModel for TempPolynomial {
         coefficients: &[f64],
         _drivers: &Drivers,
     ) -> Vec<(&'static str, Vec<f64>)> {
-        vec![(COEFFICIENTS, coefficients.to_vec())]
+        vec![(COEFFICIENTS_LIST, coefficients.to_vec())]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let (center, half) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
-        let coefficients = list(values, COEFFICIENTS);
+        let coefficients = list(values, COEFFICIENTS_LIST);
         if coefficients.is_empty() || half.is_nan() || half <= 0.0 {
             return None;
         }
@@ -114,6 +111,7 @@ impl MeanModel for TempPolynomial {
 mod tests {
     use super::*;
     use crate::effect::Value;
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn orders_are_powers_of_the_temperature_from_minus_one_to_one() {
@@ -121,11 +119,8 @@ mod tests {
         let columns = TempPolynomial.regressors(&[3.0], &drivers).columns;
         assert_eq!(columns, [[-1.0, 0.0, 1.0], [1.0, 0.0, 1.0], [-1.0, 0.0, 1.0]]);
         assert_eq!(TempPolynomial.parameters(&[3.0], &[], &drivers), [30.0, 20.0]);
-        let mut stated = Values::from([
-            ("center_degC".to_owned(), Value::Number(20.0)),
-            ("half_range_degC".to_owned(), Value::Number(10.0)),
-        ]);
-        stated.insert(COEFFICIENTS.to_owned(), Value::List(vec![0.5, -0.25]));
+        let mut stated = numbers([("center_degC", 20.0), ("half_range_degC", 10.0)]);
+        stated.insert(COEFFICIENTS_LIST.to_owned(), Value::List(vec![0.5, -0.25]));
         // At 10, 30 and 50 °C: x = −1, 1, 3.
         assert_eq!(TempPolynomial.course(&stated, &drivers).unwrap(), [-0.75, 0.25, -0.75]);
     }

@@ -7,15 +7,15 @@ use crate::effect::{Domain, Drivers, MeanModel, Param, Place};
 pub struct TempRate;
 
 /// Bias for a rate of change of temperature.
-pub(super) const COEFFICIENT: Param =
+pub(super) const RATE_COEFFICIENT: Param =
     Param::reported("coefficient_deg_h_per_degC_per_min", "deg/h/(°C/min)", -1e6, 1e6).signed();
 
-static PARAMS: [Param; 1] = [COEFFICIENT];
+static PARAMS: [Param; 1] = [RATE_COEFFICIENT];
 
 describe! {
     TempRate, "temp_rate", Mean in TemperatureRate, needs [Temperature],
     confusers [ThermalLag, TempHysteresis, TempLinear],
-    properties [carried_over, law Rate]
+    properties [slow, carried_over, law Rate]
 }
 
 impl MeanModel for TempRate {

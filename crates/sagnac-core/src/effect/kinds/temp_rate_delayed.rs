@@ -1,7 +1,7 @@
 //! Bias proportional to the rate of change of a temperature behind a delay: that of the coil, of which the thermometer on the
 //! housing is ahead. It is reported as bias proportional to the rate of change of temperature.
 
-use super::temp_rate::COEFFICIENT;
+use super::temp_rate::RATE_COEFFICIENT;
 use crate::effect::shared::behind_delay::{self, late};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::thermal::smooth;
@@ -10,12 +10,12 @@ use crate::numeric::range::Bounds;
 
 pub struct TempRateDelayed;
 
-static PARAMS: [Param; 2] = [COEFFICIENT, Param::inner("time_constant_s", "s", 1e-6, 1e6)];
+static PARAMS: [Param; 2] = [RATE_COEFFICIENT, Param::inner("time_constant_s", "s", 1e-6, 1e6)];
 
 describe! {
     TempRateDelayed, "temp_rate_delayed", Mean in TemperatureRate, needs [Temperature],
     confusers [TempRate, ThermalLag, TempHysteresis],
-    properties [reported_as TempRate]
+    properties [slow, reported_as TempRate]
 }
 
 /// Rate of change of the delayed temperature, °C/min: the difference from the present one over the time constant.
@@ -56,6 +56,7 @@ impl MeanModel for TempRateDelayed {
 mod tests {
     use super::*;
     use crate::effect::Values;
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn behind_a_ramp_the_rate_rises_to_that_of_the_ramp() {
@@ -68,7 +69,7 @@ mod tests {
         assert!((got[40] - 1.2 * (1.0 - (-1f64).exp())).abs() < 1e-9, "{}", got[40]);
         assert!(rate(0.0).is_none() && rate(f64::INFINITY).is_none());
         // Stated, it is the coefficient times the same.
-        let stated = crate::effect::sizing::numbers([(PARAMS[0].name, -3.0), (PARAMS[1].name, 40.0)]);
+        let stated = numbers([(PARAMS[0].name, -3.0), (PARAMS[1].name, 40.0)]);
         let course = TempRateDelayed.course(&stated, &drivers).unwrap();
         assert!(
             (course[999] + 3.6).abs() < 1e-9 && TempRateDelayed.course(&Values::new(), &drivers).is_none()

@@ -7,7 +7,9 @@ use super::{
 };
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::response::{self, CENTER, COEFFICIENTS_LIST, HALF_RANGE, SCALES_LIST, TERMS_LIST};
+use crate::effect::shared::response::{
+    self, CENTER_NAME, COEFFICIENTS_LIST, HALF_RANGE, SCALES_LIST, TERMS_LIST,
+};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{
     Domain, Drivers, Effect, MeanModel, Param, Place, Regressors, SearchContext, Starts, Unmodelled, Values,
@@ -17,7 +19,7 @@ use crate::numeric::range::Bounds;
 pub struct TempResponse;
 
 static PARAMS: [Param; 2] =
-    [Param::inner(CENTER, "", -1e12, 1e12), Param::inner(HALF_RANGE, "", 1e-12, 1e12)];
+    [Param::inner(CENTER_NAME, "", -1e12, 1e12), Param::inner(HALF_RANGE, "", 1e-12, 1e12)];
 
 describe! {
     TempResponse, "temp_response", Mean in Temperature, needs [Temperature],
@@ -27,7 +29,7 @@ describe! {
         Param::inner(SCALES_LIST, "", 0.0, 1e9),
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
-    properties [carried_over, outside_format],
+    properties [slow, carried_over, outside_format],
     with {
         fn named_by_law(&self) -> &'static [&'static dyn Effect] {
             const LAWS: &[&dyn Effect] = &[

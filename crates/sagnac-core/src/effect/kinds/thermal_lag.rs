@@ -17,7 +17,7 @@ static PARAMS: [Param; 1] = [Param::reported("time_constant_s", "s", 1e-6, 1e6)]
 describe! {
     ThermalLag, "thermal_lag", Mean in Lag, needs [Temperature],
     confusers [TempRate, TempHysteresis, WarmupExponential, TimeOffset],
-    properties [law Lag]
+    properties [slow, law Lag]
 }
 
 /// The claimed coefficient times the difference between delayed and present temperature, deg/h.

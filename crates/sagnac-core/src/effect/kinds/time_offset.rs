@@ -4,8 +4,7 @@ use crate::effect::mean::first;
 use crate::effect::shared::delay::{claimed_mean_varies, follow, regressors, shifted};
 use crate::effect::shared::search::{best_of, peaks};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, Resolution, SearchContext, Sizing, Starts, Values,
-    number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::range::Bounds;
@@ -83,10 +82,6 @@ fn whole_lags(mean: &[f64], context: &SearchContext<'_>, most: usize) -> Vec<f64
 }
 
 impl MeanModel for TimeOffset {
-    fn resolution(&self) -> Resolution {
-        Resolution::FullRate
-    }
-
     fn applies(&self, drivers: &Drivers) -> bool {
         claimed_mean_varies(drivers)
     }

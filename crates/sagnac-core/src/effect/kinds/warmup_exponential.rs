@@ -16,7 +16,8 @@ static PARAMS: [Param; 2] = [
 
 describe! {
     WarmupExponential, "warmup_exponential", Mean in Time, needs [],
-    confusers [RateRamp, ExcessRrw, ThermalLag, UnobservedDriver]
+    confusers [RateRamp, ExcessRrw, ThermalLag, UnobservedDriver],
+    properties [slow]
 }
 
 impl MeanModel for WarmupExponential {
@@ -58,15 +59,11 @@ impl MeanModel for WarmupExponential {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::{Value, Values};
 
     #[test]
     fn a_transient_falls_by_e_in_its_time_constant() {
         let drivers = Drivers { dt_s: 1.0, samples: 3000, averaged: 1, ..Drivers::default() };
-        let stated = Values::from([
-            ("amplitude_deg_h".to_owned(), Value::Number(2.0)),
-            ("time_constant_s".to_owned(), Value::Number(1000.0)),
-        ]);
+        let stated = numbers([("amplitude_deg_h", 2.0), ("time_constant_s", 1000.0)]);
         let course = WarmupExponential.course(&stated, &drivers).unwrap();
         assert!(
             (course[0] - 2.0).abs() < 1e-6 && (course[0] / course[1000] - std::f64::consts::E).abs() < 1e-9

@@ -1,4 +1,4 @@
-//! Whether a column follows the rate by chance: the same column shifted in time can only do so by chance.
+//! A test of a column that follows the rate by chance: the same column shifted in time can only do so by chance.
 
 use super::pursuit::dot;
 use super::response::{ResponseFound, regressors, search};
@@ -7,11 +7,11 @@ use crate::numeric::cosine::dct2;
 use crate::numeric::parallel;
 
 /// Shifts of the column.
-const SLIDES: usize = 8;
+const COLUMN_SHIFTS: usize = 8;
 /// Times the largest gain of a shifted column that a response must gain.
-const OVER_CHANCE: f64 = 10.0;
+const MIN_GAIN_RATIO: f64 = 10.0;
 /// Gain of shifted columns up to which nothing is left unexplained: what the best of their terms gains in plain noise.
-const NOTHING: f64 = 12.0;
+const MAX_NOISE_GAIN: f64 = 12.0;
 
 /// True where the response to a column gains no more than chance may, given how much the column gains on what the response
 /// leaves when it is shifted in time.
@@ -42,7 +42,7 @@ pub(in crate::effect) fn follows_by_chance(
     let of_slide = |slide: usize| {
         search(&moved(values, slide), drivers, &on_left).map_or(0.0, |by_chance| by_chance.gain)
     };
-    is_chance(found.gain, NOTHING, of_slide)
+    is_chance(found.gain, MAX_NOISE_GAIN, of_slide)
 }
 
 /// True where columns shifted in time gain more than `nothing`, and no small part of what they gain in their own place.
@@ -51,13 +51,13 @@ pub(in crate::effect) fn is_chance(
     nothing: f64,
     of_slide: impl Fn(usize) -> f64 + Sync + Send,
 ) -> bool {
-    let by_chance = parallel::map(SLIDES, |i| of_slide(i + 1)).into_iter().fold(0.0, f64::max);
-    by_chance > nothing && gain < OVER_CHANCE * by_chance
+    let by_chance = parallel::map(COLUMN_SHIFTS, |i| of_slide(i + 1)).into_iter().fold(0.0, f64::max);
+    by_chance > nothing && gain < MIN_GAIN_RATIO * by_chance
 }
 
 /// A column in the place of one of the slides, counted from 1.
 pub(in crate::effect) fn moved(values: &[f64], slide: usize) -> Vec<f64> {
-    mirrored_shift(values, slide * 2 * values.len() / (SLIDES + 1))
+    mirrored_shift(values, slide * 2 * values.len() / (COLUMN_SHIFTS + 1))
 }
 
 /// A series moved along its even extension: what leaves at one end comes back at the other without a jump.

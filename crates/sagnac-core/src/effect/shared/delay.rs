@@ -11,9 +11,9 @@ pub(in crate::effect) fn claimed_mean_varies(drivers: &Drivers) -> bool {
 
 /// Fourth differences over second ones, and so on, above which a series is not smooth on the scale of its samples: a corner
 /// has twice, a step three times.
-const SMOOTH: f64 = 1.5;
+const MAX_SMOOTH_RATIO: f64 = 1.5;
 /// Even differences that are used at most: the eighth.
-const LEVELS: usize = 4;
+const MAX_DIFFERENCES: usize = 4;
 
 /// A series between two of its samples. A straight line with Everett's corrections as far as the series is smooth on the
 /// scale of its samples: the line alone is exact for means over the sample interval of a rate that changes at the edges
@@ -23,7 +23,7 @@ struct Interpolator<'a> {
     /// The sample before.
     at: usize,
     /// Even differences at the two samples, from the second up; those in use.
-    differences: [(f64, f64); LEVELS],
+    differences: [(f64, f64); MAX_DIFFERENCES],
     used: usize,
     /// Within two samples of an end.
     near_end: bool,
@@ -37,14 +37,19 @@ impl<'a> Interpolator<'a> {
             return None;
         }
         let at = (place as usize).min(last - 1);
-        let reach = (LEVELS + 1).min(at).min(last - at - 1);
-        let mut out =
-            Interpolator { series, at, differences: [(0.0, 0.0); LEVELS], used: 0, near_end: reach < 2 };
+        let reach = (MAX_DIFFERENCES + 1).min(at).min(last - at - 1);
+        let mut out = Interpolator {
+            series,
+            at,
+            differences: [(0.0, 0.0); MAX_DIFFERENCES],
+            used: 0,
+            near_end: reach < 2,
+        };
         if out.near_end {
             return Some(out);
         }
         // Differences of even order; those at the two samples stand in the middle.
-        let mut row = [0.0; 2 * LEVELS + 4];
+        let mut row = [0.0; 2 * MAX_DIFFERENCES + 4];
         let count = 2 * reach + 2;
         row[..count].copy_from_slice(&series[at - reach..at + reach + 2]);
         let differ = |row: &mut [f64], count: usize| {
@@ -59,7 +64,7 @@ impl<'a> Interpolator<'a> {
         differ(&mut few, 6);
         let second = size(&few, 1);
         differ(&mut few, 4);
-        if size(&few, 0) >= SMOOTH * second {
+        if size(&few, 0) >= MAX_SMOOTH_RATIO * second {
             return Some(out);
         }
         differ(&mut row, count);
@@ -67,7 +72,7 @@ impl<'a> Interpolator<'a> {
             let middle = reach - level;
             let (pair, largest) = ((row[middle], row[middle + 1]), size(&row, middle));
             differ(&mut row, 2 * middle + 2);
-            if size(&row, middle - 1) >= SMOOTH * largest {
+            if size(&row, middle - 1) >= MAX_SMOOTH_RATIO * largest {
                 break;
             }
             out.differences[out.used] = pair;
@@ -76,7 +81,7 @@ impl<'a> Interpolator<'a> {
         Some(out)
     }
 
-    /// Whether a place lies in the interpolator.
+    /// True for a place between the same two samples.
     fn holds(&self, place: f64) -> bool {
         place >= self.at as f64 && place < (self.at + 1) as f64
     }
@@ -112,7 +117,7 @@ fn at_an_end(series: &[f64], at: f64) -> Option<f64> {
     let x = if from_end { last as f64 - at } else { at };
     let second: [f64; 3] = std::array::from_fn(|k| s[k] - 2.0 * s[k + 1] + s[k + 2]);
     let fourth = (second[0] - 2.0 * second[1] + second[2]).abs();
-    let smooth = fourth < SMOOTH * second[0].abs().max(second[1].abs());
+    let smooth = fourth < MAX_SMOOTH_RATIO * second[0].abs().max(second[1].abs());
     let newton = || {
         let cubic = x * (x - 1.0) * (x - 2.0) / 6.0 * (second[1] - second[0]);
         s[0] + x * (s[1] - s[0]) + x * (x - 1.0) / 2.0 * second[0] + cubic
@@ -200,7 +205,7 @@ pub(in crate::effect) fn follow(
         match sums.coefficient() {
             Some(change) => {
                 at += change;
-                if change.abs() < SETTLED * step {
+                if change.abs() < STEP_TOLERANCE * step {
                     break;
                 }
             }
@@ -211,7 +216,7 @@ pub(in crate::effect) fn follow(
 }
 
 /// Change of the number, in steps of its derivative, at which it has settled.
-const SETTLED: f64 = 1e-5;
+const STEP_TOLERANCE: f64 = 1e-5;
 
 /// Sums of a regression on a column beside a constant and a mean.
 #[derive(Default)]

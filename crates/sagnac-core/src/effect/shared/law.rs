@@ -6,7 +6,7 @@
 use super::chance::{is_chance, moved, orthonormal};
 use super::decay::decay;
 use super::polynomial::Scale;
-use super::pursuit::{Pursued, choices, pursue, remove, unit};
+use super::pursuit::{Pursuit, choices, matching_pursuit, remove, unit};
 use super::reach::varies;
 use super::response::rate_per_hour;
 use super::thermal::{self, delayed};
@@ -18,10 +18,10 @@ use crate::numeric::parallel;
 const DELAYS_S: [f64; 3] = [150.0, 940.0, 5900.0];
 /// Terms that a law has at most.
 pub(in crate::effect) const MAX_TERMS: usize = 3;
-/// What a term must gain beyond the logarithm of the number of terms, nats.
-const PRICE: f64 = 3.0;
+/// Least gain of a term beyond the logarithm of the number of terms, nats.
+const TERM_PRICE: f64 = 3.0;
 /// Gain of shifted columns beyond the logarithm of the number of terms, nats, up to which it is that of plain noise.
-const NOTHING: f64 = 8.0;
+const MAX_NOISE_GAIN: f64 = 8.0;
 
 /// A form of a column.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +42,7 @@ impl Form {
         [Form::Value, Form::Square, Form::Rate].into_iter().chain(delays)
     }
 
-    /// Whether a record can tell of it: a delay is longer than a sample and shorter than half the record.
+    /// True where a record resolves it: a delay is longer than a sample and shorter than half the record.
     fn resolved(self, drivers: &Drivers) -> bool {
         match self {
             Form::Delay { time_constant_s } => {
@@ -106,15 +106,15 @@ pub(in crate::effect) struct Term {
 }
 
 /// Between the factors of a term, and between terms, in a claim.
-const TIMES: &str = " * ";
-const PLUS: &str = " + ";
+const FACTOR_SEPARATOR: &str = " * ";
+const TERM_SEPARATOR: &str = " + ";
 
 impl Term {
     pub fn factors(self) -> impl Iterator<Item = Factor> {
         [Some(self.first), self.second].into_iter().flatten()
     }
 
-    /// Whether it is made of a column, alone or with another.
+    /// True where it is made of a column, alone or with another.
     fn has(self, column: Column) -> bool {
         self.factors().any(|f| f.column == column)
     }
@@ -132,7 +132,7 @@ impl Term {
         out
     }
 
-    /// What is not known of it at the beginning of the record: the state of each delay, times the other factor.
+    /// Courses of its unknown states at the beginning of the record: that of each delay, times the other factor.
     pub fn initial(self, columns: &Columns<'_>, drivers: &Drivers) -> Vec<Vec<f64>> {
         let one = |factor: Factor, other: Option<Factor>| {
             let Form::Delay { time_constant_s } = factor.form else { return None };
@@ -148,14 +148,14 @@ impl Term {
 
 /// Terms as a claim states them.
 pub(in crate::effect) fn stated(terms: &[Term]) -> String {
-    let one = |t: &Term| t.factors().map(Factor::stated).collect::<Vec<_>>().join(TIMES);
-    terms.iter().map(one).collect::<Vec<_>>().join(PLUS)
+    let one = |t: &Term| t.factors().map(Factor::stated).collect::<Vec<_>>().join(FACTOR_SEPARATOR);
+    terms.iter().map(one).collect::<Vec<_>>().join(TERM_SEPARATOR)
 }
 
 /// Terms that a claim states; `None` where they are none.
 pub(in crate::effect) fn of_stated(text: &str) -> Option<Vec<Term>> {
     let one = |t: &str| {
-        let mut factors = t.split(TIMES).map(Factor::of_stated);
+        let mut factors = t.split(FACTOR_SEPARATOR).map(Factor::of_stated);
         let first = factors.next()??;
         let second = match factors.next() {
             Some(factor) => Some(factor?),
@@ -163,7 +163,7 @@ pub(in crate::effect) fn of_stated(text: &str) -> Option<Vec<Term>> {
         };
         factors.next().is_none().then_some(Term { first, second })
     };
-    text.split(PLUS).map(one).collect()
+    text.split(TERM_SEPARATOR).map(one).collect()
 }
 
 /// A column with the range that is taken as −1 to 1.
@@ -293,7 +293,7 @@ fn whitened(modes: &[f64], roots: &[f64]) -> Vec<f64> {
     modes.iter().zip(roots).skip(1).map(|(x, r)| if r.is_finite() { x / r } else { 0.0 }).collect()
 }
 
-/// What a law is searched on.
+/// Data for the search of a law.
 struct Search<'a> {
     columns: Columns<'a>,
     terms: Vec<Term>,
@@ -307,12 +307,17 @@ struct Search<'a> {
 }
 
 impl Search<'_> {
-    fn pursue(&self, modes: &[Vec<f64>], allowed: impl Fn(usize) -> bool, residual: &[f64]) -> Pursued {
-        pursue(modes, allowed, residual, MAX_TERMS, self.many + PRICE)
+    fn matching_pursuit(
+        &self,
+        modes: &[Vec<f64>],
+        allowed: impl Fn(usize) -> bool,
+        residual: &[f64],
+    ) -> Pursuit {
+        matching_pursuit(modes, allowed, residual, MAX_TERMS, self.many + TERM_PRICE)
     }
 
-    /// What some terms leave of the residual.
-    fn left(&self, found: &Pursued) -> Vec<f64> {
+    /// Residual that some terms leave.
+    fn left(&self, found: &Pursuit) -> Vec<f64> {
         let own = found.terms.iter().filter_map(|i| self.modes.get(*i).cloned()).collect();
         let mut left = self.residual.clone();
         orthonormal(own).iter().for_each(|d| remove(&mut left, d));
@@ -320,7 +325,7 @@ impl Search<'_> {
     }
 
     /// The columns of a law, each once.
-    fn columns_of(&self, found: &Pursued) -> Vec<Column> {
+    fn columns_of(&self, found: &Pursuit) -> Vec<Column> {
         let mut out: Vec<Column> =
             found.terms.iter().flat_map(|i| self.terms[*i].factors()).map(|f| f.column).collect();
         out.sort_unstable();
@@ -329,19 +334,19 @@ impl Search<'_> {
     }
 
     /// True where the columns of a law, moved in time, gain on what it leaves no small part of what it gains.
-    fn is_chance(&self, found: &Pursued) -> bool {
+    fn is_chance(&self, found: &Pursuit) -> bool {
         let left = self.left(found);
         let of_slide = |slide: usize| {
             let modes =
                 whitened_terms(&self.columns.shifted(slide, None), &self.terms, self.drivers, &self.roots);
-            self.pursue(&modes, |_| true, &left).gain
+            self.matching_pursuit(&modes, |_| true, &left).gain
         };
-        is_chance(found.gain, self.many + NOTHING, of_slide)
+        is_chance(found.gain, self.many + MAX_NOISE_GAIN, of_slide)
     }
 
     /// The column of a law of several that, moved in time by itself, gains on what the law leaves no small part of what it adds to
     /// the others: it stands in the law by chance. `allowed` are the terms that the law was chosen from.
-    fn column_by_chance(&self, found: &Pursued, allowed: impl Fn(usize) -> bool) -> Option<Column> {
+    fn column_by_chance(&self, found: &Pursuit, allowed: impl Fn(usize) -> bool) -> Option<Column> {
         let columns = self.columns_of(found);
         if columns.len() < 2 {
             return None;
@@ -349,15 +354,15 @@ impl Search<'_> {
         let left = self.left(found);
         columns.into_iter().find(|column| {
             let with = |i: usize| self.terms[i].has(*column);
-            let others = self.pursue(&self.modes, |i| allowed(i) && !with(i), &self.residual);
+            let others = self.matching_pursuit(&self.modes, |i| allowed(i) && !with(i), &self.residual);
             let terms: Vec<Term> =
                 (0..self.terms.len()).filter(|i| allowed(*i) && with(*i)).map(|i| self.terms[i]).collect();
             let of_slide = |slide: usize| {
                 let columns = self.columns.shifted(slide, Some(*column));
                 let modes = whitened_terms(&columns, &terms, self.drivers, &self.roots);
-                self.pursue(&modes, |_| true, &left).gain
+                self.matching_pursuit(&modes, |_| true, &left).gain
             };
-            is_chance(found.gain - others.gain, self.many + NOTHING, of_slide)
+            is_chance(found.gain - others.gain, self.many + MAX_NOISE_GAIN, of_slide)
         })
     }
 }
@@ -375,7 +380,7 @@ pub(in crate::effect) fn search(drivers: &Drivers, context: &SearchContext<'_>) 
     let mut barred: Vec<Column> = vec![];
     let found = loop {
         let allowed = |i: usize| !barred.iter().any(|c| search.terms[i].has(*c));
-        let found = search.pursue(&search.modes, allowed, &search.residual);
+        let found = search.matching_pursuit(&search.modes, allowed, &search.residual);
         // Of one column each there are kinds.
         if !found.terms.iter().any(|i| search.terms[*i].second.is_some()) {
             return None;
@@ -476,7 +481,8 @@ mod tests {
         let terms = columns.terms(&drivers);
         let modes = whitened_terms(&columns, &terms, &drivers, &[1.0; 1440]);
         let residual = whitened(&dct2(&noisy(&added)), &[1.0; 1440]);
-        let plain = pursue(&modes, |_| true, &residual, MAX_TERMS, (terms.len() as f64).ln() + PRICE);
+        let plain =
+            matching_pursuit(&modes, |_| true, &residual, MAX_TERMS, (terms.len() as f64).ln() + TERM_PRICE);
         assert!(plain.terms.iter().any(|i| terms[*i].has(column)), "{:?}", plain.terms);
         let law = found(&added, &drivers).unwrap();
         assert!(law.iter().all(|t| !t.has(column)), "{law:?}");

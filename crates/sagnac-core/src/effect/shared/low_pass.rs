@@ -15,7 +15,7 @@ pub struct LowPass {
     pub forward: [f64; 3],
     /// a₁, a₂.
     pub back: [f64; 2],
-    /// Where the response wanted is 1/(1 + (f/f_c)^2p) and the recursion comes near it only: f_c in cycles a sample, and p.
+    /// For a wanted response 1/(1 + (f/f_c)^2p) that the recursion only approximates: f_c in cycles a sample, and p.
     ideal: Option<(f64, i32)>,
     /// Samples within which it forgets what was before.
     pub memory: usize,
@@ -135,7 +135,7 @@ impl LowPass {
         frequencies.map(|x| self.power(x) + if covariance.is_empty() { 0.0 } else { leaked(x) }).collect()
     }
 
-    /// What the power wanted is of that of the recursion, where they differ.
+    /// Wanted power over that of the recursion, where they differ.
     pub fn correction(&self, x: f64) -> Option<f64> {
         self.ideal.map(|_| self.power(x) / self.recursion(x).max(1e-300))
     }

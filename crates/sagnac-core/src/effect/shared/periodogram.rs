@@ -1,4 +1,4 @@
-//! What a sinusoid of each frequency would gain.
+//! Gain of log-likelihood of a sinusoid of each frequency.
 
 use crate::effect::{Drivers, SearchContext};
 use sagnac_fft::real_forward;

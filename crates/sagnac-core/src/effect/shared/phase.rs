@@ -4,9 +4,9 @@ use super::polynomial::Scale;
 use super::sinusoid::{averaged, pair};
 
 /// Fewest resets of a column that counts as such a ramp.
-const FEWEST: usize = 8;
+const MIN_RESETS: usize = 8;
 /// Share of the range by which the column falls back at a reset, at least.
-const RESET: f64 = 0.5;
+const MIN_RESET_SHARE: f64 = 0.5;
 /// Share of the resets that may go the other way.
 const OTHER_WAY: f64 = 0.1;
 
@@ -26,11 +26,11 @@ impl Phase {
             return None;
         }
         let at: Vec<f64> = values.iter().map(|v| (v - (scale.center - scale.half)) / range).collect();
-        let falls = at.windows(2).filter(|w| w[1] - w[0] < -RESET).count();
-        let rises = at.windows(2).filter(|w| w[1] - w[0] > RESET).count();
+        let falls = at.windows(2).filter(|w| w[1] - w[0] < -MIN_RESET_SHARE).count();
+        let rises = at.windows(2).filter(|w| w[1] - w[0] > MIN_RESET_SHARE).count();
         let (most, least) = (falls.max(rises), falls.min(rises));
         // A noisy column jumps over half of its range in both directions.
-        if most < FEWEST || least as f64 > OTHER_WAY * most as f64 {
+        if most < MIN_RESETS || least as f64 > OTHER_WAY * most as f64 {
             return None;
         }
         let wrapped = |d: f64| d - d.round();

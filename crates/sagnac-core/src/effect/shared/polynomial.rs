@@ -1,4 +1,4 @@
-//! Powers of a column and what coefficients make of columns.
+//! Powers of a column, and sums of columns by coefficients.
 
 use crate::numeric::range::ends;
 

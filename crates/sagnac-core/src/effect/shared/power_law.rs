@@ -1,10 +1,10 @@
-//! Where a power-law term of the noise shows.
+//! Frequencies at which a power-law term of the noise shows.
 
 use crate::effect::{Domain, Place, SpectralContext};
 use crate::noise::data::NoiseType;
 use crate::noise::model::unit_density;
 
-/// Where a power-law term lives: the frequencies at which it is the largest part of the observed spectrum, or, where it
+/// Frequencies at which a power-law term is the largest part of the observed spectrum, or, where it
 /// nowhere is, those at which it comes nearest to that.
 pub(in crate::effect) fn power_law_places(
     term: NoiseType,

@@ -1,11 +1,11 @@
-//! Terms chosen one by one by what they gain (orthogonal matching pursuit: Pati, Rezaiifar and Krishnaprasad, Asilomar 1993).
+//! Terms chosen one by one by their gain (orthogonal matching pursuit: Pati, Rezaiifar and Krishnaprasad, Asilomar 1993).
 
-/// Share of a term that must be left after the terms before it.
-const INDEPENDENT: f64 = 1e-4;
+/// Least share of a term that is independent of the terms before it.
+const MIN_INDEPENDENT_SHARE: f64 = 1e-4;
 
-/// What a pursuit chose.
+/// Choice of a matching pursuit.
 #[derive(Debug, Clone, PartialEq, Default)]
-pub(in crate::effect) struct Pursued {
+pub(in crate::effect) struct Pursuit {
     /// Positions of the terms, in the order of their choice.
     pub terms: Vec<usize>,
     /// Gain of log-likelihood of all of them, nats.
@@ -14,23 +14,23 @@ pub(in crate::effect) struct Pursued {
 
 /// Chooses among terms those that gain at least `price` each beside the ones before, at most `most`. Terms and residual in
 /// whitened modes; a term of no modes is not chosen.
-pub(in crate::effect) fn pursue(
+pub(in crate::effect) fn matching_pursuit(
     terms: &[Vec<f64>],
     allowed: impl Fn(usize) -> bool,
     residual: &[f64],
     most: usize,
     price: f64,
-) -> Pursued {
+) -> Pursuit {
     let sizes: Vec<f64> = terms.iter().map(|m| dot(m, m)).collect();
     let mut left: Vec<Option<Vec<f64>>> =
         terms.iter().enumerate().map(|(i, m)| allowed(i).then(|| m.clone())).collect();
     let mut residual = residual.to_vec();
-    let mut out = Pursued::default();
+    let mut out = Pursuit::default();
     for _ in 0..most {
         let gain = |(i, m): (usize, &Option<Vec<f64>>)| {
             let m = m.as_ref()?;
             let size = dot(m, m);
-            if !(size > INDEPENDENT * sizes[i] && size > 0.0) {
+            if !(size > MIN_INDEPENDENT_SHARE * sizes[i] && size > 0.0) {
                 return None;
             }
             Some((i, 0.5 * dot(m, &residual).powi(2) / size))
@@ -84,11 +84,11 @@ mod tests {
         let terms = [axis(0), axis(1), axis(2), oblique, vec![]];
         let residual = [1.0, 0.0, 6.0, 4.0, 0.0, 0.0];
         // Of (6, 4) the oblique term gains 25, the rest of the third axis 1.
-        let chosen = pursue(&terms, |_| true, &residual, 3, 0.4);
+        let chosen = matching_pursuit(&terms, |_| true, &residual, 3, 0.4);
         assert_eq!(chosen.terms, [3, 2, 0]);
         assert!((chosen.gain - 0.5 * 53.0).abs() < 1e-9, "{chosen:?}");
-        assert_eq!(pursue(&terms, |_| true, &residual, 3, 2.0).terms, [3]);
-        assert_eq!(pursue(&terms, |i| i != 3, &residual, 1, 2.0).terms, [2]);
+        assert_eq!(matching_pursuit(&terms, |_| true, &residual, 3, 2.0).terms, [3]);
+        assert_eq!(matching_pursuit(&terms, |i| i != 3, &residual, 1, 2.0).terms, [2]);
         assert_eq!(choices(20, 3), 1140.0);
     }
 }

@@ -1,4 +1,4 @@
-//! Where along a column an effect acts, and whether the column says anything.
+//! Values of a column at which an effect acts, and columns that vary.
 
 use crate::effect::{Domain, Drivers, Place};
 use crate::numeric::range::{Bounds, ends};

@@ -7,25 +7,25 @@
 
 use super::decay::decay;
 use super::polynomial::Scale;
-use super::pursuit::{choices, pursue, remove, unit};
+use super::pursuit::{choices, matching_pursuit, remove, unit};
 use super::thermal::delayed;
 use crate::effect::{Drivers, Regressors, SearchContext, Unmodelled, Values, list, number};
 use crate::numeric::cosine::dct2;
 use crate::numeric::special;
 
 /// Highest order of the curve.
-const ORDERS: usize = 10;
+const MAX_CURVE_ORDER: usize = 10;
 /// Time constants of the delays, s: from what a housing does in a minute to what a day does.
 const DELAYS_S: [f64; 8] = [60.0, 150.0, 375.0, 940.0, 2350.0, 5900.0, 14_700.0, 36_700.0];
 /// Widths of the play, in halves of the column's range.
-pub(in crate::effect) const PLAYS: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
+pub(in crate::effect) const PLAY_WIDTHS: [f64; 4] = [0.03, 0.08, 0.2, 0.5];
 /// Terms in all.
-pub(in crate::effect) const TERMS: usize = ORDERS + 1 + DELAYS_S.len() + PLAYS.len();
+pub(in crate::effect) const TERM_COUNT: usize = MAX_CURVE_ORDER + 1 + DELAYS_S.len() + PLAY_WIDTHS.len();
 /// Terms that a response has at most.
 const MAX_TERMS: usize = 8;
 /// Gain of log-likelihood that each term must bring: half the logarithm of some sixty modes that tell of a slow course, and
 /// what the best of several terms gains by chance.
-const PRICE: f64 = 4.0;
+const TERM_PRICE: f64 = 4.0;
 
 /// Name of the list of terms in a claim.
 pub(in crate::effect) const TERMS_LIST: &str = "terms";
@@ -34,12 +34,12 @@ pub(in crate::effect) const SCALES_LIST: &str = "scales";
 /// Name of the list of their coefficients, deg/h.
 pub(in crate::effect) const COEFFICIENTS_LIST: &str = "coefficients_deg_h";
 /// Name of the middle of the column's range.
-pub(in crate::effect) const CENTER: &str = "center";
+pub(in crate::effect) const CENTER_NAME: &str = "center";
 /// Name of half of the column's range.
 pub(in crate::effect) const HALF_RANGE: &str = "half_range";
 
-/// What is not known of the size of a course whose law is none of few parameters: curves, loops and responses of several terms
-/// leave out what is not worth a term, and real ones have other shapes. From loops and curves of another make.
+/// Uncertainty of the size of a course whose law has many parameters, beyond that of the fit: curves, loops and responses of several terms
+/// leave out what does not pay for a term, and real ones have other shapes. From loops and curves of other formulas.
 pub(in crate::effect) const ANY_SHAPE: Unmodelled = Unmodelled { first_parameter: 0.08, rms: 0.08 };
 
 /// One term of a response.
@@ -58,12 +58,15 @@ pub(in crate::effect) enum Term {
 impl Term {
     /// The terms of the dictionary.
     fn all() -> impl Iterator<Item = Term> {
-        let curves = (1..=ORDERS).map(|order| Term::Curve { order });
+        let curves = (1..=MAX_CURVE_ORDER).map(|order| Term::Curve { order });
         let delays = DELAYS_S.into_iter().map(|time_constant_s| Term::Delay { time_constant_s });
-        curves.chain([Term::Rate]).chain(delays).chain(PLAYS.into_iter().map(|width| Term::Play { width }))
+        curves
+            .chain([Term::Rate])
+            .chain(delays)
+            .chain(PLAY_WIDTHS.into_iter().map(|width| Term::Play { width }))
     }
 
-    /// Whether a record can tell of it: a delay is longer than a sample and shorter than the record.
+    /// True where a record resolves it: a delay is longer than a sample and shorter than the record.
     fn resolved(self, drivers: &Drivers) -> bool {
         match self {
             Term::Delay { time_constant_s } => {
@@ -73,7 +76,7 @@ impl Term {
         }
     }
 
-    /// What a claim states of it: the place of its law, with a time constant or a width.
+    /// Numbers by which a claim states it: that of its law, with a time constant or a width.
     fn stated(self) -> (f64, f64) {
         match self {
             Term::Curve { order } => (order as f64, 0.0),
@@ -106,7 +109,7 @@ impl Term {
         }
     }
 
-    /// What is not known of it at the beginning of the record.
+    /// Course of its unknown state at the beginning of the record.
     fn initial(self, drivers: &Drivers) -> Option<Vec<f64>> {
         match self {
             Term::Delay { time_constant_s } => Some(decay(time_constant_s, drivers)),
@@ -140,7 +143,7 @@ impl ResponseLaw {
         ResponseLaw::Hysteresis,
     ];
 
-    /// Whether a term is what tells the law from the others.
+    /// True for a term that distinguishes the law from the others.
     fn has(self, term: &Term) -> bool {
         match (self, term) {
             (ResponseLaw::Linear, Term::Curve { order }) => *order == 1,
@@ -180,7 +183,7 @@ pub(in crate::effect) struct ResponseFound {
 impl ResponseFound {
     /// Gain less the price of its terms.
     pub fn worth(&self) -> f64 {
-        self.gain - PRICE * f64::from(self.mask.count_ones())
+        self.gain - TERM_PRICE * f64::from(self.mask.count_ones())
     }
 }
 
@@ -214,24 +217,25 @@ impl Dictionary {
     }
 
     /// Chooses terms among those allowed, one by one; each must gain the price.
-    fn pursue(&self, allowed: impl Fn(&Term) -> bool, most: usize) -> (u32, f64) {
-        let chosen = pursue(&self.modes, |i| allowed(&self.terms[i]), &self.residual, most, PRICE);
+    fn matching_pursuit(&self, allowed: impl Fn(&Term) -> bool, most: usize) -> (u32, f64) {
+        let chosen =
+            matching_pursuit(&self.modes, |i| allowed(&self.terms[i]), &self.residual, most, TERM_PRICE);
         (chosen.terms.iter().fold(0, |mask, i| mask | 1 << i), chosen.gain)
     }
 }
 
-/// The response to a column that gains most for its price; `None` where no term is worth it.
+/// The response to a column that gains most for its price; `None` where no term pays for itself.
 pub(in crate::effect) fn search(
     values: &[f64],
     drivers: &Drivers,
     context: &SearchContext<'_>,
 ) -> Option<ResponseFound> {
     let dictionary = Dictionary::new(values, drivers, context);
-    let (mask, gain) = dictionary.pursue(|_| true, MAX_TERMS);
+    let (mask, gain) = dictionary.matching_pursuit(|_| true, MAX_TERMS);
     if mask == 0 {
         return None;
     }
-    let trials = choices(TERMS, mask.count_ones() as usize);
+    let trials = choices(TERM_COUNT, mask.count_ones() as usize);
     Some(ResponseFound { mask, law: leading_law(&dictionary), gain, trials })
 }
 
@@ -253,18 +257,18 @@ fn leading_law(dictionary: &Dictionary) -> ResponseLaw {
             ResponseLaw::Linear | ResponseLaw::Rate => 1,
             ResponseLaw::Lag => 2,
             ResponseLaw::Hysteresis => 3,
-            ResponseLaw::Curve => ORDERS,
+            ResponseLaw::Curve => MAX_CURVE_ORDER,
         };
-        let (mask, gain) = dictionary.pursue(allowed, most);
+        let (mask, gain) = dictionary.matching_pursuit(allowed, most);
         let own = |(i, t): (usize, &Term)| mask & (1 << i) != 0 && law.has(t);
         let is_law = dictionary.terms.iter().enumerate().any(own);
-        if is_law { gain - PRICE * f64::from(mask.count_ones()) } else { 0.0 }
+        if is_law { gain - TERM_PRICE * f64::from(mask.count_ones()) } else { 0.0 }
     };
-    // Laws in the order of their simplicity: a later one has to be worth more by a term.
+    // Laws in the order of their simplicity: a later one must have a score higher by the price of a term.
     let mut best = (ResponseLaw::Linear, worth(ResponseLaw::Linear));
     for law in ResponseLaw::ALL.into_iter().skip(1) {
         let worth = worth(law);
-        if worth > best.1 + PRICE {
+        if worth > best.1 + TERM_PRICE {
             best = (law, worth);
         }
     }
@@ -274,7 +278,7 @@ fn leading_law(dictionary: &Dictionary) -> ResponseLaw {
 /// The response of one term, the curve of first order.
 pub(in crate::effect) const FIRST_ORDER: u32 = 1;
 
-/// What the coefficient of a response of a single term is multiplied by to be that of a linear law or of a rate, per hour, of
+/// Factor that makes the coefficient of a response of a single term that of a linear law or of a rate, per hour, of
 /// the scaled column; `None` for a response of another form.
 pub(in crate::effect) fn per_unit(mask: u32, law: ResponseLaw) -> Option<f64> {
     match (law, &terms(mask)[..]) {
@@ -285,7 +289,7 @@ pub(in crate::effect) fn per_unit(mask: u32, law: ResponseLaw) -> Option<f64> {
     }
 }
 
-/// What the fit of a response does not know of its coefficient and rms. A coefficient of a rate behind a delay moves with the
+/// Uncertainty of the coefficient and the rms of a response, beyond that of its fit. A coefficient of a rate behind a delay moves with the
 /// delay, which is known to a step of its grid only.
 pub(in crate::effect) fn unmodelled(
     mask: u32,
@@ -294,7 +298,7 @@ pub(in crate::effect) fn unmodelled(
     drivers: &Drivers,
 ) -> Unmodelled {
     /// Step in the logarithm of a delay over which its influence is measured.
-    const STEP: f64 = 0.2;
+    const LOG_DELAY_STEP: f64 = 0.2;
     let of_rms = Unmodelled { first_parameter: 0.0, ..ANY_SHAPE };
     let [term] = terms(mask)[..] else { return of_rms };
     match (law, term) {
@@ -304,9 +308,9 @@ pub(in crate::effect) fn unmodelled(
                 let course = Term::Delay { time_constant_s }.course(&scaled, drivers);
                 course.into_iter().map(|x| x / time_constant_s).collect::<Vec<f64>>()
             };
-            let (here, beside) = (rate(time_constant_s), rate(time_constant_s * STEP.exp()));
+            let (here, beside) = (rate(time_constant_s), rate(time_constant_s * LOG_DELAY_STEP.exp()));
             let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-            let slope = (dot(&here, &beside) / dot(&beside, &beside)).ln() / STEP;
+            let slope = (dot(&here, &beside) / dot(&beside, &beside)).ln() / LOG_DELAY_STEP;
             // Anywhere within a step of the grid as likely.
             let step = (DELAYS_S[1] / DELAYS_S[0]).ln() / 12f64.sqrt();
             Unmodelled { first_parameter: slope.abs() * step, rms: 0.0 }
@@ -327,7 +331,7 @@ pub(in crate::effect) fn regressors(mask: u32, values: &[f64], drivers: &Drivers
     }
 }
 
-/// What a claim states of a response.
+/// Lists by which a claim states a response.
 pub(in crate::effect) fn stated_lists(mask: u32, coefficients: &[f64]) -> Vec<(&'static str, Vec<f64>)> {
     let (terms, scales) = terms(mask).into_iter().map(Term::stated).unzip();
     vec![(TERMS_LIST, terms), (SCALES_LIST, scales), (COEFFICIENTS_LIST, coefficients.to_vec())]
@@ -339,9 +343,9 @@ pub(in crate::effect) fn stated_range(values: &[f64]) -> [f64; 2] {
     [center, half]
 }
 
-/// The course of a stated response, deg/h; `None` where something is missing or lists are unlike.
+/// The course of a claimed response, deg/h; `None` where something is missing or lists differ in length.
 pub(in crate::effect) fn course(stated: &Values, values: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
-    let scale = Scale { center: number(stated, CENTER)?, half: number(stated, HALF_RANGE)? };
+    let scale = Scale { center: number(stated, CENTER_NAME)?, half: number(stated, HALF_RANGE)? };
     let terms = stated_terms(stated)?;
     let coefficients = list(stated, COEFFICIENTS_LIST);
     if scale.half.is_nan() || scale.half <= 0.0 || terms.len() != coefficients.len() {
@@ -355,7 +359,7 @@ pub(in crate::effect) fn course(stated: &Values, values: &[f64], drivers: &Drive
     Some(out)
 }
 
-/// What is not known of a stated response at the beginning of the record.
+/// Courses of the unknown states of a claimed response at the beginning of the record.
 pub(in crate::effect) fn initial_states(stated: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
     stated_terms(stated).unwrap_or_default().iter().filter_map(|t| t.initial(drivers)).collect()
 }
@@ -457,7 +461,7 @@ mod tests {
         let values: Vec<f64> =
             (0..20_000).map(|i| (f64::from(i) * std::f64::consts::TAU / 60.0).sin()).collect();
         let drivers = drivers(values.len());
-        let of = |delay: usize, law| unmodelled(1 << (ORDERS + 1 + delay), law, &values, &drivers);
+        let of = |delay: usize, law| unmodelled(1 << (MAX_CURVE_ORDER + 1 + delay), law, &values, &drivers);
         let step = 2.5f64.ln() / 12f64.sqrt();
         let [slow, fast] = [0, DELAYS_S.len() - 1].map(|d| of(d, ResponseLaw::Rate).first_parameter / step);
         assert!(slow < 0.4 && (fast - 1.0).abs() < 0.02, "{slow} {fast}");
@@ -494,7 +498,7 @@ mod tests {
             .into_iter()
             .map(|(name, list)| (name.to_owned(), Value::List(list)))
             .collect();
-        stated.insert(CENTER.to_owned(), Value::Number(center));
+        stated.insert(CENTER_NAME.to_owned(), Value::Number(center));
         stated.insert(HALF_RANGE.to_owned(), Value::Number(half));
         let course = course(&stated, &values, &drivers).unwrap();
         let columns = regressors(mask, &values, &drivers).columns;

@@ -4,15 +4,15 @@ use crate::effect::Drivers;
 use rayon::prelude::*;
 use std::f64::consts::PI;
 
-/// Samples that are worth handing to another core.
-const SHARE: usize = 1 << 14;
+/// Fewest samples that are computed on another core.
+const PARALLEL_SAMPLES: usize = 1 << 14;
 
 /// Samples through which a sinusoid is rotated from one to the next. A share holds whole blocks of them.
-const ROTATED: usize = 64;
+const ROTATED_SAMPLES: usize = 64;
 /// Samples that are rotated side by side.
-const LANES: usize = 8;
+const ROTATION_LANES: usize = 8;
 
-/// What a mean over so many cycles leaves of a sinusoid.
+/// Factor by which a mean over so many cycles attenuates a sinusoid.
 pub(in crate::effect) fn averaged(cycles: f64) -> f64 {
     let x = PI * cycles;
     if x.abs() < 1e-6 { 1.0 - x * x / 6.0 } else { x.sin() / x }
@@ -25,7 +25,7 @@ pub(in crate::effect) fn pair(samples: usize, phase: impl Fn(usize) -> (f64, f64
         let (s, c) = (2.0 * PI * cycles.fract()).sin_cos();
         (left * c, left * s)
     };
-    let (cosine, sine) = (0..samples).into_par_iter().with_min_len(SHARE).map(of).unzip();
+    let (cosine, sine) = (0..samples).into_par_iter().with_min_len(PARALLEL_SAMPLES).map(of).unzip();
     vec![cosine, sine]
 }
 
@@ -47,7 +47,7 @@ impl Sweep {
         self.first_s + i as f64 * self.dt_s
     }
 
-    /// What the mean of a sample leaves.
+    /// Attenuation by the mean of a sample.
     fn left(&self, i: usize) -> f64 {
         averaged((self.frequency_hz + self.drift_hz_s * self.time_s(i)) * self.dt_s)
     }
@@ -55,9 +55,9 @@ impl Sweep {
     /// Cosine and sine of the phase, which is 0 at time 0, for the samples from `first` on: as many as both slices hold.
     pub fn turns(&self, first: usize, cosine: &mut [f64], sine: &mut [f64]) {
         let bend = self.bend();
-        let blocks = cosine.chunks_mut(ROTATED).zip(sine.chunks_mut(ROTATED)).enumerate();
+        let blocks = cosine.chunks_mut(ROTATED_SAMPLES).zip(sine.chunks_mut(ROTATED_SAMPLES)).enumerate();
         for (b, (cosine, sine)) in blocks {
-            let turns = self.block(first + b * ROTATED, bend.as_ref());
+            let turns = self.block(first + b * ROTATED_SAMPLES, bend.as_ref());
             cosine.copy_from_slice(&turns.cosine[..cosine.len()]);
             sine.copy_from_slice(&turns.sine[..sine.len()]);
         }
@@ -67,15 +67,16 @@ impl Sweep {
     pub fn pair(&self, samples: usize) -> Vec<Vec<f64>> {
         let (mut cosine, mut sine) = (vec![0.0; samples], vec![0.0; samples]);
         let bend = self.bend();
-        let shares = cosine.par_chunks_mut(SHARE).zip(sine.par_chunks_mut(SHARE)).enumerate();
+        let shares =
+            cosine.par_chunks_mut(PARALLEL_SAMPLES).zip(sine.par_chunks_mut(PARALLEL_SAMPLES)).enumerate();
         shares.for_each(|(share, (cosine, sine))| {
-            let blocks = cosine.chunks_mut(ROTATED).zip(sine.chunks_mut(ROTATED)).enumerate();
+            let blocks = cosine.chunks_mut(ROTATED_SAMPLES).zip(sine.chunks_mut(ROTATED_SAMPLES)).enumerate();
             for (b, (cosine, sine)) in blocks {
-                let first = share * SHARE + b * ROTATED;
+                let first = share * PARALLEL_SAMPLES + b * ROTATED_SAMPLES;
                 let turns = self.block(first, bend.as_ref());
                 // Within a block it changes evenly.
                 let from = self.left(first);
-                let each = (self.left(first + ROTATED) - from) / ROTATED as f64;
+                let each = (self.left(first + ROTATED_SAMPLES) - from) / ROTATED_SAMPLES as f64;
                 let outputs = cosine.iter_mut().zip(sine).zip(turns.cosine.iter().zip(&turns.sine));
                 for (i, ((c, s), (turned_c, turned_s))) in outputs.enumerate() {
                     let left = from + each * i as f64;
@@ -86,12 +87,12 @@ impl Sweep {
         vec![cosine, sine]
     }
 
-    /// What the change of the frequency turns the samples of a block by; `None` for a steady frequency.
+    /// Rotation of the samples of a block by the change of the frequency; `None` for a steady frequency.
     fn bend(&self) -> Option<Turns> {
         let cycles = self.drift_hz_s * self.dt_s * self.dt_s;
         (cycles != 0.0).then(|| {
             let mut bend = Turns::default();
-            for i in 1..ROTATED {
+            for i in 1..ROTATED_SAMPLES {
                 bend.set(i, cis(cycles * (i * (i - 1) / 2) as f64));
             }
             bend
@@ -99,7 +100,7 @@ impl Sweep {
     }
 
     /// Cosine and sine of the phase of a block of samples: powers of one step, begun anew in each block before their rounding
-    /// tells. Powers that are [`LANES`] apart do not wait for each other.
+    /// tells. Powers that are [`ROTATION_LANES`] apart do not wait for each other.
     fn block(&self, first: usize, bend: Option<&Turns>) -> Turns {
         let (f, drift, dt) = (self.frequency_hz, self.drift_hz_s, self.dt_s);
         let t = self.time_s(first);
@@ -107,19 +108,19 @@ impl Sweep {
         let mut out = Turns::default();
         let mut at = cis(f * t + 0.5 * drift * t * t);
         let mut far = (1.0, 0.0);
-        for i in 0..LANES {
+        for i in 0..ROTATION_LANES {
             out.set(i, at);
             (at, far) = (turned(at, step), turned(far, step));
         }
-        for from in (0..ROTATED - LANES).step_by(LANES) {
-            for i in from..from + LANES {
+        for from in (0..ROTATED_SAMPLES - ROTATION_LANES).step_by(ROTATION_LANES) {
+            for i in from..from + ROTATION_LANES {
                 let (c, s) = (out.cosine[i], out.sine[i]);
-                out.cosine[i + LANES] = c * far.0 - s * far.1;
-                out.sine[i + LANES] = c * far.1 + s * far.0;
+                out.cosine[i + ROTATION_LANES] = c * far.0 - s * far.1;
+                out.sine[i + ROTATION_LANES] = c * far.1 + s * far.0;
             }
         }
         if let Some(bend) = bend {
-            for i in 0..ROTATED {
+            for i in 0..ROTATED_SAMPLES {
                 let at = (out.cosine[i], out.sine[i]);
                 out.set(i, turned(at, (bend.cosine[i], bend.sine[i])));
             }
@@ -130,13 +131,13 @@ impl Sweep {
 
 /// Cosines and sines of the samples of a block.
 struct Turns {
-    cosine: [f64; ROTATED],
-    sine: [f64; ROTATED],
+    cosine: [f64; ROTATED_SAMPLES],
+    sine: [f64; ROTATED_SAMPLES],
 }
 
 impl Default for Turns {
     fn default() -> Turns {
-        Turns { cosine: [1.0; ROTATED], sine: [0.0; ROTATED] }
+        Turns { cosine: [1.0; ROTATED_SAMPLES], sine: [0.0; ROTATED_SAMPLES] }
     }
 }
 

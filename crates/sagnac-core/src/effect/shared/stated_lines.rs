@@ -8,15 +8,15 @@ use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::order::SortByNumber;
 
 /// Lines that are followed at most, the largest first.
-const MOST: usize = 2;
+const MAX_LINES: usize = 2;
 /// Amplitude over that stated, either way, up to which a line may be the stated one.
-const ALIKE: f64 = 2.0;
+const MAX_AMPLITUDE_RATIO: f64 = 2.0;
 /// Drift either way up to which a line is sought, ppm: no clock is wrong by more, and other lines are near.
-const MOST_PPM: f64 = 5e4;
+const MAX_DRIFT_PPM: f64 = 5e4;
 /// Peaks that are looked at.
-const PEAKS: usize = 4;
+const MAX_PEAKS: usize = 4;
 
-/// What a clock that drifts by so many ppm makes of a frequency: a gyro that is late by a share of the time shows it so much lower.
+/// A frequency as a clock shows it that drifts by so many ppm, Hz: a gyro that is late by a share of the time shows it so much lower.
 pub(in crate::effect) fn seen_hz(frequency_hz: f64, drift_ppm: f64) -> f64 {
     frequency_hz * (1.0 - 1e-6 * drift_ppm)
 }
@@ -26,7 +26,7 @@ fn shown(drivers: &Drivers) -> Vec<StatedLine> {
     let mut lines: Vec<StatedLine> =
         drivers.lines.iter().filter(|l| l.frequency_hz < 0.5 / drivers.dt_s).copied().collect();
     lines.sort_descending_by(|a| a.amplitude_deg_h);
-    lines.truncate(MOST);
+    lines.truncate(MAX_LINES);
     lines
 }
 
@@ -91,12 +91,13 @@ pub(in crate::effect) fn starts(drivers: &Drivers, context: &SearchContext<'_>) 
         columns(f, drivers).iter().map(dot).fold(0.0, f64::hypot) / drivers.samples as f64
     };
     let with_lines: Vec<f64> = residual.iter().zip(taken_away(drivers)).map(|(r, t)| r - t).collect();
-    let absent = |l: &StatedLine| amplitude(l.frequency_hz, &with_lines) < l.amplitude_deg_h / ALIKE;
+    let absent =
+        |l: &StatedLine| amplitude(l.frequency_hz, &with_lines) < l.amplitude_deg_h / MAX_AMPLITUDE_RATIO;
     if !lines.iter().all(absent) {
         return (vec![], 0.0);
     }
     let LineGains { mut gains, step_hz } = LineGains::of(drivers, context);
-    let (low, high) = (seen_hz(line.frequency_hz, MOST_PPM), seen_hz(line.frequency_hz, -MOST_PPM));
+    let (low, high) = (seen_hz(line.frequency_hz, MAX_DRIFT_PPM), seen_hz(line.frequency_hz, -MAX_DRIFT_PPM));
     let resolution = 1.0 / drivers.length_s();
     for (j, gain) in gains.iter_mut().enumerate() {
         let f = j as f64 * step_hz;
@@ -110,10 +111,10 @@ pub(in crate::effect) fn starts(drivers: &Drivers, context: &SearchContext<'_>) 
     let moved = |drift: &f64| {
         lines.iter().all(|l| {
             let ratio = amplitude(seen_hz(l.frequency_hz, *drift), &residual) / l.amplitude_deg_h;
-            (1.0 / ALIKE..=ALIKE).contains(&ratio)
+            (1.0 / MAX_AMPLITUDE_RATIO..=MAX_AMPLITUDE_RATIO).contains(&ratio)
         })
     };
-    let found = peaks(&gains, PEAKS, apart).into_iter();
+    let found = peaks(&gains, MAX_PEAKS, apart).into_iter();
     let at = |j: usize| (j as f64 + crate::numeric::optimize::parabolic_peak(&gains, j)) * step_hz;
     let drifts = found.map(at).map(|f| 1e6 * (1.0 - f / line.frequency_hz)).filter(moved).collect();
     (drifts, (high - low) / resolution)

@@ -1,4 +1,4 @@
-//! What repeats with the angle of the table.
+//! Contributions that repeat with the angle of the table.
 
 use super::sinusoid::{averaged, pair};
 use crate::effect::{Domain, Drivers, Place};

@@ -1,4 +1,4 @@
-//! What temperature effects share.
+//! Temperature, its rate of change and its delay.
 
 use crate::effect::Drivers;
 

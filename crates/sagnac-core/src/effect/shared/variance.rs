@@ -6,11 +6,11 @@ use crate::numeric::range::{Bounds, ends};
 use nalgebra::{DMatrix, DVector};
 
 /// Groups over the values of a column.
-const GROUPS: usize = 256;
+const COLUMN_GROUPS: usize = 256;
 /// Fewest samples of a group.
-pub(in crate::effect) const FEWEST: usize = 16;
+pub(in crate::effect) const MIN_GROUP_SAMPLES: usize = 16;
 /// Knots of a law over time.
-const KNOTS: usize = 128;
+const MAX_KNOTS: usize = 128;
 
 /// Mean square of a group and its degrees of freedom.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -109,7 +109,7 @@ pub(in crate::effect) fn by_value(
 ) -> (Vec<Group>, Vec<f64>) {
     let mut order = samples.to_vec();
     order.sort_ascending_by(|a| values(*a));
-    let size = order.len().div_ceil(GROUPS).max(FEWEST);
+    let size = order.len().div_ceil(COLUMN_GROUPS).max(MIN_GROUP_SAMPLES);
     order
         .chunks(size)
         .map(|group| {
@@ -159,9 +159,9 @@ pub(in crate::effect) fn between(knots: &[Knot], at: f64) -> f64 {
     }
 }
 
-/// At most about [`KNOTS`] of the knots, the ends among them.
+/// At most about [`MAX_KNOTS`] of the knots, the ends among them.
 pub(in crate::effect) fn thinned(knots: &[Knot]) -> Vec<Knot> {
-    let step = knots.len().div_ceil(KNOTS).max(1);
+    let step = knots.len().div_ceil(MAX_KNOTS).max(1);
     let last = knots.len().saturating_sub(1);
     let kept = knots.iter().enumerate().filter(|(i, _)| i % step == 0 || *i == last);
     kept.map(|(_, k)| *k).collect()
@@ -215,7 +215,7 @@ mod tests {
             [0.0, 0.0, 21.0, 598.0, 598.0]
         );
         let few = thinned(&knots);
-        assert!(few.len() <= KNOTS + 1 && few.first() == knots.first() && few.last() == knots.last());
+        assert!(few.len() <= MAX_KNOTS + 1 && few.first() == knots.first() && few.last() == knots.last());
         assert_eq!(between(&few, 100.25), 200.5);
         assert_eq!(between(&[], 3.0), 1.0);
     }

@@ -1,74 +1,80 @@
 //! A course as an addition: the best of its shapes with the noise held, then everything fitted together.
 
 use crate::effect::{Effect, MeanModel, Resolution, SearchContext, plausible};
+use crate::mismatch::fitted_hypothesis::{
+    Candidate, FittedHypothesis, SearchEffort, SpectralDataSet, bic_overcharge, effective_modes, own_odds,
+    score_candidate,
+};
 use crate::mismatch::hypothesis::{self, Fit, Hypothesis, PartModes, columns, kept, less_fixed};
 use crate::mismatch::noise_fit::{self, Noise};
 use crate::mismatch::nonlinear_search::LocalSearch;
 use crate::mismatch::spectral_data::SpectralData;
-use crate::mismatch::terms::CourseIn;
-use crate::mismatch::tried::{
-    Candidate, Looked, SpectralDataSet, Tried, overcharged, own_odds, rated, telling,
-};
+use crate::mismatch::terms::MeanTerm;
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::least_squares::{Normal, subtract};
 use crate::numeric::order::SortByNumber;
 use std::borrow::Cow;
 
 /// Samples above which a course at the sample rate is tried by itself.
-const LONG: usize = 1 << 20;
+const LONG_SAMPLES: usize = 1 << 20;
 /// Gain of a fit over that of its shapes, the noise held, from which the noise stood for the course.
 const STOOD_FOR: f64 = 1.5;
 
-/// What is the same for every course tried on a hypothesis.
-pub(super) struct Grounds<'a> {
+/// Data that every course tried on a hypothesis shares.
+pub(super) struct Baselines<'a> {
     /// `None` where only averages are looked at.
-    full: Option<Ground<'a>>,
-    slow: Option<Ground<'a>>,
+    full: Option<Baseline<'a>>,
+    slow: Option<Baseline<'a>>,
     /// Log-likelihood by which the noise of the hypothesis is behind that of its fit.
     behind: f64,
 }
 
-impl<'a> Grounds<'a> {
+impl<'a> Baselines<'a> {
     /// With the noise of the fit.
-    pub fn fitted(before: &'a Tried, spectra: &'a SpectralDataSet) -> Grounds<'a> {
-        Grounds::new(before, spectra, true, 0.0)
+    pub fn fitted(before: &'a FittedHypothesis, spectra: &'a SpectralDataSet) -> Baselines<'a> {
+        Baselines::new(before, spectra, true, 0.0)
     }
 
     /// With another noise than that of the fit. Of a long record only averages are looked at: what the noise moved for is slow.
-    pub fn restated(restated: &'a Tried, spectra: &'a SpectralDataSet) -> Grounds<'a> {
-        let Tried { hypothesis, fit, .. } = restated;
+    pub fn restated(restated: &'a FittedHypothesis, spectra: &'a SpectralDataSet) -> Baselines<'a> {
+        let FittedHypothesis { hypothesis, fit, .. } = restated;
         let whittle =
             noise_fit::whittle(&spectra.full, &fit.observed, &hypothesis.noise.densities(&spectra.full));
         let behind = fit.log_likelihood - (whittle + hypothesis.noise.prior() + fit.mean.prior);
-        Grounds::new(restated, spectra, spectra.full.length <= LONG, behind)
+        Baselines::new(restated, spectra, spectra.full.length <= LONG_SAMPLES, behind)
     }
 
-    fn new(before: &'a Tried, spectra: &'a SpectralDataSet, at_full_rate: bool, behind: f64) -> Grounds<'a> {
+    fn new(
+        before: &'a FittedHypothesis,
+        spectra: &'a SpectralDataSet,
+        at_full_rate: bool,
+        behind: f64,
+    ) -> Baselines<'a> {
         let courses = &before.hypothesis.courses;
-        let ground =
-            |spectral, resolution| Ground::new(before, spectral, spectra.part_modes(resolution, courses));
-        let slow = spectra.slow.as_ref().map(|slow| ground(slow, Resolution::Averaged));
-        let full = (at_full_rate || slow.is_none()).then(|| ground(&spectra.full, Resolution::FullRate));
-        Grounds { full, slow, behind }
+        let baseline =
+            |spectral, resolution| Baseline::new(before, spectral, spectra.part_modes(resolution, courses));
+        let slow = spectra.slow.as_ref().map(|slow| baseline(slow, Resolution::Averaged));
+        let full = (at_full_rate || slow.is_none()).then(|| baseline(&spectra.full, Resolution::FullRate));
+        Baselines { full, slow, behind }
     }
 
-    fn of(&self, resolution: Resolution) -> Option<&Ground<'a>> {
+    fn of(&self, resolution: Resolution) -> Option<&Baseline<'a>> {
         match (resolution, &self.slow) {
             (Resolution::Averaged, Some(slow)) => Some(slow),
             _ => self.full.as_ref(),
         }
     }
 
-    /// Whether a course of some resolution is looked at in more samples than two at once fit into memory.
+    /// True where a course of some resolution has more samples than fit into memory twice at once.
     pub fn is_long(&self, resolution: Resolution) -> bool {
-        self.of(resolution).is_some_and(|g| g.spectral.length > LONG)
+        self.of(resolution).is_some_and(|g| g.spectral.length > LONG_SAMPLES)
     }
 }
 
 /// A hypothesis before spectral data, ready for columns to be added to it.
-pub(super) struct Ground<'a> {
+pub(super) struct Baseline<'a> {
     pub spectral: &'a SpectralData,
-    before: &'a Tried,
+    before: &'a FittedHypothesis,
     parts: Vec<PartModes>,
     powers: Vec<f64>,
     /// The modes that are to be explained: everything fixed taken out.
@@ -78,13 +84,13 @@ pub(super) struct Ground<'a> {
     left: f64,
 }
 
-impl<'a> Ground<'a> {
-    fn new(before: &'a Tried, spectral: &'a SpectralData, parts: Vec<PartModes>) -> Ground<'a> {
+impl<'a> Baseline<'a> {
+    fn new(before: &'a FittedHypothesis, spectral: &'a SpectralData, parts: Vec<PartModes>) -> Baseline<'a> {
         let densities = before.hypothesis.noise.densities(spectral);
         let powers = spectral.powers(&densities);
         let data = less_fixed(spectral, &parts);
         let mut out =
-            Ground { spectral, before, parts, powers, data, residual: vec![], score: vec![], left: 0.0 };
+            Baseline { spectral, before, parts, powers, data, residual: vec![], score: vec![], left: 0.0 };
         let columns = out.columns(None);
         let normal = Normal::new(&columns, &out.data, &out.powers);
         let (coefficients, _, left) = normal.solve();
@@ -115,38 +121,38 @@ impl<'a> Ground<'a> {
 /// Gains of a course for its shapes, the noise held.
 struct ShapeSearch<'a> {
     course: &'a dyn MeanModel,
-    ground: &'a Ground<'a>,
+    baseline: &'a Baseline<'a>,
     columns: Vec<(&'a [f64], f64)>,
     normal: Normal,
 }
 
 impl<'a> ShapeSearch<'a> {
-    fn new(course: &'a dyn MeanModel, ground: &'a Ground<'a>) -> ShapeSearch<'a> {
-        let columns = ground.columns(Some(course));
-        let normal = Normal::new(&columns, &ground.data, &ground.powers);
-        ShapeSearch { course, ground, columns, normal }
+    fn new(course: &'a dyn MeanModel, baseline: &'a Baseline<'a>) -> ShapeSearch<'a> {
+        let columns = baseline.columns(Some(course));
+        let normal = Normal::new(&columns, &baseline.data, &baseline.powers);
+        ShapeSearch { course, baseline, columns, normal }
     }
 
     fn gain(&self, nonlinear_parameters: &[f64]) -> f64 {
-        let ground = self.ground;
-        let parts = PartModes::of_shape(self.course, nonlinear_parameters, ground.spectral);
+        let baseline = self.baseline;
+        let parts = PartModes::of_shape(self.course, nonlinear_parameters, baseline.spectral);
         if parts.offset.is_none() && parts.columns.is_empty() {
             return f64::NEG_INFINITY;
         }
-        let mut data = Cow::Borrowed(&*ground.data);
+        let mut data = Cow::Borrowed(&*baseline.data);
         if let Some(fixed) = &parts.offset {
             subtract(data.to_mut(), fixed, 1.0);
         }
         let new: Vec<&[f64]> = parts.columns.iter().chain(&parts.nuisance).map(Vec::as_slice).collect();
-        let normal = self.normal.with(&self.columns, &new, &data, parts.offset.is_some(), &ground.powers);
-        0.5 * (ground.left - normal.solve().2)
+        let normal = self.normal.with(&self.columns, &new, &data, parts.offset.is_some(), &baseline.powers);
+        0.5 * (baseline.left - normal.solve().2)
     }
 }
 
 /// A shape improved by a local search, with its gain.
 fn refined(start: &[f64], local: &LocalSearch, search: &ShapeSearch<'_>) -> (Vec<f64>, f64) {
-    const EVALUATIONS: usize = 60;
-    local.refine(start, EVALUATIONS, |x| search.gain(x))
+    const MAX_EVALUATIONS: usize = 60;
+    local.refine(start, MAX_EVALUATIONS, |x| search.gain(x))
 }
 
 /// The best of the shapes that a course begins from, the noise held, each improved by a local search, with its gain.
@@ -170,23 +176,23 @@ fn with_course(
 ) -> Hypothesis {
     let mut hypothesis = Hypothesis { noise: noise.clone(), ..before.clone() };
     let nonlinear_parameters = nonlinear_parameters.to_vec();
-    hypothesis.courses.push(CourseIn { effect, nonlinear_parameters, coefficients: vec![] });
+    hypothesis.courses.push(MeanTerm { effect, nonlinear_parameters, coefficients: vec![] });
     hypothesis
 }
 
-/// How much each mode tells of a fitted course: its square over the variance of the mode.
-fn informations(course: &dyn MeanModel, inside: &CourseIn, ground: &Ground<'_>) -> Vec<f64> {
-    let parts = PartModes::of_shape(course, &inside.nonlinear_parameters, ground.spectral);
-    let mut modes = parts.offset.map_or_else(|| vec![0.0; ground.powers.len()], |fixed| fixed.to_vec());
+/// Information of each mode on a fitted course: its square over the variance of the mode.
+fn informations(course: &dyn MeanModel, inside: &MeanTerm, baseline: &Baseline<'_>) -> Vec<f64> {
+    let parts = PartModes::of_shape(course, &inside.nonlinear_parameters, baseline.spectral);
+    let mut modes = parts.offset.map_or_else(|| vec![0.0; baseline.powers.len()], |fixed| fixed.to_vec());
     for (column, c) in parts.columns.iter().zip(&inside.coefficients) {
         subtract(&mut modes, column, -c);
     }
-    modes.iter().zip(&ground.powers).map(|(z, p)| z * z / p).collect()
+    modes.iter().zip(&baseline.powers).map(|(z, p)| z * z / p).collect()
 }
 
-/// A course that was fitted, on the ground that its shape was found on.
-struct Fitted<'a> {
-    ground: &'a Ground<'a>,
+/// A course that was fitted, on the baseline that its shape was found on.
+struct FittedCourse<'a> {
+    baseline: &'a Baseline<'a>,
     /// Independent places that were looked at for its shape.
     trials: f64,
     shape: Vec<f64>,
@@ -202,17 +208,17 @@ struct Fitted<'a> {
 pub(super) fn try_course(
     effect: &'static dyn Effect,
     course: &'static dyn MeanModel,
-    before: &Tried,
+    before: &FittedHypothesis,
     spectra: &SpectralDataSet,
-    grounds: &[Option<Grounds<'_>>; 2],
+    baselines: &[Option<Baselines<'_>>; 2],
 ) -> Option<Candidate> {
-    let each = grounds.iter().flatten().filter_map(|grounds| {
-        let ground = grounds.of(course.resolution())?;
-        fitted(effect, course, before, spectra, ground, grounds.behind)
+    let each = baselines.iter().flatten().filter_map(|baselines| {
+        let baseline = baselines.of(course.resolution())?;
+        fitted(effect, course, before, spectra, baseline, baselines.behind)
     });
     let best = each.max_by(|a, b| a.fit.log_likelihood.total_cmp(&b.fit.log_likelihood))?;
-    let Fitted { ground, trials, shape, columns, beside, hypothesis, fit } = best;
-    let drivers = &ground.spectral.drivers;
+    let FittedCourse { baseline, trials, shape, columns, beside, hypothesis, fit } = best;
+    let drivers = &baseline.spectral.drivers;
     let added = course.bic_parameters(columns) + beside;
     // A fit with a value that the effect cannot have (a zone that answers more than the rest) is another effect.
     let allowed = hypothesis.courses.last().is_none_or(|inside| {
@@ -220,33 +226,37 @@ pub(super) fn try_course(
         inside.coefficients.len() != columns || plausible(effect, &parameters())
     });
     let relief = hypothesis.courses.last().map_or(0.0, |inside| {
-        overcharged(added, telling(informations(course, inside, ground).into_iter()), spectra.rows)
+        bic_overcharge(
+            added,
+            effective_modes(informations(course, inside, baseline).into_iter()),
+            spectra.rows,
+        )
     });
-    let tried = Tried {
+    let tried = FittedHypothesis {
         hypothesis,
         fit,
         parameters: before.parameters + added,
         odds: before.odds_with(effect, course.odds(&shape, drivers) + own_odds(effect) + relief),
     };
-    let looked = Looked { numbers: columns + beside, trials };
-    allowed.then(|| rated(effect, tried, before, looked, spectra.rows))
+    let effort = SearchEffort { numbers: columns + beside, trials };
+    allowed.then(|| score_candidate(effect, tried, before, effort, spectra.rows))
 }
 
-/// The best addition of a course whose shape is sought on one ground, fitted from the noise of that ground.
+/// The best addition of a course whose shape is sought on one baseline, fitted from the noise of that baseline.
 fn fitted<'a>(
     effect: &'static dyn Effect,
     course: &'static dyn MeanModel,
-    before: &Tried,
+    before: &FittedHypothesis,
     spectra: &SpectralDataSet,
-    ground: &'a Ground<'a>,
+    baseline: &'a Baseline<'a>,
     behind: f64,
-) -> Option<Fitted<'a>> {
+) -> Option<FittedCourse<'a>> {
     let repeated = before.hypothesis.courses.iter().any(|c| c.effect.kind() == effect.kind());
-    let drivers = &ground.spectral.drivers;
+    let drivers = &baseline.spectral.drivers;
     if !course.applies(drivers) || effect.needs().iter().any(|c| drivers.column(*c).is_none()) {
         return None;
     }
-    let starts = course.starts(drivers, &ground.context());
+    let starts = course.starts(drivers, &baseline.context());
     // A linear course twice is the same column twice.
     if repeated && starts.points.iter().all(Vec::is_empty) {
         return None;
@@ -258,10 +268,10 @@ fn fitted<'a>(
         return None;
     }
     let local = LocalSearch::of(course, drivers);
-    let (shape, gain) = best_shape(&starts.points, &local, &ShapeSearch::new(course, ground))?;
+    let (shape, gain) = best_shape(&starts.points, &local, &ShapeSearch::new(course, baseline))?;
     let parts = course.regressors(&shape, drivers);
     let (columns, beside) = (parts.columns.len(), parts.nuisance.len() + local.free());
-    let noise = &ground.before.hypothesis.noise;
+    let noise = &baseline.before.hypothesis.noise;
     let mut hypothesis = with_course(&before.hypothesis, effect, &shape, noise);
     // The noise, fitted anew, can give at most about as much again.
     let price = (course.bic_parameters(columns) + beside) as f64 * (spectra.rows as f64).ln();
@@ -272,17 +282,17 @@ fn fitted<'a>(
     // Noise that had to stand for the course weighed the samples wrongly while its shape was sought.
     if !shape.is_empty() && fit.log_likelihood - before.fit.log_likelihood > STOOD_FOR * gain.max(0.0) {
         let noise = &hypothesis.noise;
-        let quieter = Tried {
+        let quieter = FittedHypothesis {
             hypothesis: Hypothesis { noise: noise.clone(), ..before.hypothesis.clone() },
             ..before.clone()
         };
-        let ground = Ground::new(&quieter, ground.spectral, ground.parts.clone());
-        let (shape, _) = refined(&shape, &local, &ShapeSearch::new(course, &ground));
+        let baseline = Baseline::new(&quieter, baseline.spectral, baseline.parts.clone());
+        let (shape, _) = refined(&shape, &local, &ShapeSearch::new(course, &baseline));
         let mut again = with_course(&before.hypothesis, effect, &shape, noise);
         let better = hypothesis::fit(&mut again, &spectra.full);
         if better.log_likelihood > fit.log_likelihood {
             (hypothesis, fit) = (again, better);
         }
     }
-    Some(Fitted { ground, trials: starts.trials, shape, columns, beside, hypothesis, fit })
+    Some(FittedCourse { baseline, trials: starts.trials, shape, columns, beside, hypothesis, fit })
 }

@@ -1,18 +1,20 @@
 //! A change of the noise's spectrum as an addition.
 
 use crate::effect::{Effect, SpectralContext, Spectrum, SpectrumAct};
+use crate::mismatch::fitted_hypothesis::{
+    Candidate, FittedHypothesis, SearchEffort, SpectralDataSet, bic_overcharge, own_odds, score_candidate,
+};
 use crate::mismatch::hypothesis::fit;
 use crate::mismatch::noise_fit::{self, Noise, base_index};
 use crate::mismatch::spectral_data::SpectralData;
-use crate::mismatch::terms::SpectrumIn;
-use crate::mismatch::tried::{Candidate, Looked, SpectralDataSet, Tried, overcharged, own_odds, rated};
+use crate::mismatch::terms::SpectralTerm;
 use crate::numeric::order::SortByNumber;
 
-/// The best addition of a process, a filter or a coefficient set free.
+/// The best addition of a process, a filter or an unconstrained coefficient.
 pub(super) fn try_spectrum(
     effect: &'static dyn Effect,
     spectrum: &'static dyn Spectrum,
-    before: &Tried,
+    before: &FittedHypothesis,
     spectra: &SpectralDataSet,
 ) -> Option<Candidate> {
     let spectral = &spectra.full;
@@ -26,7 +28,7 @@ pub(super) fn try_spectrum(
     };
     if let SpectrumAct::Unconstrains(term) = act {
         let i = base_index(term)?;
-        if before.hypothesis.noise.freed[i] {
+        if before.hypothesis.noise.unconstrained[i] {
             return None;
         }
         return free_base(effect, i, before, spectra, observed);
@@ -41,7 +43,7 @@ pub(super) fn try_spectrum(
     let begun = starts.iter().map(|start| {
         let mut noise = before.hypothesis.noise.clone();
         let fitted = start.iter().zip(&bounds).map(|(x, b)| b.clamp(*x)).collect();
-        noise.spectra.push(SpectrumIn { effect, fitted, stated: false });
+        noise.spectra.push(SpectralTerm { effect, fitted, stated: false });
         noise
     });
     let noise = best_of(begun.collect(), spectral, observed)?;
@@ -70,11 +72,11 @@ fn best_of(begun: Vec<Noise>, spectral: &SpectralData, observed: &[f64]) -> Opti
     fits.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(noise, _)| noise)
 }
 
-/// N, B or K set free, begun at the claim and well above it: a strong prior traps a fit that begins beside it.
+/// N, B or K unconstrained, begun at the claim and well above it: a strong prior traps a fit that begins beside it.
 fn free_base(
     effect: &'static dyn Effect,
     i: usize,
-    before: &Tried,
+    before: &FittedHypothesis,
     spectra: &SpectralDataSet,
     observed: &[f64],
 ) -> Option<Candidate> {
@@ -90,9 +92,9 @@ fn free_base(
     let begin = if noise.base[i] > 0.0 { noise.base[i] } else { smallest };
     let fits = [1.0, 5.75, 33.0, 0.2].map(|factor| {
         let mut noise = noise.clone();
-        noise.freed[i] = true;
+        noise.unconstrained[i] = true;
         noise.base[i] = begin * factor;
-        noise.spectra.push(SpectrumIn { effect, fitted: vec![begin * factor], stated: false });
+        noise.spectra.push(SpectralTerm { effect, fitted: vec![begin * factor], stated: false });
         noise
     });
     let noise = best_of(fits.to_vec(), spectral, observed)?;
@@ -104,7 +106,7 @@ fn finish_spectrum(
     noise: Noise,
     parameters: usize,
     trials: f64,
-    before: &Tried,
+    before: &FittedHypothesis,
     spectra: &SpectralDataSet,
 ) -> Option<Candidate> {
     let mut hypothesis = before.hypothesis.clone();
@@ -116,9 +118,15 @@ fn finish_spectrum(
     let shares = densities
         .zip(&spectra.full.bins)
         .map(|((s, old), bin)| ((s - old) / s.max(*old)).powi(2) * spectra.full.weight(bin));
-    let relief = overcharged(numbers, shares.sum(), spectra.rows);
+    let relief = bic_overcharge(numbers, shares.sum(), spectra.rows);
     let odds = before.odds_with(effect, own_odds(effect) + relief);
-    let looked = Looked { numbers, trials };
-    let candidate = rated(effect, Tried { hypothesis, fit, parameters, odds }, before, looked, spectra.rows);
+    let effort = SearchEffort { numbers, trials };
+    let candidate = score_candidate(
+        effect,
+        FittedHypothesis { hypothesis, fit, parameters, odds },
+        before,
+        effort,
+        spectra.rows,
+    );
     (candidate.gain > 0.5).then_some(candidate)
 }

@@ -13,9 +13,9 @@ use nalgebra::{DMatrix, DVector};
 use std::borrow::Cow;
 
 /// Order of the polynomials of a column.
-const ORDER: usize = 6;
+const POLYNOMIAL_ORDER: usize = 6;
 /// Groups by value of a column for the size of the residual.
-const GROUPS: usize = 8;
+const VALUE_GROUPS: usize = 8;
 
 fn domain(column: Column) -> Domain {
     match column {
@@ -128,7 +128,7 @@ fn when(departure: Departure, spectral: &SpectralData, values: &[f64]) -> Depart
     Departure { beside, ..departure }
 }
 
-/// Whether the residual follows a smooth function of a column, and at which of its values most.
+/// Test of a residual that follows a smooth function of a column, with the values of the column at which it does so most.
 fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]) -> Option<Departure> {
     let Bounds { low, high } = ends(values);
     if high - low <= 1e-9 * low.abs().max(high.abs()) {
@@ -138,10 +138,13 @@ fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]
         let turn = |k: usize, f: fn(f64) -> f64| {
             values.iter().map(|a| f(k as f64 * a.to_radians())).collect::<Vec<f64>>()
         };
-        gain_of(white, (1..=ORDER).map(|i| turn(i.div_ceil(2), if i % 2 == 1 { f64::cos } else { f64::sin })))
+        gain_of(
+            white,
+            (1..=POLYNOMIAL_ORDER).map(|i| turn(i.div_ceil(2), if i % 2 == 1 { f64::cos } else { f64::sin })),
+        )
     } else {
         let x = centred(values);
-        gain_of(white, (1..=ORDER).map(|k| x.iter().map(|v| legendre(k, *v)).collect()))
+        gain_of(white, (1..=POLYNOMIAL_ORDER).map(|k| x.iter().map(|v| legendre(k, *v)).collect()))
     }?;
     let Bounds { low: from, high: to } = extreme(white, values, low, high);
     Some(Departure { test, place: Place { domain, from, to }, beside: None, ln_p, shape: None })
@@ -149,23 +152,23 @@ fn function_of(white: &White, test: &'static str, domain: Domain, values: &[f64]
 
 /// The tenth of the range of a column in which the weighted residual is farthest from zero.
 fn extreme(white: &White, values: &[f64], low: f64, high: f64) -> Bounds {
-    const PARTS: usize = 10;
-    let mut sums = [(0.0, 0.0); PARTS];
+    const VALUE_PARTS: usize = 10;
+    let mut sums = [(0.0, 0.0); VALUE_PARTS];
     for (e, v) in white.series.iter().zip(values) {
-        let i = (((v - low) / (high - low) * PARTS as f64) as usize).min(PARTS - 1);
+        let i = (((v - low) / (high - low) * VALUE_PARTS as f64) as usize).min(VALUE_PARTS - 1);
         sums[i].0 += e;
         sums[i].1 += 1.0;
     }
     let z = |i: usize| if sums[i].1 > 0.0 { (sums[i].0 / f64::sqrt(sums[i].1)).abs() } else { 0.0 };
-    let best = (0..PARTS).max_by(|a, b| z(*a).total_cmp(&z(*b))).unwrap_or(0);
-    let step = (high - low) / PARTS as f64;
+    let best = (0..VALUE_PARTS).max_by(|a, b| z(*a).total_cmp(&z(*b))).unwrap_or(0);
+    let step = (high - low) / VALUE_PARTS as f64;
     Bounds::new(low + best as f64 * step, low + (best + 1) as f64 * step)
 }
 
-/// Whether the size of the whitened residual depends on a column.
+/// Test of a size of the whitened residual that depends on a column.
 fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure> {
     let n = values.len();
-    if n < 64 * GROUPS || domain == Domain::Angle {
+    if n < 64 * VALUE_GROUPS || domain == Domain::Angle {
         return None;
     }
     let Bounds { low, high } = ends(values);
@@ -178,7 +181,7 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
     let whole: f64 = white.series.iter().map(|e| e * e).sum();
     let mut best = (0.0, 0.0, 0.0);
     let mut trials = 0.0f64;
-    for group in order.chunks(n / GROUPS) {
+    for group in order.chunks(n / VALUE_GROUPS) {
         if group.len() < 32 {
             continue;
         }

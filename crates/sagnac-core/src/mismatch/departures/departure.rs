@@ -1,32 +1,32 @@
-//! What a test of the residual gives, and the whitened residual that tests look at.
+//! The result of a test of the residual, and the whitened residual that tests look at.
 
 use crate::effect::Place;
-use crate::mismatch::tried::{SpectralDataSet, Tried};
+use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::numeric::cosine::inverse_dct2;
 use rand::SeedableRng as _;
 use rand_distr::{Distribution as _, StandardNormal};
 use statrs::distribution::{DiscreteCDF as _, Poisson};
 
 /// Seed of the draws for modes that are left out: a report is a function of recording and claim alone.
-const UNSEEN: u64 = 0x5a67_6e61_6320_0008;
+const UNSEEN_SEED: u64 = 0x5a67_6e61_6320_0008;
 
 /// The largest departure of one test.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Departure {
     /// Id of the test.
     pub test: &'static str,
-    /// Where.
+    /// Place of the departure.
     pub place: Place,
-    /// Where in another view.
+    /// Its place in another view.
     pub beside: Option<Place>,
     /// Logarithm of the probability of as large a departure anywhere in the test. Of strong departures the probabilities
     /// are all too small to be told; which is the strongest is not.
     pub ln_p: f64,
-    /// What it looks like, where the test can say.
+    /// Its shape, where the test determines one.
     pub shape: Option<Shape>,
 }
 
-/// What a departure looks like.
+/// Shape of a departure.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Shape {
     /// Events that stand out by themselves.
@@ -53,7 +53,7 @@ impl Departure {
         self.test == "comb"
     }
 
-    /// Whether it is below a probability in a family of so many tests.
+    /// True where it is below a probability in a family of so many tests.
     pub fn below(&self, probability: f64, tests: usize) -> bool {
         self.ln_p + (tests.max(1) as f64).ln() < probability.ln()
     }
@@ -71,11 +71,11 @@ pub struct White {
 
 impl White {
     /// Whitens what a fitted hypothesis leaves.
-    pub fn of(tried: &Tried, spectra: &SpectralDataSet) -> White {
+    pub fn of(tried: &FittedHypothesis, spectra: &SpectralDataSet) -> White {
         let mut roots = tried.powers(spectra);
         roots.iter_mut().for_each(|p| *p = p.sqrt());
         let mut modes = tried.residual(spectra);
-        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(UNSEEN);
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(UNSEEN_SEED);
         for (k, (x, root)) in modes.iter_mut().zip(&roots).enumerate() {
             // What is left out of the fit is no departure either: a draw stands for it.
             *x = if k == 0 || root.is_finite() { *x / root } else { StandardNormal.sample(&mut rng) };

@@ -15,21 +15,21 @@ use crate::numeric::special::chi_square_normal;
 use crate::numeric::sums::cumulated;
 
 /// Widths of the bands, octaves.
-const WIDTHS: [f64; 5] = [2.0, 1.0, 0.5, 0.25, 0.125];
+const BAND_WIDTHS_OCTAVES: [f64; 5] = [2.0, 1.0, 0.5, 0.25, 0.125];
 /// Fewest modes of a band.
-const FEWEST: usize = 48;
+const MIN_BAND_MODES: usize = 48;
 /// Shortest window, in points of its band.
-const SHORTEST: usize = 2;
+const MIN_WINDOW_POINTS: usize = 2;
 /// Fewest windows of a part of the record.
-const WINDOWS: usize = 4;
+const MIN_WINDOWS: usize = 4;
 /// Most parts of the record, each a power of two shorter than the one before.
-const PARTS: usize = 16;
-/// Standard deviations of a sum up to which it is usual.
-const USUAL: f64 = 3.0;
+const MAX_PARTS: usize = 16;
+/// Standard deviations of a sum up to which it is no departure.
+const MAX_USUAL_SIGMAS: f64 = 3.0;
 /// Normal numbers beyond which windows are counted.
-const LEVELS: [f64; 4] = [3.0, 3.5, 4.0, 4.5];
-/// Of these, the one from which a window counts as an episode.
-const EPISODE: f64 = LEVELS[0];
+const COUNTED_LEVELS: [f64; 4] = [3.0, 3.5, 4.0, 4.5];
+/// Normal number from which a window counts as an episode.
+const EPISODE_LEVEL: f64 = COUNTED_LEVELS[0];
 
 /// The largest departure of a band.
 #[derive(Clone, Copy)]
@@ -44,18 +44,18 @@ struct Best {
     trials: f64,
 }
 
-const NOTHING: Best = Best { ln_p: 0.0, band: (0, 1), window: 1, part: (0, 1), trials: 0.0 };
+const NONE: Best = Best { ln_p: 0.0, band: (0, 1), window: 1, part: (0, 1), trials: 0.0 };
 
 /// Bands from the highest mode down, overlapping by half, as first mode and number of modes. The numbers are those that are fast
 /// to transform.
 fn bands(modes: usize) -> Vec<(usize, usize)> {
     let mut out = vec![];
-    for width in WIDTHS {
+    for width in BAND_WIDTHS_OCTAVES {
         let mut high = modes as f64;
         loop {
             let low = high * (-width).exp2();
             let (first, end) = (low as usize, high as usize);
-            if end - first < FEWEST || first == 0 {
+            if end - first < MIN_BAND_MODES || first == 0 {
                 break;
             }
             let modes = fast_length(end - first);
@@ -104,7 +104,7 @@ impl Looks {
         };
         Looks {
             scores: cumulated(normals.iter().map(|z| z.max(0.0).powi(2))),
-            counts: LEVELS.map(beyond).into(),
+            counts: COUNTED_LEVELS.map(beyond).into(),
         }
     }
 
@@ -112,7 +112,7 @@ impl Looks {
     fn judge(&self, from: usize, to: usize) -> (f64, f64) {
         let windows = to - from;
         // What is no more than usual is not worked out.
-        let large = |seen: f64, mean: f64, variance: f64| seen > mean + USUAL * variance.sqrt();
+        let large = |seen: f64, mean: f64, variance: f64| seen > mean + MAX_USUAL_SIGMAS * variance.sqrt();
         let (sum, many) = (self.scores[to] - self.scores[from], windows as f64);
         let by_sum = if large(sum, 0.5 * many, 1.25 * many) { ln_tail(sum, windows) } else { 0.0 };
         let by_count = |(counts, share): &(Vec<f64>, f64)| {
@@ -128,12 +128,12 @@ impl Looks {
 fn in_band(modes: &[f64], band: (usize, usize)) -> Best {
     let (first, m) = band;
     let series = inverse_dct2(&modes[first..first + m]);
-    let mut best = NOTHING;
-    let mut window = SHORTEST;
+    let mut best = NONE;
+    let mut window = MIN_WINDOW_POINTS;
     while m / window >= 8 {
         let normals: Vec<f64> = powers(&series, window).into_iter().map(|p| normal(p, window)).collect();
         let looks = Looks::new(&normals, window);
-        windows(normals.len(), (normals.len() / PARTS).max(WINDOWS), |from, to| {
+        windows(normals.len(), (normals.len() / MAX_PARTS).max(MIN_WINDOWS), |from, to| {
             let (ln_p, looked) = looks.judge(from, to);
             best.trials += looked;
             if ln_p < best.ln_p {
@@ -153,7 +153,7 @@ pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
     };
     let best = parallel::map_items(&bands(white.modes.len()), |b| in_band(&white.modes, *b))
         .into_iter()
-        .fold(NOTHING, better);
+        .fold(NONE, better);
     if best.trials == 0.0 {
         return None;
     }
@@ -171,13 +171,13 @@ pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
     })
 }
 
-/// How often the band is loud within the part, and how much it adds there.
+/// Number of times that the band is loud within the part, and its power there.
 fn shape(white: &White, best: &Best, window_s: f64) -> Option<Shape> {
     let (first, m) = best.band;
     let series = inverse_dct2(&white.modes[first..first + m]);
     let all = powers(&series, best.window);
     let part = all.get(best.part.0..best.part.1)?;
-    let loud: Vec<bool> = part.iter().map(|p| normal(*p, best.window) > EPISODE).collect();
+    let loud: Vec<bool> = part.iter().map(|p| normal(*p, best.window) > EPISODE_LEVEL).collect();
     // Neighbours are one episode.
     let count = (0..loud.len()).filter(|i| loud[*i] && (*i == 0 || !loud[i - 1])).count();
     let excess = part.iter().sum::<f64>() / part.len().max(1) as f64 - 1.0;
@@ -243,6 +243,6 @@ mod tests {
         let all = bands(1024);
         assert_eq!(all[0], (256, 768));
         assert_eq!(all[1], (128, 384));
-        assert!(all.iter().all(|(first, m)| *m >= FEWEST && first + m <= 1024));
+        assert!(all.iter().all(|(first, m)| *m >= MIN_BAND_MODES && first + m <= 1024));
     }
 }

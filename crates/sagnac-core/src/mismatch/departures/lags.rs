@@ -6,20 +6,20 @@ use crate::estimate::ln_normal_two_sided;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::noise::autocorrelation::lagged_products;
 
-/// Longest lag, in samples, and as a share of the record.
+/// Longest lag, in samples, and fewest of its lengths in a record.
 const MAX_LAG_SAMPLES: usize = 20_000;
-const SHARE: usize = 8;
+const MIN_RECORD_LAGS: usize = 8;
 /// Fewest samples.
-const FEWEST: usize = 256;
+const MIN_SAMPLES: usize = 256;
 
 /// The lag at which the whitened residual is most correlated with itself; under a true hypothesis the correlation at each
 /// lag has a variance of one over the number of samples.
 pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
     let n = white.series.len();
-    if n < FEWEST {
+    if n < MIN_SAMPLES {
         return None;
     }
-    let longest = (n / SHARE).min(MAX_LAG_SAMPLES);
+    let longest = (n / MIN_RECORD_LAGS).min(MAX_LAG_SAMPLES);
     let sums = lagged_products(white.series.iter().copied(), (n + longest + 1).next_power_of_two(), longest)?;
     let variance = sums[0] / n as f64;
     // Of n − k products the sum has a standard deviation of √(n − k) variances.

@@ -1,4 +1,4 @@
-//! Tests that name no physics: whether the whitened residual of a hypothesis is white, Gaussian and the same everywhere.
+//! Tests that name no physics: of a whitened residual that is not white, not Gaussian or not the same everywhere.
 //!
 //! Under a true hypothesis the cosine modes over their expected deviations are independent standard normal numbers, and
 //! so is their inverse transform. Each test scans them in one view and gives the probability of its largest departure
@@ -13,8 +13,8 @@ mod tracks;
 
 pub use departure::{Departure, Shape, White};
 
+use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use super::spectral_data::SpectralData;
-use super::tried::{SpectralDataSet, Tried};
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided, normal_two_sided};
 use crate::numeric::sums::cumulated;
@@ -24,7 +24,7 @@ use sagnac_fft::real_forward;
 use statrs::distribution::{DiscreteCDF, Poisson};
 
 /// Seed of the draws that take values off a grid: a report is a function of recording and claim alone.
-const SEED: u64 = 0x5a67_6e61_6320_0006;
+const OFF_GRID_SEED: u64 = 0x5a67_6e61_6320_0006;
 
 /// A scan's best so far.
 struct Scan {
@@ -65,7 +65,7 @@ impl Scan {
 /// `allowed_skewness` the third standardised moment that single samples may have.
 pub fn all(
     spectra: &SpectralDataSet,
-    tried: &Tried,
+    tried: &FittedHypothesis,
     level: Option<&[f64]>,
     usable: &[bool],
     allowed_skewness: f64,
@@ -121,16 +121,16 @@ fn periodogram(white: &White) -> Option<Vec<f64>> {
 
 /// The largest sum of powers at the multiples of a frequency: what repeats without being a sinusoid.
 fn comb(spectral: &SpectralData, powers: &[f64]) -> Option<Departure> {
-    const HARMONICS: [usize; 4] = [4, 8, 16, 32];
+    const HARMONIC_COUNTS: [usize; 4] = [4, 8, 16, 32];
     // Periods that the record holds fewer times than this are slow courses.
-    const PERIODS: usize = 5;
+    const MIN_PERIODS: usize = 5;
     let n = powers.len();
     let mut best: Option<(f64, f64, usize)> = None;
     let mut trials = 0.0f64;
-    for harmonics in HARMONICS {
+    for harmonics in HARMONIC_COUNTS {
         // Steps of the fundamental of a cell over the number of harmonics: the highest is met within half a cell.
         let (mut largest, mut at) = (0.0, 0);
-        for i in 2 * PERIODS * harmonics..n.saturating_sub(1) {
+        for i in 2 * MIN_PERIODS * harmonics..n.saturating_sub(1) {
             let sum: f64 = (1..=harmonics).map(|h| powers[(h * i + harmonics / 2) / harmonics]).sum();
             trials += 1.0;
             if sum > largest {
@@ -181,18 +181,18 @@ fn levels(spectral: &SpectralData, white: &White) -> Option<Departure> {
 /// The whitened series with counts of a continuous law: values on a grid are moved by an even draw over its step.
 /// `None` where the steps are too coarse for that.
 fn off_lattice(spectral: &SpectralData, white: &White, grid_step_arcsec: Option<f64>) -> Option<Vec<f64>> {
-    const FINE: f64 = 0.1;
-    const COARSE: f64 = 1.5;
+    const MAX_FINE_STEP: f64 = 0.1;
+    const MAX_GRID_STEP: f64 = 1.5;
     let n = white.series.len();
     let per_deg_h = white.roots.iter().skip(1).map(|r| 1.0 / r).sum::<f64>() / n.max(2) as f64;
     let step = grid_step_arcsec.map_or(0.0, |a| a / spectral.drivers.dt_s * per_deg_h);
-    if step <= FINE {
+    if step <= MAX_FINE_STEP {
         return Some(white.series.clone());
     }
-    if step >= COARSE {
+    if step >= MAX_GRID_STEP {
         return None;
     }
-    let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(SEED);
+    let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(OFF_GRID_SEED);
     let scale = (1.0 + step * step / 12.0).sqrt();
     Some(white.series.iter().map(|e| (e + step * (rng.random::<f64>() - 0.5)) / scale).collect())
 }
@@ -239,12 +239,12 @@ fn third_moment(series: &[f64], m: usize) -> (f64, f64) {
 
 /// Third standardised moment, of either sign, that single samples may have by what a hypothesis leaves: what they show and twice
 /// its deviation; 0 where they show none.
-pub fn skewness_shown(spectra: &SpectralDataSet, tried: &Tried) -> f64 {
+pub fn skewness_shown(spectra: &SpectralDataSet, tried: &FittedHypothesis) -> f64 {
     /// Deviations from which a moment is shown.
-    const SHOWN: f64 = 2.0;
+    const MIN_SHOWN_SIGMAS: f64 = 2.0;
     let white = White::of(tried, spectra);
     let (moment, deviation) = third_moment(&white.series, 1);
-    if moment.abs() > SHOWN * deviation { moment.abs() + 2.0 * deviation } else { 0.0 }
+    if moment.abs() > MIN_SHOWN_SIGMAS * deviation { moment.abs() + 2.0 * deviation } else { 0.0 }
 }
 
 /// Third moment of the whitened series at the sample rate and averaged, beyond that which single samples may have: that of a mean

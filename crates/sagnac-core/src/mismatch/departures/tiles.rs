@@ -14,11 +14,11 @@ use crate::numeric::special::{chi_square_normal, f_normal};
 use crate::numeric::sums::cumulated;
 
 /// Fewest modes of a band.
-const FEWEST: usize = 32;
+const MIN_BAND_MODES: usize = 32;
 /// Parts of an octave, at most.
-const PARTS: usize = 64;
+const MAX_OCTAVE_PARTS: usize = 64;
 /// Shortest window, in points of its band.
-const SHORTEST: usize = 16;
+const MIN_WINDOW_POINTS: usize = 16;
 
 /// A window of a band.
 #[derive(Clone, Copy)]
@@ -64,10 +64,10 @@ impl Largest {
 fn bands(modes: usize) -> Vec<(usize, usize)> {
     let mut out = vec![];
     let mut high = modes;
-    while high / 2 >= FEWEST {
+    while high / 2 >= MIN_BAND_MODES {
         let low = high / 2;
         let mut parts = 1;
-        while parts <= PARTS && (high - low) / parts >= FEWEST {
+        while parts <= MAX_OCTAVE_PARTS && (high - low) / parts >= MIN_BAND_MODES {
             let m = (high - low) / parts;
             out.extend((0..parts).map(|p| (low + p * m, m)));
             parts *= 2;
@@ -82,7 +82,7 @@ fn in_band(modes: &[f64], (first, m): (usize, usize)) -> Largest {
     let sums = cumulated(series.iter().map(|v| v * v));
     let sum = sums[m];
     let mut out = Largest::NONE;
-    windows(m, SHORTEST, |from, to| {
+    windows(m, MIN_WINDOW_POINTS, |from, to| {
         out.trials += 1.0;
         let (dof, inside) = ((to - from) as f64, sums[to] - sums[from]);
         let tile = Tile { band: (first, m), window: (from, to), z: 0.0, power: inside };

@@ -13,13 +13,13 @@ use sagnac_fft::real_forward;
 use std::ops::Range;
 
 /// Numbers of segments that the record is cut into.
-const SEGMENTS: [usize; 2] = [16, 64];
+const SEGMENT_COUNTS: [usize; 2] = [16, 64];
 /// Tracks that are followed at most for one number of segments.
 const MAX_TRACKS: usize = 1_000_000;
 /// Fewest samples of a segment.
-const SHORTEST: usize = 32;
+const MIN_SEGMENT_SAMPLES: usize = 32;
 /// Fewest segments of a part of a track.
-const PART: usize = 4;
+const MIN_PART_SEGMENTS: usize = 4;
 /// Frequencies at the lower end that are left out: the mean of a segment and what leaks from it.
 const LEFT_OUT: usize = 4;
 /// Tracks that are followed together.
@@ -38,7 +38,7 @@ const NONE: Best = Best { power: 0.0, segments: (0, 1), bins: (0, 0) };
 
 /// The most powerful track.
 pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
-    let found = SEGMENTS.into_iter().filter_map(|segments| over(&white.series, segments));
+    let found = SEGMENT_COUNTS.into_iter().filter_map(|segments| over(&white.series, segments));
     let (best, length, ln_p) = found.min_by(|a, b| a.2.total_cmp(&b.2))?;
     let drivers = &spectral.drivers;
     // Segments are transformed with as many zeros: a bin is half of their resolution.
@@ -61,7 +61,7 @@ pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
 /// The best track over so many segments, the samples of each, and the logarithm of its probability.
 fn over(series: &[f64], segments: usize) -> Option<(Best, usize, f64)> {
     let length = series.len() / segments;
-    if length < SHORTEST {
+    if length < MIN_SEGMENT_SAMPLES {
         return None;
     }
     let powers = powers(series, segments, length)?;
@@ -140,7 +140,7 @@ fn largest(powers: &[f64; SIDE_BY_SIDE]) -> f64 {
 fn parts(segments: usize) -> Vec<Range<usize>> {
     let mut out = vec![];
     let mut length = segments;
-    while length >= PART {
+    while length >= MIN_PART_SEGMENTS {
         let step = (length / 2).max(1);
         out.extend((0..=segments - length).step_by(step).map(|from| from..from + length));
         length /= 2;

@@ -6,7 +6,7 @@ use super::placed::Placed;
 use crate::effect::{Effect, MeanModel, Unmodelled, Value};
 use crate::mismatch::contribution::summed;
 use crate::mismatch::finding::ParameterValue;
-use crate::mismatch::tried::{SpectralDataSet, Tried};
+use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use nalgebra::DMatrix;
 
 /// Standard deviation of a course over the record.
@@ -21,7 +21,7 @@ pub(super) fn of_course(
     effect: &'static dyn Effect,
     course: &'static dyn MeanModel,
     index: usize,
-    best: &Tried,
+    best: &FittedHypothesis,
     spectra: &SpectralDataSet,
 ) -> Estimated {
     let placed = Placed::new(course, index, best, spectra);

@@ -10,14 +10,14 @@ pub(super) const TWO_SIDED_95: f64 = 1.959_964;
 pub(super) const DROP_95: f64 = 1.920_729;
 
 /// Factor either way within which a parameter must be known for it to be stated.
-const OPEN: f64 = 100.0;
+const MAX_UNCERTAINTY_FACTOR: f64 = 100.0;
 
 /// An effect's parameters.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Estimated {
     /// As reports give them.
     pub reported: BTreeMap<String, ParameterValue>,
-    /// What it says in words, such as the column that it follows.
+    /// Its texts, such as the name of the column that it follows.
     pub texts: BTreeMap<String, String>,
     /// The law that was found, as a formula in the units of the columns.
     pub formula: Option<String>,
@@ -25,11 +25,11 @@ pub struct Estimated {
     pub stated: Values,
 }
 
-/// The 95 % interval of a parameter; `None` for one that the recording does not tell to within [`OPEN`].
+/// The 95 % interval of a parameter; `None` for one that the recording does not tell to within [`MAX_UNCERTAINTY_FACTOR`].
 pub(super) fn interval(param: &Param, value: f64, deviation: f64) -> Option<[f64; 2]> {
     if value > 0.0 && param.lower >= 0.0 {
         let factor = (TWO_SIDED_95 * deviation / value).exp();
-        return (factor < OPEN).then_some([value / factor, value * factor]);
+        return (factor < MAX_UNCERTAINTY_FACTOR).then_some([value / factor, value * factor]);
     }
     Some([value - TWO_SIDED_95 * deviation, value + TWO_SIDED_95 * deviation])
 }

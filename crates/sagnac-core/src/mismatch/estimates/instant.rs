@@ -1,23 +1,23 @@
-//! When a step happened: the instants that the recording leaves open.
+//! The instant of a step, with its interval.
 //!
 //! The likelihood of an instant has several maxima and kinks, so that no drop of its logarithm gives an interval of a known
 //! confidence. With every instant as likely beforehand, its probability given the recording is the likelihood with the
 //! size of the step fitted; the interval spans the most probable instants that hold 95 % together.
 
+use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::mismatch::hypothesis::PartModes;
-use crate::mismatch::terms::CourseIn;
-use crate::mismatch::tried::{SpectralDataSet, Tried};
+use crate::mismatch::terms::MeanTerm;
 use crate::numeric::cosine::{dct2, inverse_dct2};
 use crate::numeric::order::SortByNumber;
 
 /// Probability that an interval holds.
-const HELD: f64 = 0.95;
+const INTERVAL_PROBABILITY: f64 = 0.95;
 /// Places at which the weight of a step is computed; it is interpolated between.
-const PLACES: usize = 48;
+const WEIGHT_POINTS: usize = 48;
 
 /// The interval of the instant of a course that is a step of one size, s on the time of the recording. `None` for other
 /// courses.
-pub fn interval(inside: &CourseIn, tried: &Tried, spectra: &SpectralDataSet) -> Option<[f64; 2]> {
+pub fn interval(inside: &MeanTerm, tried: &FittedHypothesis, spectra: &SpectralDataSet) -> Option<[f64; 2]> {
     let spectral = &spectra.full;
     let n = spectral.drivers.samples;
     let parts = PartModes::of_shape(inside.course()?, &inside.nonlinear_parameters, spectral);
@@ -33,13 +33,13 @@ pub fn interval(inside: &CourseIn, tried: &Tried, spectra: &SpectralDataSet) -> 
         .map(|((r, z), p)| if p.is_finite() { (r + size * z) / p } else { 0.0 })
         .collect();
     let score = inverse_dct2(&weighted);
-    let at = |place: usize| 1 + place * (n - 2) / PLACES;
+    let at = |place: usize| 1 + place * (n - 2) / WEIGHT_POINTS;
     let weight = |j: usize| {
         let step: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i >= j))).collect();
         dct2(&step).iter().zip(&powers).skip(1).map(|(z, p)| z * z / p).sum::<f64>()
     };
-    let weights: Vec<f64> = (0..=PLACES).map(|p| weight(at(p))).collect();
-    let (mut gains, mut sum, mut place) = (vec![f64::NEG_INFINITY; n], 0.0, PLACES - 1);
+    let weights: Vec<f64> = (0..=WEIGHT_POINTS).map(|p| weight(at(p))).collect();
+    let (mut gains, mut sum, mut place) = (vec![f64::NEG_INFINITY; n], 0.0, WEIGHT_POINTS - 1);
     for j in (1..n).rev() {
         sum += score[j];
         while place > 0 && j < at(place) {
@@ -61,7 +61,7 @@ pub fn interval(inside: &CourseIn, tried: &Tried, spectra: &SpectralDataSet) -> 
     for (p, j) in likely {
         (first, last) = (first.min(j), last.max(j));
         held += p;
-        if held >= HELD * whole {
+        if held >= INTERVAL_PROBABILITY * whole {
             break;
         }
     }

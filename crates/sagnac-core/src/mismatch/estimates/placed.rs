@@ -2,10 +2,10 @@
 
 use super::estimated::DROP_95;
 use crate::effect::MeanModel;
+use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::mismatch::hypothesis::{PartModes, kept};
 use crate::mismatch::spectral_data::SpectralData;
-use crate::mismatch::terms::CourseIn;
-use crate::mismatch::tried::{SpectralDataSet, Tried};
+use crate::mismatch::terms::MeanTerm;
 use crate::numeric::least_squares::Normal;
 use crate::numeric::range::Bounds;
 use nalgebra::DMatrix;
@@ -14,7 +14,7 @@ use nalgebra::DMatrix;
 pub struct Placed<'a> {
     pub spectral: &'a SpectralData,
     course: &'static dyn MeanModel,
-    pub inside: &'a CourseIn,
+    pub inside: &'a MeanTerm,
     columns: Vec<(Vec<f64>, f64)>,
     data: Vec<f64>,
     powers: Vec<f64>,
@@ -25,7 +25,7 @@ impl<'a> Placed<'a> {
     pub fn new(
         course: &'static dyn MeanModel,
         index: usize,
-        best: &'a Tried,
+        best: &'a FittedHypothesis,
         spectra: &'a SpectralDataSet,
     ) -> Placed<'a> {
         let spectral = spectra.of(course.resolution());

@@ -4,17 +4,17 @@ use super::estimated::{Estimated, TWO_SIDED_95, interval};
 use crate::effect::{Effect, Model, SpectrumAct, Value};
 use crate::mismatch::contribution::added_rms;
 use crate::mismatch::finding::ParameterValue;
+use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::mismatch::noise_fit::{Which, base_index};
-use crate::mismatch::tried::{SpectralDataSet, Tried};
 
 /// Relative deviation of a number that a fit does not move, as of a whole number of samples.
-const EXACT: f64 = 1e-6;
+const FIXED_DEVIATION: f64 = 1e-6;
 
 /// As the fit of the noise tells them.
 pub(super) fn of_spectrum(
     effect: &'static dyn Effect,
     index: usize,
-    best: &Tried,
+    best: &FittedHypothesis,
     spectra: &SpectralDataSet,
 ) -> Estimated {
     let spectral = &spectra.full;
@@ -68,7 +68,7 @@ pub(super) fn of_spectrum(
         }
         out.stated.insert(param.name.to_owned(), Value::Number(*value));
         if param.reported
-            && let Some(ci95) = interval(param, *value, deviation(i).max(EXACT * value.abs()))
+            && let Some(ci95) = interval(param, *value, deviation(i).max(FIXED_DEVIATION * value.abs()))
         {
             let unit = param.unit.to_owned();
             out.reported.insert(param.name.to_owned(), ParameterValue { value: *value, unit, ci95 });

@@ -6,14 +6,14 @@ use crate::effect::{Domain, Place};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 
 /// Points of each curve.
-const GROUPS: usize = 60;
+const CURVE_POINTS: usize = 60;
 /// Half-width of the 95 % band in standard deviations.
 const TWO_SIDED_95: f64 = 1.96;
 
-/// What is drawn against a column.
+/// Curves against a column.
 #[derive(Debug, Clone, Copy)]
 pub struct Against<'a> {
-    /// Which view: temperature, its rate, input rate, outer rate, angle or supply.
+    /// The view: temperature, its rate, input rate, outer rate, angle or supply.
     pub domain: Domain,
     /// The column, in the unit of the domain.
     pub column: &'a [f64],
@@ -23,7 +23,7 @@ pub struct Against<'a> {
     pub after: Option<&'a [f64]>,
     /// Fitted contribution, deg/h.
     pub contribution: Option<&'a [f64]>,
-    /// Where the mismatch was located.
+    /// Interval in which the mismatch was located.
     pub places: &'a [Place],
 }
 
@@ -45,7 +45,7 @@ fn labels(domain: Domain) -> Option<(&'static str, &'static str)> {
 pub fn against(a: &Against<'_>) -> Option<Figure> {
     let (label, unit) = labels(a.domain)?;
     let curve = |series: &[f64], style: Style, legend: &str, banded: bool| {
-        let means = by_abscissa(a.column, series, GROUPS);
+        let means = by_abscissa(a.column, series, CURVE_POINTS);
         let band = means.iter().map(|m| (m.x, m.y - TWO_SIDED_95 * m.spread, m.y + TWO_SIDED_95 * m.spread));
         let points: Vec<(f64, f64)> = means.iter().map(|m| (m.x, m.y)).collect();
         let mut layers = vec![];
@@ -107,7 +107,7 @@ mod tests {
             .iter()
             .filter_map(|l| if let Layer::Line { points, .. } = l { Some(points) } else { None })
             .collect();
-        assert_eq!((lines.len(), lines[0].len()), (2, GROUPS));
+        assert_eq!((lines.len(), lines[0].len()), (2, CURVE_POINTS));
         assert!(lines[0].iter().all(|(t, r)| (r - 0.5 * (t - 20.0)).abs() < 1e-9));
         assert!(lines[1].iter().all(|p| p.1 == 0.0));
     }

@@ -1,12 +1,12 @@
 //! The residual over time, before and after.
 
-use super::join::{POINTS, over_time};
+use super::join::{MAX_TIME_POINTS, over_time};
 use super::{axis, line, shaded};
 use crate::effect::{Domain, Place};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::message::Note;
 
-/// What is drawn over time.
+/// Curves over time.
 #[derive(Debug, Clone, Copy)]
 pub struct TimeSeries<'a> {
     /// `time_s`, s.
@@ -17,7 +17,7 @@ pub struct TimeSeries<'a> {
     pub after: Option<&'a [f64]>,
     /// Fitted contribution, deg/h.
     pub contribution: Option<&'a [f64]>,
-    /// Where the mismatch was located.
+    /// Interval in which the mismatch was located.
     pub places: &'a [Place],
 }
 
@@ -88,7 +88,7 @@ pub fn local_level(
     }
     layers.push(Layer::Horizontal { at: 1.0, style: Style::Model, legend: String::new() });
     let thin = |points: &[(f64, f64)]| {
-        let step = points.len().div_ceil(POINTS).max(1);
+        let step = points.len().div_ceil(MAX_TIME_POINTS).max(1);
         points.iter().step_by(step).copied().collect::<Vec<_>>()
     };
     layers.push(line(thin(before), Style::Data, "figure.explain.before"));

@@ -3,7 +3,7 @@
 use crate::numeric::order::SortByNumber;
 
 /// Most points of a curve over time.
-pub const POINTS: usize = 900;
+pub const MAX_TIME_POINTS: usize = 900;
 
 /// One mean with the standard deviation of it, from the scatter of what was averaged.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,11 +16,11 @@ pub struct Mean {
     pub spread: f64,
 }
 
-/// Means over groups of equally many neighbours, at most [`POINTS`] of them. Values that are no numbers are left out; a
+/// Means over groups of equally many neighbours, at most [`MAX_TIME_POINTS`] of them. Values that are no numbers are left out; a
 /// group without any other breaks the curve.
 pub fn over_time(x: &[f64], y: &[f64]) -> (Vec<(f64, f64)>, usize) {
     let n = x.len().min(y.len());
-    let group = n.div_ceil(POINTS).max(1);
+    let group = n.div_ceil(MAX_TIME_POINTS).max(1);
     let mean = |v: &[f64]| {
         let (sum, count) = v.iter().filter(|v| v.is_finite()).fold((0.0, 0.0), |(s, c), v| (s + v, c + 1.0));
         sum / count
@@ -56,7 +56,7 @@ mod tests {
         let x: Vec<f64> = (0..10_000).map(f64::from).collect();
         let y: Vec<f64> = x.iter().map(|t| 3.0 + 0.5 * t).collect();
         let (points, group) = over_time(&x, &y);
-        assert!(points.len() <= POINTS && group == 12);
+        assert!(points.len() <= MAX_TIME_POINTS && group == 12);
         // The means of a straight line lie on it.
         assert!(points.iter().all(|(t, v)| (v - 3.0 - 0.5 * t).abs() < 1e-9));
         assert_eq!(over_time(&[], &[]).0, vec![]);

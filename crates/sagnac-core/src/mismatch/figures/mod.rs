@@ -25,7 +25,7 @@ fn line(points: Vec<(f64, f64)>, style: Style, legend: &str) -> Layer {
 }
 
 /// Share of an axis from which on a place no longer narrows anything.
-const WIDE: f64 = 0.8;
+const WIDE_SHARE: f64 = 0.8;
 
 /// The places of a domain, shaded where they are narrower than the axis. `axis` holds its first and last value.
 fn shaded(
@@ -39,7 +39,7 @@ fn shaded(
         axis.is_none_or(|(first, last)| {
             let (first, last) = (along(first), along(last));
             let seen = along(p.to).min(last) - along(p.from).max(first);
-            seen < WIDE * (last - first)
+            seen < WIDE_SHARE * (last - first)
         })
     };
     let here = places.iter().filter(move |p| domains.contains(&p.domain)).filter(narrows);

@@ -6,7 +6,7 @@ use crate::estimate::chi_square_quantile;
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 
 /// Most points of a curve: beyond, neighbouring bins are joined, evenly on the logarithmic axis.
-const POINTS: usize = 500;
+const MAX_CURVE_POINTS: usize = 500;
 
 /// Densities of the residual and of the models, bin by bin.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +23,7 @@ pub struct Spectra<'a> {
     pub claim: &'a [f64],
     /// Density that the augmented claim expects. `None` where nothing was added.
     pub augmented: Option<&'a [f64]>,
-    /// Where the mismatch was located.
+    /// Interval in which the mismatch was located.
     pub places: &'a [Place],
 }
 
@@ -112,7 +112,7 @@ fn joined(s: &Spectra<'_>) -> Vec<Joined> {
         .filter(|b| b.f > 0.0 && b.dof >= 1.0 && b.values.iter().all(|v| *v > 0.0 && v.is_finite()))
         .collect();
     let (Some(first), Some(last)) = (usable.first(), usable.last()) else { return vec![] };
-    let step = (last.f / first.f).max(1.0).powf(1.0 / POINTS as f64);
+    let step = (last.f / first.f).max(1.0).powf(1.0 / MAX_CURVE_POINTS as f64);
     let mut out: Vec<Joined> = vec![];
     let mut end = 0.0;
     for bin in usable {
@@ -156,7 +156,7 @@ mod tests {
             places: &[],
         };
         let bins = joined(&s);
-        assert!(bins.len() <= POINTS + 1 && bins.len() > 300, "{}", bins.len());
+        assert!(bins.len() <= MAX_CURVE_POINTS + 1 && bins.len() > 300, "{}", bins.len());
         let total: f64 = bins.iter().map(|b| b.dof).sum();
         let power: f64 = bins.iter().map(|b| b.dof * b.values[0]).sum();
         assert!((total - 20_000.0).abs() < 1e-6 && (power / total - 2.0).abs() < 1e-9);

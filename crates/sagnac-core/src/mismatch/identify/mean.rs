@@ -12,11 +12,11 @@ const LEAST_RANGE_DEGC: f64 = 0.01;
 /// Range of a table rate below which its scale factor cannot be fitted, deg/s.
 const LEAST_RANGE_DEG_S: f64 = 1e-6;
 /// Standard deviations above nil from which a dependence is claimed.
-const CLAIMED: f64 = 3.0;
+const MIN_CLAIMED_SIGMAS: f64 = 3.0;
 /// Most by which the horizontal Earth rate may seem larger than the Earth rate.
 const EARTH_EXCESS: f64 = 1.02;
 
-/// What a column of the fit stands for.
+/// Meaning of a column of the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Term {
     Temperature,
@@ -35,7 +35,7 @@ pub struct Columns {
 }
 
 /// A fitted mean.
-pub struct Fitted {
+pub struct FittedMean {
     /// The mean.
     pub claimed: ClaimedMean,
     /// Rate less mean, row by row, deg/h.
@@ -95,7 +95,7 @@ impl Columns {
     }
 
     /// Fits the mean: by ordinary least squares without a noise, by generalised ones with it.
-    pub fn fit(&self, series: &Series, noise: Option<&Composite>) -> Fitted {
+    pub fn fit(&self, series: &Series, noise: Option<&Composite>) -> FittedMean {
         let target: Vec<f64> = series.rate_deg_h.iter().zip(&self.known).map(|(y, k)| y - k).collect();
         let modes = |v: &[f64]| dct2(&self.uniform(v));
         let y = modes(&target);
@@ -123,14 +123,20 @@ impl Columns {
         )
     }
 
-    fn fitted(&self, target: &[f64], b: &[f64], covariance: &[f64], power_of_mean: Option<f64>) -> Fitted {
+    fn fitted(
+        &self,
+        target: &[f64],
+        b: &[f64],
+        covariance: &[f64],
+        power_of_mean: Option<f64>,
+    ) -> FittedMean {
         let of = |term: Term| {
             let i = self.terms.iter().position(|(t, _)| *t == term)?;
             Some((b.get(i).copied()?, covariance.get(i).copied().unwrap_or(0.0).max(0.0).sqrt()))
         };
-        // What cannot be told from nil is not claimed, and takes nothing out.
-        let clear = |(value, sd): (f64, f64)| value.abs() > CLAIMED * sd;
-        // A coefficient that cannot be told from nil is claimed with its deviation: that is all that is known of it.
+        // A dependence that does not differ from nil is not claimed, and takes nothing out.
+        let clear = |(value, sd): (f64, f64)| value.abs() > MIN_CLAIMED_SIGMAS * sd;
+        // A coefficient that does not differ from nil is claimed with its deviation: that is all that is known of it.
         let temperature = of(Term::Temperature);
         let scale = of(Term::ScaleFactor);
         let heading = of(Term::Cosine).zip(of(Term::Sine)).filter(|(c, s)| {
@@ -152,7 +158,7 @@ impl Columns {
         }
         let bias = residual.iter().sum::<f64>() / residual.len().max(1) as f64;
         residual.iter_mut().for_each(|r| *r -= bias);
-        Fitted {
+        FittedMean {
             claimed: ClaimedMean {
                 bias_deg_h: bias,
                 temperature: temperature.map(|(value, _)| Temperature {

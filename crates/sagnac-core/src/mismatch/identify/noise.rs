@@ -10,7 +10,7 @@ use crate::noise::spectral_record::identify_digest;
 use crate::series::Series;
 
 /// The noise found.
-pub struct Found {
+pub struct FittedNoise {
     /// N, deg/√h.
     pub n: Coefficient,
     /// B, deg/h.
@@ -36,7 +36,7 @@ fn coefficient(estimate: &Estimate) -> Coefficient {
 }
 
 /// Identifies the noise of a residual, row by row.
-pub fn identify(series: &Series, residual: &[f64]) -> Found {
+pub fn identify(series: &Series, residual: &[f64]) -> FittedNoise {
     let tau0_s = series.sample_interval_s;
     let mut digest = RateAccumulator::new(DigestPlan::new(tau0_s));
     let mut from = 0;
@@ -54,7 +54,7 @@ pub fn identify(series: &Series, residual: &[f64]) -> Found {
     let composite = identification.described.model.clone();
     let processes = composite.markov.iter().chain(&composite.quasi_periodic);
     let effects = processes.filter_map(|p| stated(p, tau0_s)).collect();
-    Found {
+    FittedNoise {
         n: coefficient(&identification.angle_random_walk),
         b: coefficient(&identification.bias_instability),
         k: coefficient(&identification.rate_random_walk),

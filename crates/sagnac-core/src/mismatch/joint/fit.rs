@@ -1,6 +1,6 @@
 //! A law fitted to all recordings: their scores and informations add up, since their noises are independent.
 
-use super::ground::{Ground, Share};
+use super::baseline::{Baseline, LawInformation};
 use super::law::{Coefficients, Law};
 use crate::estimate::chi_square_tail;
 use crate::numeric::optimize::pattern_search;
@@ -9,11 +9,11 @@ use crate::numeric::range::Bounds;
 use nalgebra::{DMatrix, DVector};
 
 /// Evaluations of a search for the numbers of a law, and the loss of log-likelihood below which it stops.
-const SEARCH: (usize, f64) = (120, 1e-4);
+const SEARCH_LIMITS: (usize, f64) = (120, 1e-4);
 
 /// A law with what all recordings say of it.
 #[derive(Clone)]
-pub(super) struct Fitted {
+pub(super) struct FittedLaw {
     pub law: Law,
     /// Coefficients of the law over all recordings.
     pub coefficients: DVector<f64>,
@@ -21,13 +21,13 @@ pub(super) struct Fitted {
     pub covariance: DMatrix<f64>,
     /// Gain of log-likelihood over all recordings, nats.
     pub gain: f64,
-    /// What each recording says; `None` for one that lacks what the law needs.
-    pub shares: Vec<Option<Share>>,
+    /// Information of each recording; `None` for one that lacks what the law needs.
+    pub shares: Vec<Option<LawInformation>>,
 }
 
 /// Fits a law; `None` where fewer than two recordings tell of it.
-pub(super) fn fit(law: &Law, grounds: &[Ground<'_>]) -> Option<Fitted> {
-    let shares: Vec<Option<Share>> = parallel::map_items(grounds, |g| g.share(law));
+pub(super) fn fit(law: &Law, baselines: &[Baseline<'_>]) -> Option<FittedLaw> {
+    let shares: Vec<Option<LawInformation>> = parallel::map_items(baselines, |g| g.information(law));
     if shares.iter().flatten().count() < 2 {
         return None;
     }
@@ -36,7 +36,7 @@ pub(super) fn fit(law: &Law, grounds: &[Ground<'_>]) -> Option<Fitted> {
     let covariance =
         if score.is_empty() { DMatrix::zeros(0, 0) } else { information.clone().try_inverse()? };
     let coefficients = &covariance * &score;
-    let deviation = grounds.iter().map(|g| g.prior_deviation(law)).fold(0.0, f64::max);
+    let deviation = baselines.iter().map(|g| g.prior_deviation(law)).fold(0.0, f64::max);
     // A value that the claim knows with an uncertainty is one value in all recordings: what its prior allows is no gain.
     let allowed = DMatrix::identity(score.len(), score.len()) * deviation.powi(2);
     let gain = match (&covariance + allowed).try_inverse() {
@@ -46,11 +46,11 @@ pub(super) fn fit(law: &Law, grounds: &[Ground<'_>]) -> Option<Fitted> {
         _ => 0.0,
     };
     let gain = gain + fixed;
-    gain.is_finite().then_some(Fitted { law: law.clone(), coefficients, covariance, gain, shares })
+    gain.is_finite().then_some(FittedLaw { law: law.clone(), coefficients, covariance, gain, shares })
 }
 
 /// Fits a law with the numbers that it has beside its coefficients searched for.
-pub(super) fn refined(fitted: Fitted, grounds: &[Ground<'_>]) -> Fitted {
+pub(super) fn refined(fitted: FittedLaw, baselines: &[Baseline<'_>]) -> FittedLaw {
     let searched = fitted.law.searched();
     if searched.is_empty() || matches!(fitted.law.coefficients, Coefficients::List(..)) {
         return fitted;
@@ -61,16 +61,17 @@ pub(super) fn refined(fitted: Fitted, grounds: &[Ground<'_>]) -> Fitted {
         .iter()
         .map(|(p, at)| (p.lower <= 0.0 || p.upper / p.lower <= 20.0).then(|| 0.2 * at.abs().max(1e-12)))
         .collect();
-    let gain = |numbers: &[f64]| fit(&fitted.law.at(numbers), grounds).map_or(f64::NEG_INFINITY, |f| f.gain);
-    let (numbers, _) = pattern_search(&start, &bounds, &first, SEARCH, gain);
-    fit(&fitted.law.at(&numbers), grounds).filter(|f| f.gain > fitted.gain).unwrap_or(fitted)
+    let gain =
+        |numbers: &[f64]| fit(&fitted.law.at(numbers), baselines).map_or(f64::NEG_INFINITY, |f| f.gain);
+    let (numbers, _) = pattern_search(&start, &bounds, &first, SEARCH_LIMITS, gain);
+    fit(&fitted.law.at(&numbers), baselines).filter(|f| f.gain > fitted.gain).unwrap_or(fitted)
 }
 
 /// Scores and informations summed.
-fn total<'a>(shares: impl Iterator<Item = &'a Share>) -> Option<(DVector<f64>, DMatrix<f64>)> {
+fn total<'a>(shares: impl Iterator<Item = &'a LawInformation>) -> Option<(DVector<f64>, DMatrix<f64>)> {
     let mut sum: Option<(DVector<f64>, DMatrix<f64>)> = None;
     for share in shares {
-        let Share::Quadratic { score, information } = share else { continue };
+        let LawInformation::Quadratic { score, information } = share else { continue };
         sum = Some(match sum {
             None => (score.clone(), information.clone()),
             Some((s, i)) if s.len() == score.len() => (s + score, i + information),
@@ -80,19 +81,19 @@ fn total<'a>(shares: impl Iterator<Item = &'a Share>) -> Option<(DVector<f64>, D
     Some(sum.unwrap_or_else(|| (DVector::zeros(0), DMatrix::zeros(0, 0))))
 }
 
-fn fixed_gain(share: &Share) -> f64 {
+fn fixed_gain(share: &LawInformation) -> f64 {
     match share {
-        Share::Gain(gain) => *gain,
-        Share::Quadratic { .. } => 0.0,
+        LawInformation::Gain(gain) => *gain,
+        LawInformation::Quadratic { .. } => 0.0,
     }
 }
 
-impl Fitted {
+impl FittedLaw {
     /// Gain of one recording by the law with given coefficients, nats.
-    fn gain_of(share: &Share, coefficients: &DVector<f64>) -> f64 {
+    fn gain_of(share: &LawInformation, coefficients: &DVector<f64>) -> f64 {
         match share {
-            Share::Gain(gain) => *gain,
-            Share::Quadratic { score, information } => {
+            LawInformation::Gain(gain) => *gain,
+            LawInformation::Quadratic { score, information } => {
                 score.dot(coefficients)
                     - 0.5 * (coefficients.transpose() * information * coefficients)[(0, 0)]
             }
@@ -102,7 +103,7 @@ impl Fitted {
     /// Gain of a recording by the law of all, nats.
     pub fn gain_in(&self, recording: usize) -> Option<f64> {
         let share = self.shares.get(recording)?.as_ref()?;
-        Some(Fitted::gain_of(share, &self.coefficients))
+        Some(FittedLaw::gain_of(share, &self.coefficients))
     }
 
     /// Gain of a recording by the law as the others alone have it, nats.
@@ -111,12 +112,15 @@ impl Fitted {
         let others = self.shares.iter().enumerate().filter(|(i, _)| *i != recording);
         let (score, information) = total(others.filter_map(|(_, s)| s.as_ref()))?;
         let coefficients = information.try_inverse().map(|c| c * score);
-        Some(Fitted::gain_of(share, &coefficients.unwrap_or_else(|| DVector::zeros(self.coefficients.len()))))
+        Some(FittedLaw::gain_of(
+            share,
+            &coefficients.unwrap_or_else(|| DVector::zeros(self.coefficients.len())),
+        ))
     }
 
-    /// What the law adds, rms about its mean in each recording, over all of them, deg/h.
-    pub fn rms(&self, grounds: &[Ground<'_>]) -> Option<f64> {
-        let told = grounds.iter().zip(&self.shares).filter(|(_, s)| s.is_some());
+    /// Contribution of the law, rms about its mean in each recording, over all of them, deg/h.
+    pub fn rms(&self, baselines: &[Baseline<'_>]) -> Option<f64> {
+        let told = baselines.iter().zip(&self.shares).filter(|(_, s)| s.is_some());
         let courses = told.filter_map(|(g, _)| g.course(&self.law, self.coefficients.as_slice()));
         let (mut squares, mut samples) = (0.0, 0usize);
         for course in courses {
@@ -129,16 +133,16 @@ impl Fitted {
 
     /// The coefficient of a law of one, as a recording alone has it, with its deviation.
     pub fn alone(&self, recording: usize) -> Option<(f64, f64)> {
-        let Share::Quadratic { score, information } = self.shares.get(recording)?.as_ref()? else {
+        let LawInformation::Quadratic { score, information } = self.shares.get(recording)?.as_ref()? else {
             return None;
         };
         let information = (score.len() == 1).then(|| information[(0, 0)]).filter(|i| *i > 0.0)?;
         Some((score[0] / information, information.powf(-0.5)))
     }
 
-    /// Whether a coefficient, or a number that was searched for, differs from that of another fit of the law: by some of its
+    /// True where a coefficient, or a number that was searched for, differs from that of another fit of the law: by some of its
     /// deviations, or by a hundredth.
-    pub fn is_apart_from(&self, other: &Fitted, deviations: f64) -> bool {
+    pub fn is_apart_from(&self, other: &FittedLaw, deviations: f64) -> bool {
         let away = |i: usize| (self.coefficients[i] - other.coefficients[i]).abs();
         let same_law = self.coefficients.len() == other.coefficients.len();
         let moved =
@@ -152,7 +156,7 @@ impl Fitted {
     /// distributed.
     pub fn agreement(&self) -> f64 {
         let own = self.shares.iter().flatten().filter_map(|share| {
-            let Share::Quadratic { score, information } = share else { return None };
+            let LawInformation::Quadratic { score, information } = share else { return None };
             let away = information.clone().try_inverse()? * score - &self.coefficients;
             Some((away.transpose() * information * &away)[(0, 0)])
         });
@@ -174,9 +178,9 @@ impl Fitted {
 
     /// Standard deviations of the numbers that were searched for, in the order of [`Law::searched`], by the curvature of the
     /// gain; NaN where it has no peak.
-    pub fn deviations_of_searched(&self, grounds: &[Ground<'_>]) -> Vec<f64> {
+    pub fn deviations_of_searched(&self, baselines: &[Baseline<'_>]) -> Vec<f64> {
         let at: Vec<f64> = self.law.searched().iter().map(|(_, v)| *v).collect();
-        let gain = |numbers: &[f64]| fit(&self.law.at(numbers), grounds).map_or(f64::NAN, |f| f.gain);
+        let gain = |numbers: &[f64]| fit(&self.law.at(numbers), baselines).map_or(f64::NAN, |f| f.gain);
         let steps: Vec<f64> = (0..at.len()).map(|i| step(&at, i, self.gain, gain)).collect();
         let moved = |i: usize, a: f64, j: usize, b: f64| {
             let mut to = at.clone();

@@ -2,11 +2,12 @@
 
 use crate::claim::Stated;
 use crate::effect::{
-    Column, Domain, Drivers, Effect, MeanModel, Model, Param, Sizing, Value, Values, list, number,
+    COLUMN_TEXT, Column, Domain, Drivers, Effect, MeanModel, Model, Param, Sizing, Value, Values, list,
+    number,
 };
 
 /// Sizes at which an effect is tried whose course is not proportional to its size, over the one to begin from.
-const SIZES: [f64; 6] = [0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
+const TRIED_SIZES: [f64; 6] = [0.03, 0.1, 0.3, 1.0, 3.0, 10.0];
 
 /// An effect with its parameters. Some of them are coefficients, which are fitted.
 #[derive(Clone)]
@@ -22,7 +23,7 @@ pub(super) struct Law {
     pub trials: f64,
 }
 
-/// What the course is proportional to.
+/// Coefficients that the course is proportional to.
 #[derive(Clone)]
 pub(super) enum Coefficients {
     /// One number.
@@ -49,7 +50,7 @@ impl Law {
 
     /// The column that it follows, for an effect that any column can drive.
     pub fn column(&self) -> Option<Column> {
-        match self.values.get("column") {
+        match self.values.get(COLUMN_TEXT) {
             Some(Value::Text(name)) => Some(Column::of_name(name)),
             _ => None,
         }
@@ -117,13 +118,13 @@ impl Law {
     }
 }
 
-/// Whether a recording has what an effect needs.
+/// True where a recording has the columns that an effect needs.
 fn has_needs(effect: &dyn Effect, model: &dyn MeanModel, drivers: &Drivers) -> bool {
     effect.needs().iter().all(|c| drivers.column(*c).is_some()) && model.applies(drivers)
 }
 
-/// Whether an effect belongs to the unit and not to a moment of one recording: another recording shows it with the same
-/// parameters.
+/// Forward model of an effect of which every recording of the unit shows the same parameters; `None` for one of a moment of one
+/// recording.
 pub(super) fn of_the_unit(effect: &dyn Effect) -> Option<&'static dyn MeanModel> {
     let Model::Mean(model) = effect.model() else { return None };
     let of_a_moment = matches!(effect.domain(), Domain::Time | Domain::Frequency)
@@ -171,7 +172,7 @@ fn of_sizing(
         numbers,
         trials,
     };
-    SIZES.into_iter().map(at).collect()
+    TRIED_SIZES.into_iter().map(at).collect()
 }
 
 fn is_proportional(model: &dyn MeanModel, sizing: &Sizing, place: &Values, drivers: &Drivers) -> bool {

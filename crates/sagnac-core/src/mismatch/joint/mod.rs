@@ -9,37 +9,37 @@
 //! |---|---|
 //! | `record` | what `joint.json` holds |
 //! | `law` | an effect of which everything but its coefficients is chosen |
-//! | `ground` | what one recording says of a law |
+//! | `baseline` | what one recording says of a law |
 //! | `fit` | a law fitted to all recordings |
 //! | `select` | the law that explains most |
 
+mod baseline;
 mod fit;
-mod ground;
 mod law;
 pub mod record;
 mod select;
 
-use self::fit::Fitted;
-use self::ground::Ground;
+use self::baseline::Baseline;
+use self::fit::FittedLaw;
 use self::law::{Coefficients, Law, of_stated, of_the_unit};
 use self::record::{Brief, JOINT_FORMAT, JointExplanation, JointRecording, SharedEffect, SharedIn};
 use super::engine::{explain, on_grid, uncoarsened};
 use super::finding::{Explanation, MismatchVerdict, ParameterValue};
-use super::named::Found;
+use super::fitted_hypothesis::FittedHypothesis;
+use super::named::SampleFindings;
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
 use super::problem::Problem;
 use super::samples;
-use super::tried::Tried;
 use crate::claim::{Claim, Stated};
 use crate::message::Note;
 use crate::series::Series;
 use std::collections::BTreeMap;
 
 /// Rounds of explaining the recordings beside the laws, and of fitting the laws beside what that found.
-const ROUNDS: usize = 3;
+const MAX_ROUNDS: usize = 3;
 /// A law has moved where a coefficient changed by this many of its deviations.
-const LITTLE: f64 = 0.1;
+const MIN_MOVED_SIGMAS: f64 = 0.1;
 /// A 95 % interval in standard deviations.
 const HALF_WIDTH: f64 = 1.959_963_985;
 
@@ -53,7 +53,7 @@ pub struct Recording {
     pub series: Series,
 }
 
-/// What several recordings give.
+/// Result of a joint explanation.
 pub struct JointOutcome {
     /// `joint.json`.
     pub explanation: JointExplanation,
@@ -63,7 +63,7 @@ pub struct JointOutcome {
     pub augmented: Claim,
 }
 
-/// Why recordings cannot be explained together.
+/// Reason why recordings cannot be explained together.
 #[derive(Debug)]
 pub struct JointError {
     /// The recording, counted from 0.
@@ -72,12 +72,12 @@ pub struct JointError {
     pub note: Note,
 }
 
-/// How far the work is, and with which recording.
+/// Progress of the work, and the recording that it is at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct JointProgress {
     /// The recording, counted from 0; `None` while all are fitted together.
     pub recording: Option<usize>,
-    /// How far the work on it is.
+    /// Progress of the work on it.
     pub of: Progress,
 }
 
@@ -107,7 +107,7 @@ pub fn explain_jointly(
     let mut shared = shared(&recordings, &alone, claim, &each, progress)?;
     let briefs: Vec<Brief> = alone.iter().map(|o| brief(&o.explanation)).collect();
     let mut together = alone;
-    for _ in 0..if shared.laws.is_empty() { 0 } else { ROUNDS } {
+    for _ in 0..if shared.laws.is_empty() { 0 } else { MAX_ROUNDS } {
         together = explained(&shared.claim, progress)?;
         if !refit(&mut shared, &recordings, &together, claim, &each)? {
             break;
@@ -154,7 +154,7 @@ fn verdict(shared: &[SharedEffect], recordings: &[JointRecording]) -> MismatchVe
     }
 }
 
-/// What the recordings share.
+/// Laws that the recordings share.
 struct Shared {
     laws: Vec<SharedLaw>,
     unlike: Vec<SharedEffect>,
@@ -165,7 +165,7 @@ struct Shared {
 
 /// A law that the recordings share.
 struct SharedLaw {
-    fitted: Fitted,
+    fitted: FittedLaw,
     told: SharedEffect,
     /// Causes that were looked at to find it.
     family: f64,
@@ -195,12 +195,12 @@ fn shared(
         };
         progress(JointProgress { recording: None, of });
         let problems = problems(recordings, alone, claim, &out.claim, options)?;
-        let grounds: Vec<Ground<'_>> = problems.iter().map(|(p, b)| Ground::new(p, b)).collect();
-        let look = select::look(&grounds, &found, &taken, rows, options);
-        let told = |f: &Fitted| told(f, &grounds, rows, look.family);
+        let baselines: Vec<Baseline<'_>> = problems.iter().map(|(p, b)| Baseline::new(p, b)).collect();
+        let look = select::look(&baselines, &found, &taken, rows, options);
+        let told = |f: &FittedLaw| told(f, &baselines, rows, look.family);
         out.unlike = look.unlike.iter().map(&told).collect();
         let Some(best) = look.best else { break };
-        let Some(stated) = stated(&best, &grounds) else { break };
+        let Some(stated) = stated(&best, &baselines) else { break };
         taken.push(best.law.cause());
         out.laws.push(SharedLaw { told: told(&best), fitted: best, family: look.family });
         out.claim.effects.push(stated);
@@ -223,20 +223,20 @@ fn refit(
         let mut without = shared.claim.clone();
         without.effects.remove(at);
         let problems = problems(recordings, together, &shared.claim, &without, options)?;
-        let grounds: Vec<Ground<'_>> = problems.iter().map(|(p, b)| Ground::new(p, b)).collect();
+        let baselines: Vec<Baseline<'_>> = problems.iter().map(|(p, b)| Baseline::new(p, b)).collect();
         let (Some(law), rows) = (shared.laws.get_mut(i), shared.rows) else { continue };
-        let Some(again) = fit::fit(&law.fitted.law, &grounds) else { continue };
-        let again = fit::refined(again, &grounds);
-        let Some(stated) = stated(&again, &grounds) else { continue };
-        moved |= again.is_apart_from(&law.fitted, LITTLE);
-        law.told = told(&again, &grounds, rows, law.family);
+        let Some(again) = fit::fit(&law.fitted.law, &baselines) else { continue };
+        let again = fit::refined(again, &baselines);
+        let Some(stated) = stated(&again, &baselines) else { continue };
+        moved |= again.is_apart_from(&law.fitted, MIN_MOVED_SIGMAS);
+        law.told = told(&again, &baselines, rows, law.family);
         law.fitted = again;
         shared.claim.effects[at] = stated;
     }
     Ok(moved)
 }
 
-/// What the explanation of a recording adds to the claim.
+/// Effects that the explanation of a recording adds to the claim.
 fn added<'a>(outcome: &'a Outcome, claim: &Claim) -> impl Iterator<Item = &'a Stated> {
     outcome.augmented.effects.iter().skip(claim.effects.len())
 }
@@ -248,7 +248,7 @@ fn problems(
     given: &Claim,
     claim: &Claim,
     options: &Options,
-) -> Result<Vec<(Problem, Tried)>, JointError> {
+) -> Result<Vec<(Problem, FittedHypothesis)>, JointError> {
     let of = |(i, (recording, outcome)): (usize, (&Recording, &Outcome))| {
         let own = added(outcome, given).filter(|s| of_the_unit(s.effect).is_none());
         let claim = Claim {
@@ -258,7 +258,7 @@ fn problems(
         };
         let fail = |note| JointError { recording: i, note };
         let mut regular = on_grid(recording.series.clone(), &claim, options).map_err(fail)?;
-        let mut found = Found::default();
+        let mut found = SampleFindings::default();
         samples::take_invalid(&mut regular, &claim, &mut found, options);
         let problem = uncoarsened(&regular, &claim, &mut found, options);
         let base = problem.baseline();
@@ -268,14 +268,14 @@ fn problems(
 }
 
 /// A shared law as a claim states it.
-fn stated(best: &Fitted, grounds: &[Ground<'_>]) -> Option<Stated> {
-    let told = grounds.iter().zip(&best.shares).find(|(_, s)| s.is_some())?.0;
+fn stated(best: &FittedLaw, baselines: &[Baseline<'_>]) -> Option<Stated> {
+    let told = baselines.iter().zip(&best.shares).find(|(_, s)| s.is_some())?.0;
     Some(best.law.stated(best.coefficients.as_slice(), &told.problem.drivers))
 }
 
-fn told(fitted: &Fitted, grounds: &[Ground<'_>], rows: usize, family: f64) -> SharedEffect {
+fn told(fitted: &FittedLaw, baselines: &[Baseline<'_>], rows: usize, family: f64) -> SharedEffect {
     let law = &fitted.law;
-    let of = (0..grounds.len()).filter_map(|i| {
+    let of = (0..baselines.len()).filter_map(|i| {
         let alone = fitted.alone(i).and_then(|(c, deviation)| coefficient(law, c, deviation));
         Some(SharedIn {
             recording: i + 1,
@@ -289,7 +289,7 @@ fn told(fitted: &Fitted, grounds: &[Ground<'_>], rows: usize, family: f64) -> Sh
         kind: law.effect.reported_kind().to_owned(),
         effect: (!law.effect.in_format()).then(|| law.effect.kind().to_owned()),
         column: law.column().map(|c| c.name().to_owned()),
-        parameters: parameters(fitted, grounds),
+        parameters: parameters(fitted, baselines),
         gain: fitted.gain,
         delta_bic: fitted.delta_bic(rows),
         p_value: fitted.p_value(family),
@@ -310,13 +310,13 @@ fn coefficient(law: &Law, value: f64, deviation: f64) -> Option<(&'static str, P
 }
 
 /// The reported parameters: the coefficient, wider by what the numbers that were searched for leave open, and those numbers.
-fn parameters(fitted: &Fitted, grounds: &[Ground<'_>]) -> BTreeMap<String, ParameterValue> {
+fn parameters(fitted: &FittedLaw, baselines: &[Baseline<'_>]) -> BTreeMap<String, ParameterValue> {
     let law = &fitted.law;
     let searched = law.searched();
     let deviations = if matches!(law.coefficients, Coefficients::List(..)) {
         vec![]
     } else {
-        fitted.deviations_of_searched(grounds)
+        fitted.deviations_of_searched(baselines)
     };
     let mut out = BTreeMap::new();
     let mut variance = fitted.covariance.get((0, 0)).copied().unwrap_or(0.0);
@@ -327,7 +327,7 @@ fn parameters(fitted: &Fitted, grounds: &[Ground<'_>]) -> BTreeMap<String, Param
         }
         let mut moved = at.clone();
         moved[i] += deviation;
-        if let Some(other) = fit::fit(&law.at(&moved), grounds)
+        if let Some(other) = fit::fit(&law.at(&moved), baselines)
             && let (Some(a), Some(b)) = (other.coefficients.get(0), fitted.coefficients.get(0))
         {
             variance += (a - b).powi(2);
@@ -347,7 +347,7 @@ fn parameters(fitted: &Fitted, grounds: &[Ground<'_>]) -> BTreeMap<String, Param
     {
         out.insert(name.to_owned(), told);
     }
-    if let Some(rms) = fitted.rms(grounds) {
+    if let Some(rms) = fitted.rms(baselines) {
         // Along what was fitted, twice the gain is the squared ratio of a size to its deviation.
         let half = rms * HALF_WIDTH / (2.0 * fitted.gain).sqrt();
         let told = ParameterValue {

@@ -1,4 +1,4 @@
-//! What several recordings say together, as `joint.json` has it.
+//! The result of several recordings together, as `joint.json` has it.
 
 use crate::mismatch::finding::{MismatchVerdict, ParameterValue};
 use serde::{Deserialize, Serialize};

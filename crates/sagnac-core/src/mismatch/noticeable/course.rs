@@ -1,7 +1,7 @@
 //! Sizes of effects on the mean that would have been noticed.
 
 use super::gate::Gate;
-use super::ground::Ground;
+use super::null_model::NullModel;
 use super::places::{At, Placed, summary};
 use super::solve;
 use crate::effect::{Effect, MeanModel, Param, Sizing, Values, number};
@@ -12,15 +12,15 @@ use std::collections::BTreeMap;
 pub(super) fn sizes(
     effect: &'static dyn Effect,
     model: &'static dyn MeanModel,
-    ground: &Ground<'_>,
+    null_model: &NullModel<'_>,
     gate: &Gate,
 ) -> Result<Vec<NoticeableSize>, WhyNot> {
-    let sizings = model.sizings(&ground.spectral().drivers);
+    let sizings = model.sizings(&null_model.spectral().drivers);
     if sizings.is_empty() {
         return Err(WhyNot::NoSingleSize);
     }
     let found: Vec<NoticeableSize> =
-        sizings.iter().filter_map(|s| of_sizing(effect, model, s, ground, gate)).collect();
+        sizings.iter().filter_map(|s| of_sizing(effect, model, s, null_model, gate)).collect();
     if found.is_empty() { Err(WhyNot::NeverLargeEnough) } else { Ok(found) }
 }
 
@@ -28,11 +28,11 @@ fn of_sizing(
     effect: &'static dyn Effect,
     model: &'static dyn MeanModel,
     sizing: &Sizing,
-    ground: &Ground<'_>,
+    null_model: &NullModel<'_>,
     gate: &Gate,
 ) -> Option<NoticeableSize> {
     let placed = sizing.places.iter().filter_map(|place| {
-        let (size, rms_deg_h) = at_place(model, sizing, place, ground, gate)?;
+        let (size, rms_deg_h) = at_place(model, sizing, place, null_model, gate)?;
         Some(Placed { size, rms_deg_h: Some(rms_deg_h), at: told(effect.params(), place) })
     });
     let found = summary(placed.collect(), false)?;
@@ -57,14 +57,14 @@ fn at_place(
     model: &dyn MeanModel,
     sizing: &Sizing,
     place: &Values,
-    ground: &Ground<'_>,
+    null_model: &NullModel<'_>,
     gate: &Gate,
 ) -> Option<(f64, f64)> {
-    let drivers = &ground.spectral().drivers;
+    let drivers = &null_model.spectral().drivers;
     let course = |size: f64| model.sized_course(sizing, place, size, drivers);
-    let spread = ground.of_course(&course(sizing.begin)?, model).spread;
+    let spread = null_model.of_course(&course(sizing.begin)?, model).spread;
     let needed = gate.needed(sizing.parameters, sizing.trials, spread);
-    let gain = |size: f64| course(size).map_or(f64::NAN, |c| ground.of_course(&c, model).gain);
+    let gain = |size: f64| course(size).map_or(f64::NAN, |c| null_model.of_course(&c, model).gain);
     let largest = sizing.parameter.upper - sizing.claimed;
     let size = solve::size(sizing.begin, largest, needed, gain)?;
     Some((size, deviation(&course(size)?)))

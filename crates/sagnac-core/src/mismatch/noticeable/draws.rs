@@ -7,13 +7,13 @@ use rand_distr::{ChiSquared, Distribution as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Spectra that are drawn.
-const DRAWS: usize = 400;
+const SPECTRUM_DRAWS: usize = 400;
 /// Of them in a group.
 const SIDE_BY_SIDE: usize = 16;
 /// Largest share of the variance of a gain that bins have together which are held at their means.
-const QUIET: f64 = 1e-3;
+const MAX_FIXED_SHARE: f64 = 1e-3;
 /// Seed of the spectra: a report is a function of recording and claim alone.
-const SEED: u64 = 0x5a67_6e61_6320_0008;
+const DRAW_SEED: u64 = 0x5a67_6e61_6320_0008;
 
 /// Mean squares of the modes over what is expected of them, of the spectra of a group side by side.
 struct Group {
@@ -34,7 +34,7 @@ pub(super) struct Rival {
     pub prior: f64,
 }
 
-/// What a bin does to the gains of all rivals.
+/// Contribution of a bin to the gains of all rivals.
 struct Telling {
     bin: usize,
     /// Gain of each rival for a mean square of 1 in this bin.
@@ -43,9 +43,10 @@ struct Telling {
 
 impl Draws {
     pub fn new(spectral: &SpectralData) -> Draws {
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(DRAW_SEED);
         let weights: Vec<f64> = spectral.bins.iter().map(|b| spectral.weight(b)).collect();
-        let mut groups: Vec<Group> = (0..DRAWS / SIDE_BY_SIDE).map(|_| Group { bins: vec![] }).collect();
+        let mut groups: Vec<Group> =
+            (0..SPECTRUM_DRAWS / SIDE_BY_SIDE).map(|_| Group { bins: vec![] }).collect();
         for weight in &weights {
             let law = ChiSquared::new(*weight).ok();
             for group in &mut groups {
@@ -64,7 +65,7 @@ impl Draws {
         };
         let mut constants: Vec<f64> = rivals.iter().map(constant).collect();
         let telling = self.telling(truth, rivals, over, &mut constants);
-        let mut gains = Vec::with_capacity(DRAWS);
+        let mut gains = Vec::with_capacity(SPECTRUM_DRAWS);
         for group in &self.groups {
             let mut best = [f64::NEG_INFINITY; SIDE_BY_SIDE];
             for (rival, constant) in constants.iter().enumerate() {
@@ -78,7 +79,7 @@ impl Draws {
             gains.extend(best);
         }
         gains.sort_ascending();
-        gains.get(DRAWS / 20).copied().unwrap_or(f64::NAN)
+        gains.get(SPECTRUM_DRAWS / 20).copied().unwrap_or(f64::NAN)
     }
 
     /// The bins whose scatter makes that of a gain. What the others gain on average is added to the constants.
@@ -91,7 +92,7 @@ impl Draws {
             (0..self.weights.len()).map(|bin| rivals.iter().map(|r| factor(r, bin)).collect()).collect();
         let of_rival = |rival: usize| all.iter().enumerate().map(|(bin, f)| variance(f[rival], bin)).sum();
         let totals: Vec<f64> = (0..rivals.len()).map(of_rival).collect();
-        let share = QUIET / all.len().max(1) as f64;
+        let share = MAX_FIXED_SHARE / all.len().max(1) as f64;
         let mut telling = vec![];
         for (bin, factors) in all.into_iter().enumerate() {
             let tells = |(f, total): (&f64, &f64)| variance(*f, bin) > share * total;

@@ -4,15 +4,15 @@
 //! gain that is expected of the effect itself.
 
 use crate::estimate::chi_square_tail;
-use crate::mismatch::select::ENOUGH;
+use crate::mismatch::select::MIN_DELTA_BIC;
 use crate::numeric::optimize::bisect;
 
 /// Probability with which an effect is to be noticed.
-const NOTICED: f64 = 0.95;
+const NOTICE_PROBABILITY: f64 = 0.95;
 /// Standard deviations below which a normal number stays with that probability.
 pub(super) const ONE_SIDED_95: f64 = 1.644_854;
 
-/// What an effect must pass.
+/// The conditions that an effect must pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gate {
     /// Rows of the recording.
@@ -32,7 +32,7 @@ impl Gate {
 
     /// The same for an effect of which only so many coefficients gain by chance.
     pub fn threshold_of(&self, parameters: usize, free: usize, trials: f64) -> f64 {
-        let worth = parameters as f64 * (self.rows.max(2) as f64).ln() + ENOUGH;
+        let worth = parameters as f64 * (self.rows.max(2) as f64).ln() + MIN_DELTA_BIC;
         let chance = self.alpha / (self.family.max(1.0) * trials.max(1.0));
         let free = free.max(1) as f64;
         // A quantile so far out is found on the tail itself.
@@ -40,7 +40,7 @@ impl Gate {
         worth.max(far.middle())
     }
 
-    /// What a root of twice the gain of some spread must be above the gate to pass it nearly always.
+    /// Margin of the root of twice a gain of some spread above the gate, to pass it with [`NOTICE_PROBABILITY`].
     pub fn margin(&self, spread: f64) -> f64 {
         ONE_SIDED_95 * spread
     }
@@ -59,7 +59,7 @@ impl Gate {
 /// Noncentrality at which χ² exceeds a threshold with a probability of 95 %.
 fn noncentrality(threshold: f64, dof: usize) -> f64 {
     let high = (threshold.sqrt() + 2.0 * ONE_SIDED_95).powi(2);
-    bisect(0.0, high, 50, |noncentral| exceeds(threshold, dof, noncentral) < NOTICED).middle()
+    bisect(0.0, high, 50, |noncentral| exceeds(threshold, dof, noncentral) < NOTICE_PROBABILITY).middle()
 }
 
 /// Probability that noncentral χ² exceeds a value: a Poisson mixture of central ones.

@@ -3,13 +3,13 @@
 use super::gate::Gate;
 use super::solve;
 use crate::effect::{Effect, LevelDetector};
-use crate::mismatch::named::FAMILY;
+use crate::mismatch::named::SAMPLE_EFFECTS;
 use crate::mismatch::noticeable_record::{Basis, NoticeableSize, WhyNot};
-use crate::mismatch::samples::LAWS;
+use crate::mismatch::samples::COMPETING_LAWS;
 use std::collections::BTreeMap;
 
-/// Largest ratio that is thought of.
-const LARGEST: f64 = 1e3;
+/// Largest ratio that is considered.
+const MAX_RATIO: f64 = 1e3;
 /// Spread of the logarithm of a level by the differences of neighbouring samples, over that by the samples: their squares
 /// are correlated by a quarter. A change must show in both.
 const BY_DIFFERENCES: f64 = 1.224_745;
@@ -24,11 +24,11 @@ pub(super) fn size(
     let (parameters, trials) = detector.single_change(samples).ok_or(WhyNot::NoSingleSize)?;
     let parameter = effect.params().first().ok_or(WhyNot::NoSingleSize)?;
     // What the search counts beside the one coefficient that a gain of nothing comes from.
-    let searched = Gate { family: FAMILY, ..*gate };
-    let threshold = searched.threshold_of(parameters, 1, LAWS * trials);
+    let searched = Gate { family: SAMPLE_EFFECTS, ..*gate };
+    let threshold = searched.threshold_of(parameters, 1, COMPETING_LAWS * trials);
     let needed = (threshold.sqrt() + searched.margin(BY_DIFFERENCES)).powi(2);
     let gain = |excess: f64| twice_gain(1.0 + excess, samples as f64);
-    let excess = solve::size(0.1, LARGEST, needed, gain).ok_or(WhyNot::NeverLargeEnough)?;
+    let excess = solve::size(0.1, MAX_RATIO, needed, gain).ok_or(WhyNot::NeverLargeEnough)?;
     Ok(NoticeableSize {
         kind: effect.kind().to_owned(),
         column: None,

@@ -1,11 +1,11 @@
-//! How large each kind of effect would have had to be for it to be noticed with a probability of 95 %: what "consistent",
+//! The size of each kind of effect that would have been noticed with a probability of 95 %: what "consistent",
 //! or "nothing else", is worth.
 //!
 //! | file | what it has |
 //! |---|---|
 //! | `gate` | what an effect must pass, and how far beyond it an effect must be to pass nearly always |
 //! | `solve` | the size at which a quantity reaches a value |
-//! | `ground` | the hypothesis before which an effect would have to show, and the gain expected of a course |
+//! | `null_model` | the hypothesis before which an effect would have to show, and the gain expected of a course |
 //! | `draws` | spectra drawn from an expected one |
 //! | `places` | the typical and the worst place of a searched effect |
 //! | `course`, `spectrum`, `level`, `values` | effects on the mean, on the spectrum, on the level of the noise; rounding |
@@ -13,8 +13,8 @@
 mod course;
 mod draws;
 mod gate;
-mod ground;
 mod level;
+mod null_model;
 mod places;
 mod solve;
 mod spectrum;
@@ -30,7 +30,7 @@ use super::select::{Selection, family};
 use crate::effect::{Detector, Domain, EFFECTS, Effect, Model, Resolution};
 use crate::numeric::parallel;
 use gate::Gate;
-use ground::Ground;
+use null_model::NullModel;
 use spectrum::Expected;
 use std::collections::BTreeMap;
 
@@ -44,12 +44,12 @@ pub struct Noticeable {
     pub not_computed: Vec<NotComputed>,
 }
 
-/// What every kind is set against.
-struct Grounds<'a> {
+/// The null hypothesis that each kind is compared with, at both resolutions.
+struct NullModels<'a> {
     problem: &'a Problem,
     gate: Gate,
-    averaged: Ground<'a>,
-    full: Ground<'a>,
+    averaged: NullModel<'a>,
+    full: NullModel<'a>,
     expected: Expected<'a>,
 }
 
@@ -63,11 +63,11 @@ pub(super) fn sizes(
     let (best, spectra) = (&selection.best, &problem.spectra);
     let usable = problem.usable.iter().filter(|u| **u).count();
     let share = usable as f64 / problem.usable.len().max(1) as f64;
-    let full = Ground::new(best, spectra, Resolution::FullRate, share);
-    let grounds = Grounds {
+    let full = NullModel::new(best, spectra, Resolution::FullRate, share);
+    let null_models = NullModels {
         problem,
         gate: Gate { rows: spectra.rows, family: family(&selection.first), alpha: options.alpha },
-        averaged: Ground::new(best, spectra, Resolution::Averaged, share),
+        averaged: NullModel::new(best, spectra, Resolution::Averaged, share),
         expected: Expected::new(best, spectra, &full),
         full,
     };
@@ -75,7 +75,7 @@ pub(super) fn sizes(
         e.in_format() && options.allows(e.kind()) && !found.contains(&e.kind()) && shown(**e, problem)
     };
     let effects: Vec<&&'static dyn Effect> = EFFECTS.iter().filter(asked).collect();
-    let told: Vec<_> = parallel::map_items(&effects, |e| (**e, of(**e, &grounds)));
+    let told: Vec<_> = parallel::map_items(&effects, |e| (**e, of(**e, &null_models)));
     let mut out = Noticeable::default();
     let mut ranked = vec![];
     for (effect, sizes) in told {
@@ -89,7 +89,7 @@ pub(super) fn sizes(
     out
 }
 
-/// Whether the recording has what an effect needs.
+/// True where the recording has the columns that an effect needs.
 fn shown(effect: &dyn Effect, problem: &Problem) -> bool {
     let drivers = &problem.drivers;
     let driven = effect.domain() != Domain::Driver || !drivers.others.is_empty();
@@ -97,19 +97,19 @@ fn shown(effect: &dyn Effect, problem: &Problem) -> bool {
     driven && there && !matches!(effect.model(), Model::Mean(m) if !m.applies(drivers))
 }
 
-fn of(effect: &'static dyn Effect, grounds: &Grounds<'_>) -> Result<Vec<NoticeableSize>, WhyNot> {
-    let gate = &grounds.gate;
+fn of(effect: &'static dyn Effect, null_models: &NullModels<'_>) -> Result<Vec<NoticeableSize>, WhyNot> {
+    let gate = &null_models.gate;
     match effect.model() {
         Model::Mean(model) => {
             let averaged = model.resolution() == Resolution::Averaged;
-            let ground = if averaged { &grounds.averaged } else { &grounds.full };
-            course::sizes(effect, model, ground, gate)
+            let null_model = if averaged { &null_models.averaged } else { &null_models.full };
+            course::sizes(effect, model, null_model, gate)
         }
         Model::Spectrum(model) => {
-            let by_spectrum = spectrum::size(effect, model, &grounds.expected, gate)?;
+            let by_spectrum = spectrum::size(effect, model, &null_models.expected, gate)?;
             let by_values = effect
                 .rounding()
-                .and_then(|_| values::size(effect, grounds.problem, &grounds.expected, &by_spectrum));
+                .and_then(|_| values::size(effect, null_models.problem, &null_models.expected, &by_spectrum));
             Ok(vec![by_values.unwrap_or(by_spectrum)])
         }
         Model::Samples(_) => match effect.detector() {
@@ -140,7 +140,7 @@ fn missing(effect: &'static dyn Effect) -> Result<NoticeableSize, WhyNot> {
     })
 }
 
-/// What follows a recorded column first, then courses in time, then the noise.
+/// Order of reports: effects that follow a recorded column first, then courses in time, then the noise.
 fn rank(effect: &dyn Effect, size: &NoticeableSize) -> u8 {
     match size.basis {
         Basis::Course if size.column.is_some() || !effect.needs().is_empty() => 0,

@@ -1,25 +1,25 @@
 //! The size at which a growing quantity reaches a value.
 
 /// Factor by which a size is changed while nothing is known of it but that it is too small or too large.
-const WIDE: f64 = 8.0;
+const BRACKET_FACTOR: f64 = 8.0;
 /// Evaluations until the size is between two others.
-const BRACKETING: usize = 24;
+const MAX_BRACKET_EVALUATIONS: usize = 24;
 /// Evaluations between them.
-const BETWEEN: usize = 12;
+const MAX_BISECTIONS: usize = 12;
 /// Relative difference of the quantity that is near enough.
-const NEAR: f64 = 0.01;
+const SOLUTION_TOLERANCE: f64 = 0.01;
 
 /// The size at which `of`, which grows about with the square of the size, is `wanted`. `None` where it does not reach
 /// that within sizes up to `largest`.
 pub(super) fn size(begin: f64, largest: f64, wanted: f64, of: impl Fn(f64) -> f64) -> Option<f64> {
     let (mut low, mut high) = (0.0, f64::INFINITY);
     let mut at = begin.min(largest);
-    for _ in 0..BRACKETING + BETWEEN {
+    for _ in 0..MAX_BRACKET_EVALUATIONS + MAX_BISECTIONS {
         let value = of(at);
         if !value.is_finite() {
             return None;
         }
-        if (value / wanted - 1.0).abs() < NEAR || high / low < 1.0 + 0.5 * NEAR {
+        if (value / wanted - 1.0).abs() < SOLUTION_TOLERANCE || high / low < 1.0 + 0.5 * SOLUTION_TOLERANCE {
             return Some(at);
         }
         if value < wanted {
@@ -30,7 +30,7 @@ pub(super) fn size(begin: f64, largest: f64, wanted: f64, of: impl Fn(f64) -> f6
         } else {
             high = at;
         }
-        let square = if value > 0.0 { at * (wanted / value).sqrt() } else { WIDE * at };
+        let square = if value > 0.0 { at * (wanted / value).sqrt() } else { BRACKET_FACTOR * at };
         at = match (low > 0.0, high.is_finite()) {
             (true, true) if square > low && square < high => square,
             (true, true) => (low * high).sqrt(),

@@ -2,37 +2,46 @@
 
 use super::draws::{Draws, Rival};
 use super::gate::{Gate, ONE_SIDED_95};
-use super::ground::{Ground, fit_expected};
+use super::null_model::{NullModel, fit_expected};
 use super::places::{At, Placed, summary};
 use super::solve;
 use crate::effect::{Effect, SpectralContext, SpectralSizing, Spectrum, SpectrumAct};
+use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::mismatch::noise_fit::{Noise, Which, base_index, whittle};
 use crate::mismatch::noticeable_record::{Basis, NoticeableSize, WhyNot};
 use crate::mismatch::spectral_data::SpectralData;
-use crate::mismatch::terms::SpectrumIn;
-use crate::mismatch::tried::{SpectralDataSet, Tried};
+use crate::mismatch::terms::SpectralTerm;
 use crate::noise::data::NoiseType;
 
 /// Largest size of an effect on the spectrum, in its unit.
-const LARGEST: f64 = 1e9;
+const MAX_SIZE: f64 = 1e9;
 
 /// Sizes, over the true one, at which an effect is fitted.
-const SIZES: [f64; 10] = [0.35, 0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0];
+const SIZE_GRID: [f64; 10] = [0.35, 0.5, 0.65, 0.8, 0.9, 1.0, 1.1, 1.25, 1.5, 2.0];
 
 /// The spectrum before which effects would have to show.
 pub(super) struct Expected<'a> {
-    pub best: &'a Tried,
+    pub best: &'a FittedHypothesis,
     pub spectra: &'a SpectralDataSet,
-    /// What the hypothesis itself has of its own expected spectrum, over what its values as fitted have.
+    /// Log-likelihood of the expected spectrum of the hypothesis when it is fitted, over that of its values as they are.
     pub gained: f64,
     draws: Draws,
 }
 
 impl<'a> Expected<'a> {
-    pub fn new(best: &'a Tried, spectra: &'a SpectralDataSet, ground: &Ground<'_>) -> Expected<'a> {
+    pub fn new(
+        best: &'a FittedHypothesis,
+        spectra: &'a SpectralDataSet,
+        null_model: &NullModel<'_>,
+    ) -> Expected<'a> {
         let densities = &best.fit.densities;
         let fitted = whittle(&spectra.full, densities, densities) + best.hypothesis.noise.prior();
-        Expected { best, spectra, gained: (ground.top - fitted).max(0.0), draws: Draws::new(&spectra.full) }
+        Expected {
+            best,
+            spectra,
+            gained: (null_model.top - fitted).max(0.0),
+            draws: Draws::new(&spectra.full),
+        }
     }
 
     fn noise(&self) -> &Noise {
@@ -44,11 +53,11 @@ impl<'a> Expected<'a> {
     }
 
     /// Twice what the hypothesis loses against itself with one more effect on the spectrum.
-    pub fn gain_with(&self, effect: SpectrumIn) -> f64 {
+    pub fn gain_with(&self, effect: SpectralTerm) -> f64 {
         self.gain(&self.noise_with(effect))
     }
 
-    fn noise_with(&self, effect: SpectrumIn) -> Noise {
+    fn noise_with(&self, effect: SpectralTerm) -> Noise {
         let mut truth = self.noise().clone();
         truth.spectra.push(effect);
         truth
@@ -73,7 +82,7 @@ impl<'a> Expected<'a> {
         let mut without = self.noise().clone();
         fit_expected(&mut without, self.spectral(), &densities);
         let over = Rival { densities: without.densities(self.spectral()), prior: without.prior() };
-        let rivals: Vec<Rival> = SIZES.into_iter().map(at).collect();
+        let rivals: Vec<Rival> = SIZE_GRID.into_iter().map(at).collect();
         let lowest = self.draws.lowest(&densities, &rivals, &over);
         // The noise without the effect is fitted to each record as well.
         lowest + parameters.saturating_sub(1) as f64 - ONE_SIDED_95.powi(2) * (1.0 - spread * spread)
@@ -131,13 +140,13 @@ fn at_place(
     let truth = |size: f64| {
         let mut fitted = place.to_vec();
         fitted.iter_mut().skip(sizing.position).take(1).for_each(|x| *x = value(size));
-        expected.noise_with(SpectrumIn { effect, fitted, stated: false })
+        expected.noise_with(SpectralTerm { effect, fitted, stated: false })
     };
     let gain = |size: f64| expected.low(&truth, size, place.len(), 1.0);
     let begin = value(place.get(sizing.position).copied()?);
     let needed = gate.needed(place.len(), trials, 1.0);
-    let begin = solve::size(begin, LARGEST, needed, |size| expected.gain(&truth(size)))?;
-    solve::size(begin, LARGEST, threshold, gain).map(value)
+    let begin = solve::size(begin, MAX_SIZE, needed, |size| expected.gain(&truth(size)))?;
+    solve::size(begin, MAX_SIZE, threshold, gain).map(value)
 }
 
 /// N, B or K: how much more than the claim states.
@@ -149,13 +158,13 @@ fn coefficient(
 ) -> Option<NoticeableSize> {
     let i = base_index(term)?;
     let noise = expected.noise();
-    if noise.freed[i] {
+    if noise.unconstrained[i] {
         return None;
     }
     let claimed = noise.claimed[i];
     let truth = |size: f64| {
         let mut truth = noise.clone();
-        truth.freed[i] = true;
+        truth.unconstrained[i] = true;
         truth.base[i] = claimed + size;
         truth
     };
@@ -163,9 +172,9 @@ fn coefficient(
     let deviation = if claimed > 0.0 { noise.deviation[i] } else { 0.0 };
     let of_spread = |spread: f64| {
         let needed = gate.needed(1, 1.0, spread);
-        let begin = solve::size(begin, LARGEST, needed, |size| expected.gain(&truth(size)))?;
+        let begin = solve::size(begin, MAX_SIZE, needed, |size| expected.gain(&truth(size)))?;
         let gain = |size: f64| expected.low(&truth, size, 1, spread);
-        solve::size(begin, LARGEST, gate.threshold(1, 1.0), gain)
+        solve::size(begin, MAX_SIZE, gate.threshold(1, 1.0), gain)
     };
     let mut size = of_spread(1.0)?;
     if deviation > 0.0 {
@@ -193,7 +202,7 @@ fn smallest(i: usize, expected: &Expected<'_>) -> f64 {
     expected.spectral().units.iter().zip(&expected.best.fit.densities).map(one).fold(f64::INFINITY, f64::min)
 }
 
-/// Standard deviation of the root of twice the gain of a coefficient set free: what the record tells of its logarithm,
+/// Standard deviation of the root of twice the gain of an unconstrained coefficient: the information of the record on its logarithm,
 /// over that and the stated deviation together.
 fn spread(truth: &Noise, i: usize, deviation: f64, expected: &Expected<'_>) -> f64 {
     let densities = truth.densities(expected.spectral());

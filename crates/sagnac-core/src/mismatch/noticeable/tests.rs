@@ -1,15 +1,15 @@
 //! Sizes against closed forms in white noise of a known level.
 
 use super::gate::Gate;
-use super::ground::Ground;
+use super::null_model::NullModel;
 use super::spectrum::Expected;
 use super::{course, spectrum};
 use crate::effect::{Column, Drivers, Model, Nuisance, Resolution, find};
+use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::mismatch::hypothesis::{Hypothesis, fit};
 use crate::mismatch::noise_fit::{self, Noise};
 use crate::mismatch::noticeable_record::{NoticeableSize, WhyNot};
 use crate::mismatch::spectral_data::SpectralData;
-use crate::mismatch::tried::{SpectralDataSet, Tried};
 use rand::SeedableRng as _;
 use rand_distr::{ChiSquared, Distribution as _};
 use rand_xoshiro::Xoshiro256PlusPlus;
@@ -34,28 +34,28 @@ fn spectra(deviation: f64) -> SpectralDataSet {
     SpectralDataSet { full, slow: None, grid_step_arcsec: None, rows: SAMPLES, repeated_share: 0.0 }
 }
 
-fn white(spectra: &SpectralDataSet) -> Tried {
+fn white(spectra: &SpectralDataSet) -> FittedHypothesis {
     let base = [N, 0.0, 0.0];
     let noise = Noise {
         base,
         claimed: base,
         deviation: [0.0; 3],
         bound: [0.0; 3],
-        freed: [false; 3],
+        unconstrained: [false; 3],
         quantization_arcsec: 0.0,
         spectra: vec![],
     };
     let mut hypothesis = Hypothesis { noise, courses: vec![] };
     let fit = fit(&mut hypothesis, &spectra.full);
-    Tried { hypothesis, fit, parameters: 0, odds: vec![] }
+    FittedHypothesis { hypothesis, fit, parameters: 0, odds: vec![] }
 }
 
 fn of_course(kind: &str, spectra: &SpectralDataSet) -> Result<Vec<NoticeableSize>, WhyNot> {
     let best = white(spectra);
-    let ground = Ground::new(&best, spectra, Resolution::FullRate, 1.0);
+    let null_model = NullModel::new(&best, spectra, Resolution::FullRate, 1.0);
     let effect = find(kind).unwrap();
     let Model::Mean(model) = effect.model() else { panic!("a course") };
-    course::sizes(effect, model, &ground, &GATE)
+    course::sizes(effect, model, &null_model, &GATE)
 }
 
 #[test]
@@ -106,8 +106,8 @@ fn a_line_is_noticed_alike_at_all_frequencies_of_white_noise_and_a_step_best_in_
 fn white_noise_is_noticed_from_the_level_whose_likelihood_passes_the_gate() {
     let spectra = spectra(0.0);
     let best = white(&spectra);
-    let ground = Ground::new(&best, &spectra, Resolution::FullRate, 1.0);
-    let expected = Expected::new(&best, &spectra, &ground);
+    let null_model = NullModel::new(&best, &spectra, Resolution::FullRate, 1.0);
+    let expected = Expected::new(&best, &spectra, &null_model);
     let of = |kind: &str| {
         let effect = find(kind).unwrap();
         let Model::Spectrum(model) = effect.model() else { panic!("a spectrum") };
@@ -129,13 +129,13 @@ fn white_noise_is_noticed_from_the_level_whose_likelihood_passes_the_gate() {
 fn a_random_walk_of_the_stated_size_passes_the_gate_in_95_of_100_drawn_spectra() {
     let spectra = spectra(0.0);
     let best = white(&spectra);
-    let ground = Ground::new(&best, &spectra, Resolution::FullRate, 1.0);
-    let expected = Expected::new(&best, &spectra, &ground);
+    let null_model = NullModel::new(&best, &spectra, Resolution::FullRate, 1.0);
+    let expected = Expected::new(&best, &spectra, &null_model);
     let effect = find("excess_rrw").unwrap();
     let Model::Spectrum(model) = effect.model() else { panic!("a spectrum") };
     let size = spectrum::size(effect, model, &expected, &GATE).unwrap().size;
     let mut free = best.hypothesis.noise.clone();
-    (free.base[2], free.freed[2]) = (size, true);
+    (free.base[2], free.unconstrained[2]) = (size, true);
     let truth = free.densities(&spectra.full);
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(9);
     let mut passes = 0;

@@ -6,14 +6,14 @@ use crate::effect::Effect;
 use crate::mismatch::noticeable_record::{Basis, NoticeableSize};
 use crate::mismatch::problem::Problem;
 use crate::mismatch::quantization_grid::QuantizationGrid;
-use crate::mismatch::terms::SpectrumIn;
+use crate::mismatch::terms::SpectralTerm;
 
 /// Twice the expected gain in the spectrum with which a rounding gains anything in 95 of 100 records: (2 · 1.645)².
-const ANYTHING: f64 = 10.82;
-/// Largest step that is thought of, arcsec.
-const LARGEST: f64 = 1e9;
+const DETECTABLE_GAIN: f64 = 10.82;
+/// Largest step that is considered, arcsec.
+const MAX_STEP_ARCSEC: f64 = 1e9;
 
-/// Where the values of a record lie on no grid, a rounding coarse enough to be one beside the noise of a sample is found by
+/// In a record whose values lie on no grid, a rounding coarse enough to be one beside the noise of a sample is found by
 /// the grid, as long as the spectrum does not speak against it. `None` for values that lie on one.
 pub(super) fn size(
     effect: &'static dyn Effect,
@@ -26,7 +26,7 @@ pub(super) fn size(
     }
     let noise_arcsec = 60.0 * expected.best.hypothesis.noise.base[0] * problem.grid.dt_s.sqrt();
     let finest = QuantizationGrid::finest_arcsec(noise_arcsec);
-    let gain = |step: f64| expected.gain_with(SpectrumIn { effect, fitted: vec![step], stated: false });
-    let size = solve::size(finest.max(1e-9), LARGEST, ANYTHING, gain)?.max(finest);
+    let gain = |step: f64| expected.gain_with(SpectralTerm { effect, fitted: vec![step], stated: false });
+    let size = solve::size(finest.max(1e-9), MAX_STEP_ARCSEC, DETECTABLE_GAIN, gain)?.max(finest);
     (size < by_spectrum.size).then(|| NoticeableSize { size, basis: Basis::Values, ..by_spectrum.clone() })
 }

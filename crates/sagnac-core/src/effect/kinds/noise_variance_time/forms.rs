@@ -1,20 +1,20 @@
 //! Forms of the level of the noise over time: a line, slow waves, a step, a stretch, a period.
 
 use crate::effect::shared::variance::{
-    FEWEST, GammaFit, Group, between, contrast, fit, mean_square, overdispersion, raised, thinned,
+    GammaFit, Group, MIN_GROUP_SAMPLES, between, contrast, fit, mean_square, overdispersion, raised, thinned,
 };
 use crate::effect::{Domain, FlatResidual, Knot, Law, LevelLaw, Place};
 use crate::numeric::sums::cumulated;
 use std::f64::consts::PI;
 
 /// Groups of neighbouring samples.
-const GROUPS: usize = 512;
+const MAX_TIME_GROUPS: usize = 512;
 /// Fewest samples on a side of a change.
-const SIDE: f64 = 48.0;
+const MIN_SIDE_SAMPLES: f64 = 48.0;
 
 /// Time constants of a decay that are tried, and the shortest as a share of the record; each 1.5 times the last.
-const DECAYS: usize = 10;
-const SHORTEST: f64 = 0.02;
+const DECAY_TIMES: usize = 10;
+const SHORTEST_DECAY_SHARE: f64 = 0.02;
 
 /// A form of ln g over time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,7 +39,7 @@ impl Form {
         let j = groups as f64;
         match self {
             Form::Line => (1, 1, 1.0),
-            Form::Decay(_) => (1, 2, DECAYS as f64),
+            Form::Decay(_) => (1, 2, DECAY_TIMES as f64),
             Form::Waves(k) => (k, k, 1.0),
             Form::Step(_) => (1, 2, j),
             Form::Stretch(..) => (1, 3, 16.0 * j),
@@ -53,7 +53,7 @@ impl Form {
         match self {
             Form::Line => vec![column(&|i| 2.0 * (i as f64 + 0.5) / groups as f64 - 1.0)],
             Form::Decay(k) => {
-                let time = SHORTEST * 1.5f64.powf(k as f64);
+                let time = SHORTEST_DECAY_SHARE * 1.5f64.powf(k as f64);
                 vec![column(&|i| (-(i as f64 + 0.5) / (groups as f64 * time)).exp())]
             }
             Form::Waves(order) => (1..=order).map(|k| column(&|i| turn(i, k).cos())).collect(),
@@ -66,7 +66,7 @@ impl Form {
 
 /// Parameters of one change, and the independent instants that are looked at in so many samples.
 pub(super) fn single_change(samples: usize) -> (usize, f64) {
-    let size = samples.div_ceil(GROUPS).max(FEWEST);
+    let size = samples.div_ceil(MAX_TIME_GROUPS).max(MIN_GROUP_SAMPLES);
     let (_, parameters, trials) = Form::Step(0).counts(samples.div_ceil(size));
     (parameters, trials)
 }
@@ -74,7 +74,7 @@ pub(super) fn single_change(samples: usize) -> (usize, f64) {
 /// The best form over time, if any gains.
 pub(super) fn over_time(residual: &FlatResidual<'_>, samples: &[usize]) -> Option<LevelLaw> {
     let (n, drivers) = (residual.flat.len(), residual.drivers);
-    let size = n.div_ceil(GROUPS).max(FEWEST);
+    let size = n.div_ceil(MAX_TIME_GROUPS).max(MIN_GROUP_SAMPLES);
     let mut sums = vec![(0.0, 0.0); n.div_ceil(size)];
     for i in samples {
         let sum = &mut sums[i / size];
@@ -88,7 +88,7 @@ pub(super) fn over_time(residual: &FlatResidual<'_>, samples: &[usize]) -> Optio
         .collect();
     let j = groups.len();
     let mut forms = vec![Form::Line, Form::Waves(2), Form::Waves(4), Form::Waves(8)];
-    forms.extend((0..DECAYS).map(Form::Decay));
+    forms.extend((0..DECAY_TIMES).map(Form::Decay));
     forms.extend(changes(&groups));
     forms.extend(period(&groups));
     let rows = (samples.len() as f64).ln();
@@ -171,7 +171,7 @@ fn changes(groups: &[Group]) -> Vec<Form> {
     let gain = |from: usize, to: usize| {
         let (inside, dof) = (squares[to] - squares[from], dofs[to] - dofs[from]);
         let (outside, rest) = (whole - inside, count - dof);
-        if dof < SIDE || rest < SIDE || inside <= 0.0 || outside <= 0.0 {
+        if dof < MIN_SIDE_SAMPLES || rest < MIN_SIDE_SAMPLES || inside <= 0.0 || outside <= 0.0 {
             return 0.0;
         }
         0.5 * (count * (whole / count).ln() - dof * (inside / dof).ln() - rest * (outside / rest).ln())

@@ -61,6 +61,7 @@ impl LevelDetector for NoiseVarianceTime {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::sizing::numbers;
     use crate::effect::{ClaimedMean, Value};
 
     #[test]
@@ -76,7 +77,7 @@ mod tests {
         NoiseVarianceTime.apply(&values, &drivers, 1, &mut rate, &mut [true; 5]);
         assert_eq!(rate, [6.0, 3.5, 7.0, 2.5, 8.0]);
         let mut rate = vec![6.0; 5];
-        let values = Values::from([("ratio".to_owned(), Value::Number(2.0))]);
+        let values = numbers([("ratio", 2.0)]);
         NoiseVarianceTime.apply(&values, &drivers, 1, &mut rate, &mut [true; 5]);
         assert_eq!(rate, [6.0, 6.25, 6.5, 6.75, 7.0]);
     }

@@ -15,21 +15,21 @@ use statrs::function::beta::checked_beta_reg;
 
 /// Longest window, samples.
 const MAX_WINDOW_SAMPLES: usize = 512;
-/// Share of the record beyond which outliers are no bursts.
-const COVER: f64 = 0.1;
+/// Largest share of the record that outliers are bursts in.
+const MAX_OUTLIER_SHARE: f64 = 0.1;
 /// Share of false groups among those set aside (Benjamini and Hochberg 1995).
 const FALSE_SHARE: f64 = 0.02;
-/// Length from which a group can be told from a smooth hump, and from a part of a stretch.
-const ROUGH: usize = 8;
-const WIDE: usize = 64;
-/// Humps up to which they are a course.
-const HUMPS: usize = 2;
-/// Rough groups beside which a hump as short is a group.
-const SEVERAL: usize = 3;
+/// Lengths from which a group differs from a smooth hump, and from a part of a stretch.
+const MIN_ROUGH_SAMPLES: usize = 8;
+const MIN_STRETCH_SAMPLES: usize = 64;
+/// Most humps that belong to a course.
+const MAX_HUMPS: usize = 2;
+/// Number of rough groups beside which a hump as short is a group too.
+const MIN_ROUGH_GROUPS: usize = 3;
 /// Groups by size of the table rate.
-const RATES: usize = 8;
+const RATE_GROUPS: usize = 8;
 /// Efficiency of the median of absolute values as an estimate of a deviation.
-const EFFICIENCY: f64 = 0.367_5;
+const MEDIAN_EFFICIENCY: f64 = 0.367_5;
 
 /// Squares over the local level, ready for windows.
 struct Scan {
@@ -142,12 +142,12 @@ fn squares(flat: &FlatResidual<'_>) -> (Vec<f64>, f64) {
         // Noise that grows with the rate of the table is no burst each time it turns.
         let mut order: Vec<usize> = (0..n).collect();
         order.sort_ascending_by(|a| rate[*a].abs());
-        for group in order.chunks(n.div_ceil(RATES)) {
+        for group in order.chunks(n.div_ceil(RATE_GROUPS)) {
             let level =
                 upper_median(&mut group.iter().map(|i| sizes[*i]).collect::<Vec<f64>>()) / NORMAL_MEDIAN;
             group.iter().for_each(|i| sizes[*i] /= level.max(1e-12));
         }
-        spent = RATES as f64 / (EFFICIENCY * n as f64);
+        spent = RATE_GROUPS as f64 / (MEDIAN_EFFICIENCY * n as f64);
     }
     // Values on a grid differ by whole steps even where nothing happens.
     let least = 0.5 * flat.rounding_step;
@@ -173,7 +173,7 @@ fn squares(flat: &FlatResidual<'_>) -> (Vec<f64>, f64) {
             if flat.counts(i) { sizes[i] * sizes[i] / (level * level + least * least) } else { 1.0 }
         })
         .collect();
-    let dof = 1.0 / (spent + 1.0 / (EFFICIENCY * width as f64));
+    let dof = 1.0 / (spent + 1.0 / (MEDIAN_EFFICIENCY * width as f64));
     (squares, dof)
 }
 
@@ -237,16 +237,16 @@ fn isolated(
 ) -> Option<Vec<(usize, usize)>> {
     let n = flat.flat.len();
     let covered: usize = groups.iter().map(|g| g.1).sum();
-    if covered as f64 > COVER * n as f64 {
+    if covered as f64 > MAX_OUTLIER_SHARE * n as f64 {
         return None;
     }
     let smooth: Vec<bool> = groups.iter().map(|g| is_smooth(g, scan, flat)).collect();
     // One or two humps are a course; many of one sign are outliers of one sign.
-    let humps = smooth.iter().filter(|s| **s).count() <= HUMPS;
-    let stretched = |g: &(usize, usize)| g.1 > longest || (g.1 >= WIDE && !rises(g, scan, n));
+    let humps = smooth.iter().filter(|s| **s).count() <= MAX_HUMPS;
+    let stretched = |g: &(usize, usize)| g.1 > longest || (g.1 >= MIN_STRETCH_SAMPLES && !rises(g, scan, n));
     // A few samples of a burst are of one sign by chance: among several bursts one as short is another.
     let rough = groups.iter().zip(&smooth).filter(|(g, s)| !**s && !stretched(g)).map(|(g, _)| g.1);
-    let (several, widest) = (rough.clone().count() >= SEVERAL, rough.max().unwrap_or(0));
+    let (several, widest) = (rough.clone().count() >= MIN_ROUGH_GROUPS, rough.max().unwrap_or(0));
     let hump = |g: &(usize, usize)| humps && !(several && g.1 <= 2 * widest);
     let others: Vec<(usize, usize)> = groups
         .iter()
@@ -259,10 +259,10 @@ fn isolated(
     Some(groups.into_iter().filter(|g| !near(g)).collect())
 }
 
-/// Whether what a group holds is seen in its sums and not in its differences.
+/// True where the content of a group shows in its sums and not in its differences.
 fn is_smooth(group: &(usize, usize), scan: &Scan, flat: &FlatResidual<'_>) -> bool {
     let (first, m) = *group;
-    if m < ROUGH {
+    if m < MIN_ROUGH_SAMPLES {
         return false;
     }
     let inside = &flat.flat[first..first + m];
@@ -272,7 +272,7 @@ fn is_smooth(group: &(usize, usize), scan: &Scan, flat: &FlatResidual<'_>) -> bo
     rough - level < 0.4 * (square - level)
 }
 
-/// Whether a long group is louder than its neighbours on both sides.
+/// True where a long group is louder than its neighbours on both sides.
 fn rises(group: &(usize, usize), scan: &Scan, n: usize) -> bool {
     let (first, m) = *group;
     let gap = m / 4;
@@ -430,7 +430,7 @@ mod tests {
             assert!((found[i] / own - 1.0).abs() < 1e-12, "{i}: {}", found[i]);
         }
         assert!((found[2900] * 9.0 / own - 1.0).abs() < 1e-12, "the louder side: {}", found[2900]);
-        assert!((dof - EFFICIENCY * 1000.0).abs() < 1e-9);
+        assert!((dof - MEDIAN_EFFICIENCY * 1000.0).abs() < 1e-9);
         let counted: Vec<bool> = (0..n).map(|i| i != 77).collect();
         assert_eq!(squares(&residual(vec![5.0; n], &counted, &drivers)).0[77], 1.0);
     }
@@ -446,7 +446,7 @@ mod tests {
         let own = NORMAL_MEDIAN * NORMAL_MEDIAN;
         assert!(found.iter().all(|s| (s / own - 1.0).abs() < 1e-12));
         // 1/dof = 8/(0.3675·6000) + 1/(0.3675·1000).
-        assert!((dof - EFFICIENCY * 6000.0 / 14.0).abs() < 1e-9, "{dof}");
+        assert!((dof - MEDIAN_EFFICIENCY * 6000.0 / 14.0).abs() < 1e-9, "{dof}");
     }
 
     #[test]

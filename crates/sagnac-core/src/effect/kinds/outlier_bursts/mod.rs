@@ -19,17 +19,17 @@ static PARAMS: [Param; 3] = [
 ];
 
 /// First instant, length and size of each burst.
-const TIMES: &str = "bursts_time_s";
-const DURATIONS: &str = "bursts_duration_s";
-const SIZES: &str = "bursts_size_deg_h";
+const TIMES_LIST: &str = "bursts_time_s";
+const DURATIONS_LIST: &str = "bursts_duration_s";
+const SIZES_LIST: &str = "bursts_size_deg_h";
 
 describe! {
     OutlierBursts, "outlier_bursts", Samples in Time, needs [],
     confusers [NoiseVarianceTime, BiasStep, ExcessArw],
     lists [
-        Param::inner(TIMES, "s", f64::MIN, f64::MAX),
-        Param::inner(DURATIONS, "s", 0.0, 1e6),
-        Param::inner(SIZES, "deg/h", 0.0, 1e9)
+        Param::inner(TIMES_LIST, "s", f64::MIN, f64::MAX),
+        Param::inner(DURATIONS_LIST, "s", 0.0, 1e6),
+        Param::inner(SIZES_LIST, "deg/h", 0.0, 1e9)
     ],
     properties [short_events]
 }
@@ -40,11 +40,11 @@ struct Burst(f64, f64, f64);
 fn bursts(values: &Values, drivers: &Drivers, rng: &mut Xoshiro256PlusPlus) -> Vec<Burst> {
     let one = |name: &str, fallback: f64| number(values, name).filter(|x| x.is_finite()).unwrap_or(fallback);
     let (size, duration) = (one(PARAMS[1].name, 0.0), one(PARAMS[2].name, drivers.dt_s));
-    let times = list(values, TIMES);
+    let times = list(values, TIMES_LIST);
     if !times.is_empty() {
         let of = |name: &str, i: usize, fallback: f64| list(values, name).get(i).copied().unwrap_or(fallback);
         return (0..times.len())
-            .map(|i| Burst(times[i], of(DURATIONS, i, duration), of(SIZES, i, size)))
+            .map(|i| Burst(times[i], of(DURATIONS_LIST, i, duration), of(SIZES_LIST, i, size)))
             .collect();
     }
     let count = one(PARAMS[0].name, 0.0).clamp(0.0, 1e5) as usize;
@@ -94,9 +94,9 @@ impl OutlierDetector for OutlierBursts {
         let list = |f: &dyn Fn(&(usize, usize)) -> f64| Value::List(found.groups.iter().map(f).collect());
         let stated = Values::from([
             (PARAMS[0].name.to_owned(), Value::Number(count)),
-            (TIMES.to_owned(), list(&|g| drivers.time_s(g.0))),
-            (DURATIONS.to_owned(), list(&|g| g.1 as f64 * drivers.dt_s)),
-            (SIZES.to_owned(), list(&size)),
+            (TIMES_LIST.to_owned(), list(&|g| drivers.time_s(g.0))),
+            (DURATIONS_LIST.to_owned(), list(&|g| g.1 as f64 * drivers.dt_s)),
+            (SIZES_LIST.to_owned(), list(&size)),
         ]);
         let (first, last) = (found.groups.first()?, found.groups.last()?);
         let largest = found.samples.iter().map(|i| removed[*i].abs()).fold(0.0, f64::max);
@@ -125,15 +125,16 @@ impl OutlierDetector for OutlierBursts {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn only_the_listed_samples_are_disturbed_and_the_seed_fixes_them() {
         let drivers = Drivers { dt_s: 0.5, start_s: 10.0, samples: 40, ..Drivers::default() };
         let list = |x: &[f64]| Value::List(x.to_vec());
         let values = Values::from([
-            (TIMES.to_owned(), list(&[12.0, 27.0])),
-            (DURATIONS.to_owned(), list(&[1.5, 0.5])),
-            (SIZES.to_owned(), list(&[10.0, 20.0])),
+            (TIMES_LIST.to_owned(), list(&[12.0, 27.0])),
+            (DURATIONS_LIST.to_owned(), list(&[1.5, 0.5])),
+            (SIZES_LIST.to_owned(), list(&[10.0, 20.0])),
         ]);
         let run = |seed| {
             let mut rate = vec![0.0; 40];
@@ -165,9 +166,9 @@ mod tests {
         assert_eq!((value("count").value, value("count").ci95), (2.0, [2.0, 3.0]));
         // Mean 0.4, mean square 5.
         assert!((value("rms_deg_h").value - 4.84f64.sqrt()).abs() < 1e-12);
-        assert_eq!(list(&told.stated, SIZES), [12.5f64.sqrt(), 5.0]);
+        assert_eq!(list(&told.stated, SIZES_LIST), [12.5f64.sqrt(), 5.0]);
         assert_eq!(
-            (list(&told.stated, TIMES), list(&told.stated, DURATIONS)),
+            (list(&told.stated, TIMES_LIST), list(&told.stated, DURATIONS_LIST)),
             (&[11.0, 13.5][..], &[1.0, 0.5][..])
         );
         assert_eq!((told.places[0].from, told.places[0].to, told.places[1].to), (10.5, 14.0, 5.0));
@@ -176,10 +177,7 @@ mod tests {
     #[test]
     fn a_count_gives_so_many_bursts() {
         let drivers = Drivers { dt_s: 1.0, samples: 100_000, ..Drivers::default() };
-        let values = Values::from([
-            ("count".to_owned(), Value::Number(12.0)),
-            ("size_deg_h".to_owned(), Value::Number(5.0)),
-        ]);
+        let values = numbers([("count", 12.0), ("size_deg_h", 5.0)]);
         let mut rate = vec![0.0; 100_000];
         OutlierBursts.apply(&values, &drivers, 3, &mut rate, &mut []);
         assert_eq!(rate.iter().filter(|y| **y != 0.0).count(), 12);

@@ -2,7 +2,7 @@
 //!
 //! Levels and rates of change are sought in averages of several lengths and judged by the likelihood of the chain over all
 //! its paths, beside the slow noise of the hypothesis. A process with the same spectrum gains by its spectrum alone; only
-//! what the chain gains beyond that tells two levels from it.
+//! the further gain of the chain distinguishes two levels from it.
 
 use super::chain::{Chain, Deviations};
 use super::dwell::{Visits, slope, spread, visits};
@@ -13,38 +13,38 @@ use crate::numeric::least_squares::Normal;
 use crate::numeric::order::SortNumbers;
 use crate::numeric::order::upper_median;
 
-/// Averages that are looked at in one length, at most and at least.
+/// Most and fewest averages of one length.
 const MAX_AVERAGES: usize = 65_536;
 const MIN_AVERAGES: usize = 64;
-/// Jumps below which a course is none of this kind: a level that leaves and returns has two.
-const JUMPS: usize = 3;
-/// Turns of Baum-Welch for each start, and for the best in each round.
-const FIRST_TURNS: usize = 5;
-const TURNS: usize = 15;
-/// Turns of path and background.
-const ROUNDS: usize = 8;
-/// Turns of background and levels at the end, and the relative change of the amplitude at which they end.
-const SETTLING: usize = 40;
-const SETTLED: f64 = 1e-3;
-/// Averages in which paths are mended stretch by stretch at most.
-const PATHS: usize = 4096;
+/// Fewest jumps of a telegraph: a level that leaves and returns has two.
+const MIN_JUMPS: usize = 3;
+/// Iterations of Baum and Welch for each start, and for the best in each round.
+const FIRST_ITERATIONS: usize = 5;
+const BEST_ITERATIONS: usize = 15;
+/// Rounds of path and background.
+const PATH_ROUNDS: usize = 8;
+/// Most rounds of background and levels at the end, and the relative change of the amplitude at which they end.
+const MAX_FINAL_ROUNDS: usize = 40;
+const FINAL_TOLERANCE: f64 = 1e-3;
+/// Most averages in which paths are corrected stretch by stretch.
+const MAX_PATH_AVERAGES: usize = 4096;
 /// Normal number of the slope within dwells from which they are no levels: seven in a million by chance.
-const SLOPE: f64 = 4.5;
+const MAX_DWELL_SLOPE: f64 = 4.5;
 /// Mean square of the departure of dwells from their level, and the logarithm of its probability, from which they are no level.
 /// Slow noise that is estimated beside them leaves some.
-const SPREAD: f64 = 2.0;
-const LN_SPREAD: f64 = -14.0;
-/// Probability of times at the two levels, if both were left at one rate, below which they are pulses.
-const UNEVEN: f64 = 1e-4;
+const MAX_DWELL_SPREAD: f64 = 2.0;
+const MIN_LN_DWELL_SPREAD: f64 = -14.0;
+/// Least probability of the times at the two levels, if both are left at one rate: below it they are pulses.
+const MIN_DWELL_PROBABILITY: f64 = 1e-4;
 /// Averages in the shortest period of a drift.
-const SLOWEST: usize = 64;
+const MIN_DRIFT_AVERAGES: usize = 64;
 
 /// Jumps between two levels.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Telegraph {
     /// 0 and 1 for the two levels less their mean, for each sample.
     pub path: Vec<f64>,
-    /// What is expected of each sample given all, less the mean, deg/h.
+    /// Expected value of each sample given all, less the mean, deg/h.
     pub course: Vec<f64>,
     /// Between the levels, deg/h.
     pub amplitude_deg_h: f64,
@@ -70,10 +70,10 @@ pub(super) struct Telegraph {
     pub p_value: f64,
 }
 
-/// What does not change while paths are tried.
-struct Ground<'a> {
+/// Quantities that do not change while paths are tried.
+struct PathContext<'a> {
     background: &'a Background<'a>,
-    /// What the hypothesis leaves, in time.
+    /// Residual of the hypothesis, in time.
     residual: Vec<f64>,
     /// Share of each mode that is slow noise.
     slow: Vec<f64>,
@@ -89,8 +89,8 @@ struct Amplitude {
     deviation: f64,
 }
 
-/// A path that was judged.
-struct Judged {
+/// A path with its gain.
+struct ScoredPath {
     path: Vec<bool>,
     background: Vec<f64>,
     gain: f64,
@@ -98,13 +98,13 @@ struct Judged {
     averaged: usize,
 }
 
-impl<'a> Ground<'a> {
-    fn new(background: &'a Background<'a>) -> Ground<'a> {
+impl<'a> PathContext<'a> {
+    fn new(background: &'a Background<'a>) -> PathContext<'a> {
         let powers = &background.powers;
         let mut high: Vec<f64> = powers[powers.len() / 2..].to_vec();
         let white = upper_median(&mut high);
         let slow = |p: &f64| if p.is_finite() { (1.0 - white / p).max(0.0) } else { 0.0 };
-        Ground {
+        PathContext {
             background,
             residual: inverse_dct2(&background.modes),
             slow: powers.iter().map(slow).collect(),
@@ -113,7 +113,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Gain of log-likelihood of a chain beside its best background, which costs what the spectrum of the slow noise says.
-    /// Where all is white it is the likelihood of the chain over that of white noise.
+    /// In white noise it is the likelihood of the chain over that of white noise.
     fn evidence(&self, chain: &Chain, background: &[f64], m: usize) -> f64 {
         let white = self.white;
         let of_background: f64 = dct2(background)
@@ -158,7 +158,7 @@ impl<'a> Ground<'a> {
         Amplitude { size: c.get(at).copied().unwrap_or(0.0), deviation: variance.max(0.0).sqrt() }
     }
 
-    /// What a chain of averages of `m` is expected to add to each sample where `raised` is the probability of its second
+    /// Expected contribution of a chain of averages of `m` to each sample where `raised` is the probability of its second
     /// level, deg/h.
     fn course(&self, chain: &Chain, m: usize, raised: &[f64], size: f64) -> Vec<f64> {
         let sign = if chain.levels[1] > chain.levels[0] { 1.0 } else { -1.0 };
@@ -167,16 +167,16 @@ impl<'a> Ground<'a> {
         (0..self.residual.len()).map(|i| sign * size * at(i)).collect()
     }
 
-    /// What is slower than any dwell that averages of `m` are looked at for.
+    /// The part that is slower than any dwell sought in averages of `m`.
     fn drift(&self, m: usize) -> Vec<f64> {
-        let last = self.residual.len() / (SLOWEST * m);
+        let last = self.residual.len() / (MIN_DRIFT_AVERAGES * m);
         let modes = self.background.modes.iter().zip(&self.slow).enumerate();
         let modes: Vec<f64> = modes.map(|(k, (x, s))| if k <= last { x * s } else { 0.0 }).collect();
         inverse_dct2(&modes)
     }
 
     /// The best path in averages of `m`, from starts of its own and from a path in longer averages.
-    fn search(&self, m: usize, longer: Option<&Judged>) -> Option<Judged> {
+    fn search(&self, m: usize, longer: Option<&ScoredPath>) -> Option<ScoredPath> {
         let n = self.residual.len();
         let white = self.white / m as f64;
         let mut background = longer.map_or_else(|| self.drift(m), |j| j.background.clone());
@@ -185,17 +185,17 @@ impl<'a> Ground<'a> {
         chains.extend(longer.map(|j| j.chain.finer(j.averaged / m)));
         let mut chain = chains
             .into_iter()
-            .map(|c| (0..FIRST_TURNS).fold(c, |c, _| c.improved(&values, 0.5 * white)))
+            .map(|c| (0..FIRST_ITERATIONS).fold(c, |c, _| c.improved(&values, 0.5 * white)))
             .max_by(|a, b| a.log_likelihood(&values).total_cmp(&b.log_likelihood(&values)))?;
-        let mut best: Option<Judged> = None;
+        let mut best: Option<ScoredPath> = None;
         let coloured = self.coloured();
-        let mut paths = (coloured && values.len() <= PATHS).then(|| {
+        let mut paths = (coloured && values.len() <= MAX_PATH_AVERAGES).then(|| {
             let powers: Vec<f64> =
                 self.background.powers.iter().take(values.len()).map(|p| p / m as f64).collect();
             Paths::new(&averages(&self.residual, m), &powers, white)
         });
-        for _ in 0..ROUNDS {
-            chain = (0..TURNS).fold(chain, |c, _| c.improved(&values, 0.5 * white));
+        for _ in 0..PATH_ROUNDS {
+            chain = (0..BEST_ITERATIONS).fold(chain, |c, _| c.improved(&values, 0.5 * white));
             // Slow noise about the levels would make paths look less certain than they are.
             let sharp = Chain { variance: chain.variance.min(white), ..chain };
             let mut short = sharp.path(&values);
@@ -205,7 +205,7 @@ impl<'a> Ground<'a> {
                 short = if anew.0 > kept.0 { anew.1 } else { kept.1 };
             }
             let jumps = short.windows(2).filter(|w| w[0] != w[1]).count();
-            if jumps < JUMPS {
+            if jumps < MIN_JUMPS {
                 break;
             }
             let path: Vec<bool> =
@@ -229,7 +229,7 @@ impl<'a> Ground<'a> {
             if best.as_ref().is_some_and(|b| gain < b.gain + 0.1) {
                 break;
             }
-            best = Some(Judged { path, background: background.clone(), gain, chain, averaged: m });
+            best = Some(ScoredPath { path, background: background.clone(), gain, chain, averaged: m });
             if !coloured {
                 break;
             }
@@ -238,15 +238,15 @@ impl<'a> Ground<'a> {
         best
     }
 
-    /// Whether the values of each level are the same within its dwells and from one to the next.
-    fn is_level(&self, judged: &Judged) -> bool {
+    /// True where the values of each level are the same within its dwells and from one to the next.
+    fn is_level(&self, judged: &ScoredPath) -> bool {
         let left: Vec<f64> = self.residual.iter().zip(&judged.background).map(|(r, b)| r - b).collect();
         let spread = spread(&judged.path, &left, self.white);
-        let level = spread.ratio < SPREAD || spread.ln_p > LN_SPREAD;
-        level && slope(&judged.path, &left, self.white).abs() < SLOPE
+        let level = spread.ratio < MAX_DWELL_SPREAD || spread.ln_p > MIN_LN_DWELL_SPREAD;
+        level && slope(&judged.path, &left, self.white).abs() < MAX_DWELL_SLOPE
     }
 
-    /// Whether there is slow noise that paths must be told from.
+    /// True where there is slow noise from which paths must be distinguished.
     fn coloured(&self) -> bool {
         self.slow.iter().any(|s| *s >= 0.02)
     }
@@ -260,17 +260,17 @@ impl<'a> Ground<'a> {
 /// Looks for a telegraph signal beside a hypothesis.
 pub(super) fn telegraph(background: &Background<'_>, rival_gain: &dyn Fn() -> f64) -> Option<Telegraph> {
     let n = background.modes.len();
-    let ground = Ground::new(background);
+    let context = PathContext::new(background);
     let finest = n.div_ceil(MAX_AVERAGES).max(1);
     let mut m = finest;
     while n / (4 * m) >= MIN_AVERAGES {
         m *= 4;
     }
     let mut lengths = 0.0f64;
-    let mut best: Option<Judged> = None;
+    let mut best: Option<ScoredPath> = None;
     loop {
         lengths += 1.0;
-        let found = ground.search(m, best.as_ref());
+        let found = context.search(m, best.as_ref());
         if let Some(found) = found.filter(|f| best.as_ref().is_none_or(|b| f.gain > b.gain)) {
             best = Some(found);
         }
@@ -279,23 +279,23 @@ pub(super) fn telegraph(background: &Background<'_>, rival_gain: &dyn Fn() -> f6
         }
         m /= 4;
     }
-    let best = best.filter(|b| b.gain > 0.0 && ground.is_level(b))?;
+    let best = best.filter(|b| b.gain > 0.0 && context.is_level(b))?;
     let rival_gain = rival_gain();
     // A likelihood ratio against one fixed law exceeds e^g with a probability below e^−g; each of the three numbers is
     // fitted, ½ ln M nats.
     let log_p = lengths.ln() + 1.5 * ((n / best.averaged) as f64).ln() - best.gain;
     let [chance, p_value] = [log_p, log_p.max(rival_gain - best.gain)].map(|p| p.min(0.0).exp().max(1e-300));
-    let told = Telegraph { chance, p_value, ..ground.told(best, rival_gain) };
+    let result = Telegraph { chance, p_value, ..context.result(best, rival_gain) };
     // Two neighbouring steps of a coarse grid are two levels as well.
     let step = background.grid_step_arcsec.map_or(0.0, |a| a / background.drivers.dt_s);
     let quantization_grid =
-        step > FlatResidual::COARSE * ground.white.sqrt() && told.amplitude_deg_h < 1.5 * step;
-    (!quantization_grid).then_some(told)
+        step > FlatResidual::COARSE_STEPS * context.white.sqrt() && result.amplitude_deg_h < 1.5 * step;
+    (!quantization_grid).then_some(result)
 }
 
-impl Ground<'_> {
+impl PathContext<'_> {
     /// Size and dwell of the best path with their intervals.
-    fn told(&self, mut best: Judged, rival_gain: f64) -> Telegraph {
+    fn result(&self, mut best: ScoredPath, rival_gain: f64) -> Telegraph {
         let n = self.residual.len();
         let mut values = self.values(&best.background, best.averaged);
         // Background and levels in turns, each given the other, from the levels for a known path.
@@ -303,14 +303,14 @@ impl Ground<'_> {
         let Amplitude { size: known, deviation } = self.amplitude(&best.path);
         let mut size = known.abs();
         let mut raised = best.chain.posterior(&values);
-        for _ in 0..if coloured { SETTLING } else { 0 } {
+        for _ in 0..if coloured { MAX_FINAL_ROUNDS } else { 0 } {
             let course = self.course(&best.chain, best.averaged, &raised, size);
             values = self.values(&self.background(&course), best.averaged);
-            best.chain = (0..TURNS)
+            best.chain = (0..BEST_ITERATIONS)
                 .fold(best.chain, |c, _| c.improved(&values, 0.5 * self.white / best.averaged as f64));
             raised = best.chain.posterior(&values);
             let before = std::mem::replace(&mut size, best.chain.apart());
-            if (size - before).abs() < SETTLED * size {
+            if (size - before).abs() < FINAL_TOLERANCE * size {
                 break;
             }
         }
@@ -351,13 +351,13 @@ impl Ground<'_> {
 
 /// The visits to a level that is left much sooner than the other: pulses.
 fn pulses(path: &[bool]) -> Option<Visits> {
-    visits(path).filter(|v| v.p_value < UNEVEN)
+    visits(path).filter(|v| v.p_value < MIN_DWELL_PROBABILITY)
 }
 
-/// Whether the times at both levels are more even than those of independent jumps, whose deviation is their mean.
+/// True where the times at both levels are more even than those of independent jumps, whose deviation is their mean.
 fn regular(path: &[bool]) -> bool {
-    const ENOUGH: usize = 8;
-    const EVEN: f64 = 0.5;
+    const MIN_DWELLS: usize = 8;
+    const MAX_REGULAR_DEVIATION: f64 = 0.5;
     let mut times: [Vec<f64>; 2] = [vec![], vec![]];
     let mut since = None;
     for i in 1..path.len() {
@@ -372,7 +372,7 @@ fn regular(path: &[bool]) -> bool {
         let n = t.len() as f64;
         let mean = t.iter().sum::<f64>() / n;
         let variance = t.iter().map(|x| (x - mean).powi(2)).sum::<f64>() / (n - 1.0);
-        t.len() >= ENOUGH && variance.sqrt() < EVEN * mean
+        t.len() >= MIN_DWELLS && variance.sqrt() < MAX_REGULAR_DEVIATION * mean
     })
 }
 
@@ -433,14 +433,14 @@ mod tests {
             lost: 0.0,
             grid_step_arcsec: None,
         };
-        let ground = Ground::new(&background);
-        let Amplitude { size, deviation } = ground.amplitude(&path);
+        let context = PathContext::new(&background);
+        let Amplitude { size, deviation } = context.amplitude(&path);
         // ¼ over 100 · 100/200 samples' worth.
         assert!(
             (size - 3.0).abs() < 1e-6 && (deviation - 0.005f64.sqrt()).abs() < 1e-6,
             "{size} {deviation}"
         );
-        assert!(!ground.coloured() && ground.white == 0.25);
+        assert!(!context.coloured() && context.white == 0.25);
     }
 
     /// A background of unit white noise under `residual`, whose first modes are `slow` times as strong.
@@ -502,14 +502,14 @@ mod tests {
         let chain = Chain { levels: [-1.0, 1.0], variance: 9.0, change: [0.05, 0.05] };
         for slow in [&[][..], &[4.0, 2.0, 3.0]] {
             let background = background(&residual, slow, &drivers);
-            let ground = Ground::new(&background);
-            assert_eq!((ground.white, ground.coloured()), (1.0, !slow.is_empty()));
+            let context = PathContext::new(&background);
+            assert_eq!((context.white, context.coloured()), (1.0, !slow.is_empty()));
             // The best slow noise without a path costs what it takes out of the white noise: only the chain is left.
-            let beside = ground.background(&[0.0; 64]);
+            let beside = context.background(&[0.0; 64]);
             let values: Vec<f64> = residual.iter().zip(&beside).map(|(r, b)| r - b).collect();
             let flat: f64 = values.iter().map(|v| -0.5 * (v * v + std::f64::consts::TAU.ln())).sum();
             let expected = Chain { variance: 1.0, ..chain }.log_likelihood(&values) - flat - 0.25;
-            let got = ground.evidence(&chain, &beside, 1);
+            let got = context.evidence(&chain, &beside, 1);
             assert!((got - expected).abs() < 1e-9, "{got} {expected}");
         }
     }
@@ -519,13 +519,13 @@ mod tests {
         let drivers = crate::effect::Drivers { dt_s: 1.0, samples: 256, ..Default::default() };
         let residual: Vec<f64> = (0..256).map(|i| ((i * i * 31) % 17) as f64).collect();
         let background = background(&residual, &[4.0, 2.0, 4.0, 1.25, 4.0], &drivers);
-        let ground = Ground::new(&background);
+        let context = PathContext::new(&background);
         // 256/64 modes for single samples, half of them for averages of two.
         for (m, last) in [(1, 4), (2, 2)] {
             let shares = [0.0, 0.75, 0.5, 0.75, 0.2];
             let mut modes = vec![0.0; 256];
             (1..=last).for_each(|k| modes[k] = shares[k] * background.modes[k]);
-            for (got, expected) in ground.drift(m).iter().zip(inverse_dct2(&modes)) {
+            for (got, expected) in context.drift(m).iter().zip(inverse_dct2(&modes)) {
                 assert!((got - expected).abs() < 1e-12, "{m}");
             }
         }

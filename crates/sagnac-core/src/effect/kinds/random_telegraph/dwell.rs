@@ -1,4 +1,4 @@
-//! Whether the values within the dwells are those of two levels: the same within a dwell, and the same from one dwell to the
+//! A test of dwells whose values are those of two levels: the same within a dwell, and the same from one dwell to the
 //! next. Pulses that rise and die away, and pulses of different heights, are not.
 
 use crate::estimate::ln_chi_square_tail;
@@ -40,7 +40,7 @@ pub(super) fn slope(path: &[bool], left: &[f64], white: f64) -> f64 {
     if upper.abs() > lower.abs() { upper } else { lower }
 }
 
-/// How different the dwells at one level are.
+/// Difference between the dwells at one level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Spread {
     /// Mean square of their departure from the common level, in those of white noise: about 1.
@@ -49,7 +49,7 @@ pub(super) struct Spread {
     pub ln_p: f64,
 }
 
-/// How different the dwells at the rarer level are, of which the other is the rest.
+/// Difference between the dwells at the rarer level, of which the other is the rest.
 pub(super) fn spread(path: &[bool], left: &[f64], white: f64) -> Spread {
     let raised = path.iter().filter(|p| **p).count();
     let rare = usize::from(2 * raised <= path.len());
@@ -73,11 +73,11 @@ pub(super) fn spread(path: &[bool], left: &[f64], white: f64) -> Spread {
 /// Pulses: visits to the rarer level.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Visits {
-    /// How many.
+    /// Number of them.
     pub count: usize,
     /// Samples of each, on average.
     pub length: f64,
-    /// Two-sided probability of times at the two levels as unlike as these, if both were left at one rate: the ratio of their
+    /// Two-sided probability of times at the two levels as different as these, if both were left at one rate: the ratio of their
     /// means follows a law of F.
     pub p_value: f64,
 }

@@ -22,16 +22,16 @@ static PARAMS: [Param; 3] = [
 ];
 
 /// Instants of the jumps, where they are known.
-const SWITCHES: &str = "switches_time_s";
+const SWITCHES_LIST: &str = "switches_time_s";
 
 describe! {
     RandomTelegraph, "random_telegraph", Samples in Time, needs [],
     confusers [BiasStep, MarkovLong, UnobservedDriver],
-    lists [Param::inner(SWITCHES, "s", f64::MIN, f64::MAX)],
+    lists [Param::inner(SWITCHES_LIST, "s", f64::MIN, f64::MAX)],
     with {
         /// The course of known jumps.
         fn claimed_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
-            let switches = list(values, SWITCHES);
+            let switches = list(values, SWITCHES_LIST);
             if switches.is_empty() || switches.iter().any(|t| !t.is_finite()) {
                 return None;
             }
@@ -94,7 +94,7 @@ impl Samples for RandomTelegraph {
     }
 }
 
-/// Samples at a level below which jumps are not told from a process.
+/// Fewest samples at a level that distinguish jumps from a process.
 const FEWEST_AT_A_LEVEL: f64 = 6.0;
 /// Half widths of the interval of the amplitude within which a stated one is that which was found.
 const AS_STATED: f64 = 2.0;
@@ -160,16 +160,14 @@ impl JumpDetector for RandomTelegraph {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn the_autocovariance_is_that_of_the_telegraph_process() {
         let drivers = Drivers { dt_s: 1.0, samples: 400_000, ..Drivers::default() };
         let (amplitude, dwell) = (2.0, 50.0);
         let mut rate = vec![0.0; drivers.samples];
-        let values = Values::from([
-            ("amplitude_deg_h".to_owned(), Value::Number(amplitude)),
-            ("mean_dwell_s".to_owned(), Value::Number(dwell)),
-        ]);
+        let values = numbers([("amplitude_deg_h", amplitude), ("mean_dwell_s", dwell)]);
         RandomTelegraph.apply(&values, &drivers, 7, &mut rate, &mut []);
         for lag in [10usize, 25, 50] {
             let got =
@@ -183,12 +181,7 @@ mod tests {
 
     #[test]
     fn stated_jumps_have_the_process_of_their_spectrum_and_agree_within_their_interval() {
-        let stated = |amplitude: f64| {
-            Values::from([
-                ("amplitude_deg_h".to_owned(), Value::Number(amplitude)),
-                ("mean_dwell_s".to_owned(), Value::Number(30.0)),
-            ])
-        };
+        let stated = |amplitude: f64| numbers([("amplitude_deg_h", amplitude), ("mean_dwell_s", 30.0)]);
         let (effect, fitted) = RandomTelegraph.process(&stated(-2.0)).unwrap();
         assert_eq!((effect.kind(), fitted), ("markov_long", vec![15.0, 1.0]));
         assert!(RandomTelegraph.process(&Values::new()).is_none());
@@ -206,7 +199,7 @@ mod tests {
         let drivers = Drivers { dt_s: 1.0, start_s: 100.0, samples: 6, ..Drivers::default() };
         let values = Values::from([
             ("amplitude_deg_h".to_owned(), Value::Number(2.0)),
-            (SWITCHES.to_owned(), Value::List(vec![101.75, 104.0])),
+            (SWITCHES_LIST.to_owned(), Value::List(vec![101.75, 104.0])),
         ]);
         let course = RandomTelegraph.claimed_course(&values, &drivers).unwrap();
         assert_eq!(course, [-1.0, -1.0, 0.5, 1.0, 0.0, -1.0]);
@@ -216,10 +209,7 @@ mod tests {
     fn the_dwell_is_counted_in_seconds_whatever_the_sampling() {
         let drivers = Drivers { dt_s: 0.25, samples: 400_000, ..Drivers::default() };
         let mut rate = vec![0.0; drivers.samples];
-        let values = Values::from([
-            ("amplitude_deg_h".to_owned(), Value::Number(2.0)),
-            ("mean_dwell_s".to_owned(), Value::Number(20.0)),
-        ]);
+        let values = numbers([("amplitude_deg_h", 2.0), ("mean_dwell_s", 20.0)]);
         RandomTelegraph.apply(&values, &drivers, 5, &mut rate, &mut []);
         // exp(−2·5/20) after 5 s, 20 samples; 10 000 correlation times.
         let got = rate.iter().zip(&rate[20..]).map(|(a, b)| a * b).sum::<f64>() / 399_980.0;

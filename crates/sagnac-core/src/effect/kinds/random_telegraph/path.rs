@@ -1,13 +1,13 @@
 //! The path of jumps between two levels beside coloured noise.
 //!
-//! The noise is integrated out: with C its covariance, a path c is worth ½ (c·C⁻¹r)²/(c·C⁻¹c) less what its jumps cost.
+//! The noise is integrated out: with C its covariance, a path c gains ½ (c·C⁻¹r)²/(c·C⁻¹c) less the cost of its jumps.
 //! Beside a background that is held, a wrong stretch of a path stays: the background has taken its level.
 
 use crate::numeric::cosine::{dct2, fast_length, inverse_dct2};
 use std::collections::BTreeMap;
 
 /// Changes of a path at most.
-const MOVES: usize = 200;
+const MAX_PATH_CHANGES: usize = 200;
 /// Lengths of stretches that are tried, per octave.
 const PER_OCTAVE: f64 = 2.0;
 /// Least cost of a jump in nats.
@@ -96,14 +96,14 @@ impl Paths {
         square
     }
 
-    /// The path that is reached from another by turning stretches over, while that gains, and what it is worth. Values that
+    /// The path that is reached from another by turning stretches over, while that gains, and its gain. Values that
     /// were left out stay with their neighbour.
     pub fn improved(&mut self, path: Vec<bool>) -> (f64, Vec<bool>) {
         let length = path.len();
         let mut path = path;
         path.truncate(self.inverse.len());
         let mut worth = 0.0;
-        for _ in 0..MOVES {
+        for _ in 0..MAX_PATH_CHANGES {
             let (reached, turned) = self.best_move(&path);
             worth = reached;
             let Some((from, to)) = turned else { break };
@@ -113,7 +113,7 @@ impl Paths {
         (worth, path)
     }
 
-    /// The stretch that is best turned over, and what the path is worth then.
+    /// The stretch that is best turned over, and the gain of the path then.
     fn best_move(&mut self, path: &[bool]) -> (f64, Option<(usize, usize)>) {
         let n = path.len();
         let course: Vec<f64> = path.iter().map(|p| f64::from(u8::from(*p))).collect();

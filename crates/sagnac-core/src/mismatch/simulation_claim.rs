@@ -1,4 +1,4 @@
-//! A recording against a claim that is taken from a simulated recording: what the simulation shows itself is no
+//! A recording against a claim that is taken from a simulated recording: effects that the simulation shows itself are no
 //! difference.
 
 use super::engine::explain;
@@ -6,7 +6,7 @@ use super::finding::{Explanation, MismatchVerdict};
 use super::identify::identify;
 use super::options::{Options, Progress};
 use super::outcome::Outcome;
-use super::witness::Witness;
+use super::simulation_check::SimulationCheck;
 use crate::claim::{Claim, Stated};
 use crate::effect::{Effect, Model, SpectrumAct};
 use crate::estimate::{chi_square_tail, normal_quantile};
@@ -14,24 +14,24 @@ use crate::message::Note;
 use crate::noise::data::NoiseType;
 use crate::series::Series;
 
-/// Rounds of taking what the simulation shows as well into the claim.
-const ROUNDS: usize = 4;
+/// Rounds in which effects that the simulation shows as well are taken into the claim.
+const MAX_ROUNDS: usize = 4;
 /// Effects that are counted as tried.
-const FAMILY: f64 = 40.0;
+const TRIED_EFFECTS: f64 = 40.0;
 /// Probability below which the normal number is that of the leading term of its logarithm.
-const SMALL: f64 = 1e-14;
+const MIN_EXACT_PROBABILITY: f64 = 1e-14;
 /// Relative deviation of a coefficient that both records together suggested.
-const SUGGESTED: f64 = 0.3;
+const SUGGESTED_DEVIATION: f64 = 0.3;
 
-/// What comes of a recording and a simulation.
-pub struct Taken {
+/// Result of a comparison of a recording with a simulation.
+pub struct SimulationClaim {
     /// The explanation.
     pub outcome: Outcome,
     /// The claim that the recording was held against.
     pub claim: Claim,
     /// True where both have the very same samples.
     pub same: bool,
-    /// What the simulation shows as well, beyond the claim that was identified from it.
+    /// Effects that the simulation shows as well, beyond the claim that was identified from it.
     pub shared: Vec<&'static dyn Effect>,
 }
 
@@ -44,7 +44,7 @@ pub fn explain_simulation(
     mut simulation: Series,
     options: &Options,
     progress: &mut dyn FnMut(Progress),
-) -> Result<Taken, Note> {
+) -> Result<SimulationClaim, Note> {
     // Another run has another zero of time: what is stated by its time is looked for as far from the beginning.
     let begin = |s: &Series| s.time_s.first().copied().unwrap_or(0.0);
     let later = begin(recording) - begin(&simulation);
@@ -55,16 +55,16 @@ pub fn explain_simulation(
     let mut claim = identify(&simulation, progress)?;
     let rows = |s: &Series| s.rate_deg_h.len().max(1) as f64;
     let share = rows(&simulation) / rows(recording);
-    let witness = Witness { simulation: &simulation, options, share };
+    let check = SimulationCheck { simulation: &simulation, options, share };
     let mut shared: Vec<&'static dyn Effect> = vec![];
     let mut outcome = explain(recording.clone(), &claim, options, progress)?;
     if same {
         agree(&mut outcome, 1.0);
-        return Ok(Taken { outcome, claim, same, shared });
+        return Ok(SimulationClaim { outcome, claim, same, shared });
     }
     let mut least = 1.0f64;
     let mut left: Vec<Stated> = vec![];
-    for round in 0..=ROUNDS {
+    for round in 0..=MAX_ROUNDS {
         left.clear();
         if outcome.explanation.verdict == MismatchVerdict::Consistent {
             break;
@@ -79,16 +79,16 @@ pub fn explain_simulation(
         let added = outcome.augmented.effects.iter().skip(claim.effects.len()).cloned();
         let mut both = vec![];
         for stated in added {
-            let chance = witness.chance(&stated, &claim, &outcome.explanation, &mut || context(&claim));
-            if chance * FAMILY < options.alpha {
+            let chance = check.chance(&stated, &claim, &outcome.explanation, &mut || context(&claim));
+            if chance * TRIED_EFFECTS < options.alpha {
                 left.push(stated);
             } else {
-                least = least.min((FAMILY * chance).min(1.0));
+                least = least.min((TRIED_EFFECTS * chance).min(1.0));
                 both.push(stated);
             }
         }
         // In the last round what was found is judged and no more.
-        if both.is_empty() || round == ROUNDS {
+        if both.is_empty() || round == MAX_ROUNDS {
             break;
         }
         for stated in &both {
@@ -100,9 +100,9 @@ pub fn explain_simulation(
         outcome = explain(recording.clone(), &claim, options, progress)?;
     }
     if outcome.explanation.verdict != MismatchVerdict::Consistent && left.is_empty() {
-        unnamed(&mut outcome, &claim, &witness, least);
+        unnamed(&mut outcome, &claim, &check, least);
     }
-    Ok(Taken { outcome, claim, same, shared })
+    Ok(SimulationClaim { outcome, claim, same, shared })
 }
 
 fn same_samples(a: &Series, b: &Series) -> bool {
@@ -132,7 +132,7 @@ fn take(claim: &mut Claim, effects: Vec<Stated>, augmented: &Claim) {
                 NoiseType::Flicker => (&mut noise.b, &mut u.b_rel),
                 _ => (&mut noise.k, &mut u.k_rel),
             };
-            (*slot, *known) = (value, if *known > 0.0 { *known } else { SUGGESTED });
+            (*slot, *known) = (value, if *known > 0.0 { *known } else { SUGGESTED_DEVIATION });
             continue;
         }
         let near = |lsb: f64| (lsb / claim.quantization_lsb_arcsec - 1.0).abs() < 0.3;
@@ -147,23 +147,23 @@ fn take(claim: &mut Claim, effects: Vec<Stated>, augmented: &Claim) {
     }
 }
 
-/// Where nothing is left but effects that the simulation shows and departures that no effect explains: those of these that the simulation shows as strongly are no
+/// If only effects that the simulation shows and departures that no effect explains are left: those of these that the simulation shows as strongly are no
 /// difference. The equivalent normal numbers of both, scaled to one length, are compared.
-fn unnamed(outcome: &mut Outcome, claim: &Claim, witness: &Witness<'_>, least: f64) {
-    let Ok(own) = explain(witness.simulation.clone(), claim, witness.options, &mut |_| {}) else { return };
+fn unnamed(outcome: &mut Outcome, claim: &Claim, check: &SimulationCheck<'_>, least: f64) {
+    let Ok(own) = explain(check.simulation.clone(), claim, check.options, &mut |_| {}) else { return };
     let z = |p: f64| match p {
         p if p >= 0.5 => 0.0,
-        p if p > SMALL => -normal_quantile(p),
+        p if p > MIN_EXACT_PROBABILITY => -normal_quantile(p),
         p => (-2.0 * p.max(f64::MIN_POSITIVE).ln()).sqrt(),
     };
-    let root = witness.share.min(1.0 / witness.share).sqrt();
+    let root = check.share.min(1.0 / check.share).sqrt();
     let many = outcome.explanation.tests.len().max(1) as f64;
     let mut smallest = 1.0f64;
     for test in &mut outcome.explanation.tests {
         let same = |t: &&super::finding::Test| t.id == test.id && t.domain == test.domain;
         let there = own.explanation.tests.iter().filter(same).map(|t| t.p_before).fold(1.0, f64::min);
         // The longer record has the larger number where both depart alike.
-        let (here, there) = if witness.share < 1.0 {
+        let (here, there) = if check.share < 1.0 {
             (z(test.p_after) * root, z(there))
         } else {
             (z(test.p_after), z(there) * root)
@@ -175,7 +175,7 @@ fn unnamed(outcome: &mut Outcome, claim: &Claim, witness: &Witness<'_>, least: f
         smallest = smallest.min(test.p_after);
     }
     let chance = (many * smallest).min(1.0);
-    if chance < witness.options.alpha {
+    if chance < check.options.alpha {
         return;
     }
     agree(outcome, chance.min(least));

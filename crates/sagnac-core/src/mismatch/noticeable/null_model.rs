@@ -5,18 +5,18 @@
 //! hypothesis fitted to that as it would be fitted to a record.
 
 use crate::effect::{MeanModel, Resolution};
+use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::mismatch::hypothesis::{PartModes, columns, kept};
 use crate::mismatch::noise_fit::{self, Noise, NoiseFit};
 use crate::mismatch::spectral_data::SpectralData;
-use crate::mismatch::tried::{SpectralDataSet, Tried};
 use crate::numeric::least_squares::{Normal, subtract};
 
 /// Steps of a fit to expected data, which begins near its end.
-const STEPS: usize = 20;
+const FIT_STEPS: usize = 20;
 
 /// A hypothesis at one resolution.
-pub(super) struct Ground<'a> {
-    best: &'a Tried,
+pub(super) struct NullModel<'a> {
+    best: &'a FittedHypothesis,
     spectra: &'a SpectralDataSet,
     spectral: &'a SpectralData,
     parts: Vec<PartModes>,
@@ -27,27 +27,27 @@ pub(super) struct Ground<'a> {
     usable: f64,
 }
 
-/// What is left of a course.
-pub(super) struct Left {
-    /// Twice the expected gain, by what the course has in each bin and with the noise free.
+/// Expected gain of a course that the noise and the columns of the hypothesis do not take up.
+pub(super) struct ResidualGain {
+    /// Twice the expected gain, from the spectrum of the course and with the noise free.
     pub gain: f64,
     /// Standard deviation of the root of twice the gain.
     pub spread: f64,
 }
 
-impl<'a> Ground<'a> {
+impl<'a> NullModel<'a> {
     pub fn new(
-        best: &'a Tried,
+        best: &'a FittedHypothesis,
         spectra: &'a SpectralDataSet,
         resolution: Resolution,
         usable: f64,
-    ) -> Ground<'a> {
+    ) -> NullModel<'a> {
         let spectral = spectra.of(resolution);
         let parts = spectra.part_modes(resolution, &best.hypothesis.courses);
         let powers = spectral.powers(&best.hypothesis.noise.densities(spectral));
         let top = fit_expected(&mut best.hypothesis.noise.clone(), &spectra.full, &best.fit.densities)
             .log_likelihood;
-        Ground { best, spectra, spectral, parts, powers, top, usable }
+        NullModel { best, spectra, spectral, parts, powers, top, usable }
     }
 
     /// The data that it is at.
@@ -56,7 +56,7 @@ impl<'a> Ground<'a> {
     }
 
     /// Expected gain of a course, deg/h, one value a sample.
-    pub fn of_course(&self, series: &[f64], model: &dyn MeanModel) -> Left {
+    pub fn of_course(&self, series: &[f64], model: &dyn MeanModel) -> ResidualGain {
         let mut modes = self.spectral.transform(series);
         let nuisances = kept(self.spectral, &self.best.hypothesis.courses);
         let all = columns(&nuisances, &self.parts);
@@ -75,10 +75,10 @@ impl<'a> Ground<'a> {
         let squares = |((_, deviation), c): (&(&[f64], f64), &f64)| (c / deviation).powi(2);
         let penalty: f64 = all.iter().zip(&coefficients).map(squares).sum();
         let excess: Vec<f64> = self.in_bins(&modes).into_iter().map(|e| self.usable * e).collect();
-        Left { gain: self.of_excess(&excess) + self.usable * penalty, spread }
+        ResidualGain { gain: self.of_excess(&excess) + self.usable * penalty, spread }
     }
 
-    /// What modes of this resolution have in the bins of the full one, (deg/h)²/Hz.
+    /// Density of modes of this resolution in the bins of the full one, (deg/h)²/Hz.
     fn in_bins(&self, modes: &[f64]) -> Vec<f64> {
         let full = &self.spectra.full;
         let each = self.spectral.drivers.averaged as f64 / full.drivers.averaged.max(1) as f64;
@@ -87,7 +87,7 @@ impl<'a> Ground<'a> {
         full.observed(&all)
     }
 
-    /// Twice what the hypothesis loses where its spectrum has so much more in each bin that it does not know of.
+    /// Twice the log-likelihood that the hypothesis loses by so much more in each bin of its spectrum than it contains.
     fn of_excess(&self, excess: &[f64]) -> f64 {
         let expected: Vec<f64> = self.best.fit.densities.iter().zip(excess).map(|(s, e)| s + e).collect();
         let without = fit_expected(&mut self.best.hypothesis.noise.clone(), &self.spectra.full, &expected);
@@ -97,5 +97,5 @@ impl<'a> Ground<'a> {
 
 /// Fits a noise to an expected spectrum.
 pub(super) fn fit_expected(noise: &mut Noise, spectral: &SpectralData, expected: &[f64]) -> NoiseFit {
-    noise_fit::fit_in(noise, spectral, expected, STEPS)
+    noise_fit::fit_in(noise, spectral, expected, FIT_STEPS)
 }

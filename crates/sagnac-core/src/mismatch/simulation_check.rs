@@ -1,4 +1,4 @@
-//! Whether a simulation shows itself what a recording shows beyond the claim that was taken from it.
+//! A check of a simulation for the effects that a recording shows beyond the claim that was taken from it.
 //!
 //! A claim taken from a simulation holds what the simulation resolves. What it does not resolve is no statement of the
 //! simulation: an effect found in the recording is a difference of the two only where the simulation speaks against it.
@@ -7,14 +7,14 @@
 
 use super::engine::{on_grid, uncoarsened};
 use super::finding::{Explanation, Finding};
+use super::fitted_hypothesis::FittedHypothesis;
 use super::hypothesis::{Hypothesis, columns, fit};
-use super::named::Found;
+use super::named::SampleFindings;
 use super::noise_fit::{Noise, base_index};
 use super::options::Options;
 use super::problem::Problem;
 use super::spectral_data::SpectralData;
-use super::terms::SpectrumIn;
-use super::tried::Tried;
+use super::terms::SpectralTerm;
 use crate::claim::{Claim, Stated};
 use crate::effect::{Drivers, Model, Nuisance, Spectrum, SpectrumAct, Value, Values, parameter};
 use crate::estimate::chi_square_tail;
@@ -22,16 +22,16 @@ use crate::numeric::least_squares::Normal;
 use crate::series::Series;
 
 /// Deviation of the logarithm of a coefficient that is all but free.
-const LOOSE: f64 = 3.0;
+const FREE_LOG_DEVIATION: f64 = 3.0;
 /// Standard deviations of a 95 % interval from end to end.
 const WIDTH95: f64 = 3.92;
 /// The name under which sinusoids state their phase.
-const PHASE: &str = "phase_deg";
+const PHASE_NAME: &str = "phase_deg";
 /// The name under which sinusoids state their frequency.
-const FREQUENCY: &str = "frequency_hz";
+const FREQUENCY_NAME: &str = "frequency_hz";
 
 /// A simulation that is asked.
-pub(super) struct Witness<'a> {
+pub(super) struct SimulationCheck<'a> {
     /// The simulation, its beginning at that of the recording.
     pub simulation: &'a Series,
     /// Decisions of the user.
@@ -44,17 +44,17 @@ pub(super) struct Witness<'a> {
 fn free(claim: &Claim) -> Claim {
     let mut out = claim.clone();
     let u = &mut out.uncertainty;
-    (u.n_rel, u.b_rel, u.k_rel) = (LOOSE, LOOSE, LOOSE);
+    (u.n_rel, u.b_rel, u.k_rel) = (FREE_LOG_DEVIATION, FREE_LOG_DEVIATION, FREE_LOG_DEVIATION);
     [u.n_deg_rt_h, u.b_deg_h, u.k_deg_h_rt_h] = u.of_zero().map(|deviation| 100.0 * deviation);
     u.temperature_coefficient_deg_h_per_degc = f64::INFINITY;
     u.scale_factor_ppm = f64::INFINITY;
     out
 }
 
-fn fitted(noise: Noise, spectral: &SpectralData) -> Tried {
+fn fitted(noise: Noise, spectral: &SpectralData) -> FittedHypothesis {
     let mut hypothesis = Hypothesis { noise, courses: vec![] };
     let fit = fit(&mut hypothesis, spectral);
-    Tried { hypothesis, fit, parameters: 0, odds: vec![] }
+    FittedHypothesis { hypothesis, fit, parameters: 0, odds: vec![] }
 }
 
 /// The noise of a claim with every process of it free.
@@ -64,10 +64,10 @@ fn free_noise(claim: &Claim) -> Noise {
     noise
 }
 
-impl Witness<'_> {
+impl SimulationCheck<'_> {
     fn problem(&self, claim: &Claim) -> Option<Problem> {
         let regular = on_grid(self.simulation.clone(), claim, self.options).ok()?;
-        Some(uncoarsened(&regular, claim, &mut Found::default(), self.options))
+        Some(uncoarsened(&regular, claim, &mut SampleFindings::default(), self.options))
     }
 
     /// Probability of the simulation, or one less like it, where it holds an effect as the recording shows it; 0 where it
@@ -109,9 +109,9 @@ impl Witness<'_> {
             return Some(1.0);
         }
         let spectral = &problem.spectra.full;
-        let worth = |noise: Noise| fitted(noise, spectral).fit.log_likelihood;
+        let likelihood = |noise: Noise| fitted(noise, spectral).fit.log_likelihood;
         let mut noise = free_noise(&problem.claim);
-        noise.spectra.extend(driver.map(|fitted| SpectrumIn {
+        noise.spectra.extend(driver.map(|fitted| SpectralTerm {
             effect: stated.effect,
             fitted,
             stated: false,
@@ -119,19 +119,19 @@ impl Witness<'_> {
         let (held, best) = if let SpectrumAct::Unconstrains(term) = spectrum.act() {
             let mut held = noise.clone();
             held.deviation[base_index(term)?] = 0.0;
-            (worth(held), worth(noise))
+            (likelihood(held), likelihood(noise))
         } else {
             let at = noise.spectra.iter().rposition(|s| s.effect.kind() == stated.effect.kind())?;
             let (mut held, mut none) = (noise.clone(), noise.clone());
             held.spectra[at].stated = true;
             none.spectra.remove(at);
-            (worth(held), worth(noise).max(worth(none)))
+            (likelihood(held), likelihood(noise).max(likelihood(none)))
         };
         let ratio = 2.0 * (best - held).max(0.0) / (1.0 + self.share);
         Some(chi_square_tail(ratio, parameters.max(1) as f64))
     }
 
-    /// How far the size of a course in the simulation is from that in the recording. Of a sinusoid the phase is no
+    /// Distance of the size of a course in the simulation from that in the recording. Of a sinusoid the phase is no
     /// property of the process, and its frequency is known to within the resolution.
     fn by_course(&self, stated: &Stated, claim: &Claim) -> Option<f64> {
         let mut loose = free(claim);
@@ -149,14 +149,14 @@ impl Witness<'_> {
         let tried = fitted(free_noise(&problem.claim), spectral);
         let powers = spectral.powers(&tried.fit.densities);
         let nuisances: Vec<_> = spectral.nuisances.iter().collect();
-        let steps = if stated.values.contains_key(FREQUENCY) { 16 } else { 0 };
+        let steps = if stated.values.contains_key(FREQUENCY_NAME) { 16 } else { 0 };
         let resolution = 1.0 / problem.drivers.length_s();
         let mut best: Option<(f64, f64)> = None;
         for step in -steps..=steps {
-            let values = shifted(&stated.values, FREQUENCY, 0.25 * f64::from(step) * resolution);
+            let values = shifted(&stated.values, FREQUENCY_NAME, 0.25 * f64::from(step) * resolution);
             let mut parts = vec![course(stated, &values, &problem.drivers)?];
-            if values.contains_key(PHASE) {
-                parts.extend(course(stated, &shifted(&values, PHASE, 90.0), &problem.drivers));
+            if values.contains_key(PHASE_NAME) {
+                parts.extend(course(stated, &shifted(&values, PHASE_NAME, 90.0), &problem.drivers));
             }
             let modes: Vec<Vec<f64>> = parts.iter().map(|p| spectral.transform(p)).collect();
             let mut all = columns(&nuisances, []);
@@ -177,7 +177,7 @@ impl Witness<'_> {
         Some(chi_square_tail((1.0 - size).powi(2) / (variance * (1.0 + self.share)), 1.0))
     }
 
-    /// How unlike the parameters of an effect are that both records show.
+    /// Difference of the parameters of an effect that both records show.
     fn by_kind(&self, kind: &str, found: &Explanation, own: &Explanation) -> f64 {
         let of = |all: &Explanation| all.effects.iter().find(|f| f.effect_id() == kind).cloned();
         let (Some(here), Some(there)) = (of(found), of(own)) else { return 0.0 };

@@ -1,8 +1,8 @@
-//! Hypotheses that were fitted, and what an addition to one is worth.
+//! Hypotheses that were fitted, and the score of an addition to one.
 
 use super::hypothesis::{Fit, Hypothesis, PartModes, part_modes, part_modes_of_averages, residual};
 use super::spectral_data::SpectralData;
-use super::terms::CourseIn;
+use super::terms::MeanTerm;
 use crate::effect::{Effect, Resolution};
 use crate::estimate::chi_square_tail;
 
@@ -30,7 +30,7 @@ impl SpectralDataSet {
     }
 
     /// Modes of courses in the data that a model of some resolution is fitted to.
-    pub fn part_modes(&self, resolution: Resolution, courses: &[CourseIn]) -> Vec<PartModes> {
+    pub fn part_modes(&self, resolution: Resolution, courses: &[MeanTerm]) -> Vec<PartModes> {
         match (resolution, &self.slow) {
             (Resolution::Averaged, Some(slow)) => part_modes_of_averages(slow, &self.full, courses),
             _ => part_modes(&self.full, courses),
@@ -40,7 +40,7 @@ impl SpectralDataSet {
 
 /// A hypothesis with its fit.
 #[derive(Clone)]
-pub struct Tried {
+pub struct FittedHypothesis {
     /// The hypothesis, fitted.
     pub hypothesis: Hypothesis,
     /// Its fit on the full-rate data.
@@ -51,7 +51,7 @@ pub struct Tried {
     pub odds: Vec<(&'static str, f64)>,
 }
 
-impl Tried {
+impl FittedHypothesis {
     /// −2 ln L + parameters · ln rows.
     pub fn bic(&self, rows: usize) -> f64 {
         -2.0 * self.fit.log_likelihood + self.parameters as f64 * (rows as f64).ln()
@@ -81,7 +81,7 @@ impl Tried {
         spectra.full.powers(&self.fit.densities)
     }
 
-    /// What hypotheses are ordered by: BIC, and between equals what else speaks for their kinds.
+    /// Criterion by which hypotheses are ordered: BIC less twice the logarithm of the prior odds of their effects.
     pub fn rank(&self, rows: usize) -> f64 {
         self.bic(rows) - 2.0 * self.odds.iter().map(|(_, odds)| odds).sum::<f64>()
     }
@@ -93,7 +93,7 @@ pub struct Candidate {
     /// The effect.
     pub effect: &'static dyn Effect,
     /// The hypothesis with it.
-    pub tried: Tried,
+    pub tried: FittedHypothesis,
     /// Gain of log-likelihood over the hypothesis without it.
     pub gain: f64,
     /// Parameters that it adds.
@@ -104,27 +104,27 @@ pub struct Candidate {
     pub p_value: f64,
 }
 
-/// What was looked at to find an addition.
+/// Effort of the search for an addition.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Looked {
+pub(super) struct SearchEffort {
     /// Numbers that were fitted.
     pub numbers: usize,
     /// Independent places that its own search looked at.
     pub trials: f64,
 }
 
-/// What an addition is worth.
-pub(super) fn rated(
+/// An addition with its gain, ΔBIC and p-value.
+pub(super) fn score_candidate(
     effect: &'static dyn Effect,
-    tried: Tried,
-    before: &Tried,
-    looked: Looked,
+    tried: FittedHypothesis,
+    before: &FittedHypothesis,
+    effort: SearchEffort,
     rows: usize,
 ) -> Candidate {
     let gain = tried.fit.log_likelihood - before.fit.log_likelihood;
     let parameters = tried.parameters - before.parameters;
-    let chance = chi_square_tail(2.0 * gain.max(0.0), looked.numbers as f64);
-    let p_value = (looked.trials.max(1.0) * chance).min(1.0);
+    let chance = chi_square_tail(2.0 * gain.max(0.0), effort.numbers as f64);
+    let p_value = (effort.trials.max(1.0) * chance).min(1.0);
     let delta_bic = before.bic(rows) - tried.bic(rows);
     Candidate { effect, tried, gain, parameters, delta_bic, p_value }
 }
@@ -135,16 +135,16 @@ pub(super) fn own_odds(effect: &dyn Effect) -> f64 {
     if effect.in_format() { 0.0 } else { -3.0 }
 }
 
-/// What BIC charges parameters more than they are worth, nats: a parameter is worth half the logarithm of the modes that tell of
-/// it, and not of all rows.
-pub(super) fn overcharged(parameters: usize, modes: f64, rows: usize) -> f64 {
+/// Excess of the charge of BIC for parameters, nats: a parameter costs half the logarithm of the modes that inform on it, and not
+/// of all rows.
+pub(super) fn bic_overcharge(parameters: usize, modes: f64, rows: usize) -> f64 {
     /// Modes below which a parameter is no cheaper.
-    const FEWEST: f64 = 55.0;
-    parameters as f64 * 0.5 * (rows as f64 / modes.max(FEWEST)).ln().max(0.0)
+    const MIN_CHARGED_MODES: f64 = 55.0;
+    parameters as f64 * 0.5 * (rows as f64 / modes.max(MIN_CHARGED_MODES)).ln().max(0.0)
 }
 
-/// How many modes tell of what each tells so much of: their number where all tell as much.
-pub(super) fn telling(informations: impl Iterator<Item = f64>) -> f64 {
+/// Effective number of modes, from the information of each: their number where all inform alike.
+pub(super) fn effective_modes(informations: impl Iterator<Item = f64>) -> f64 {
     let (sum, squares) = informations
         .filter(|i| i.is_finite())
         .fold((0.0, 0.0), |(sum, squares), i| (sum + i, squares + i * i));
@@ -159,7 +159,7 @@ mod tests {
     use crate::mismatch::hypothesis::{LeastSquares, fit};
     use crate::mismatch::noise_fit::Noise;
 
-    fn tried(log_likelihood: f64, parameters: usize, odds: f64) -> Tried {
+    fn tried(log_likelihood: f64, parameters: usize, odds: f64) -> FittedHypothesis {
         let drivers = Drivers { dt_s: 1.0, samples: 64, averaged: 1, ..Drivers::default() };
         let spectral = SpectralData::new(drivers, &[0.0; 64], &[]);
         let base = [1.0, 0.0, 0.0];
@@ -168,7 +168,7 @@ mod tests {
             claimed: base,
             deviation: [0.0; 3],
             bound: [0.0; 3],
-            freed: [false; 3],
+            unconstrained: [false; 3],
             quantization_arcsec: 0.0,
             spectra: vec![],
         };
@@ -176,27 +176,33 @@ mod tests {
         let mut fit = fit(&mut hypothesis, &spectral);
         fit.log_likelihood = log_likelihood;
         assert!(matches!(&fit.mean, LeastSquares { coefficients, .. } if coefficients.is_empty()));
-        Tried { hypothesis, fit, parameters, odds: vec![("line", odds)] }
+        FittedHypothesis { hypothesis, fit, parameters, odds: vec![("line", odds)] }
     }
 
     #[test]
     fn a_parameter_that_few_modes_tell_of_is_charged_for_those() {
         // A hundred equal modes of 10 000 rows: ½ ln 100 less for each of three.
-        let of = |modes: f64| overcharged(3, modes, 10_000);
+        let of = |modes: f64| bic_overcharge(3, modes, 10_000);
         assert!((of(100.0) - 1.5 * 100f64.ln()).abs() < 1e-9, "{}", of(100.0));
         assert_eq!(of(10_000.0), 0.0);
         assert_eq!((of(1.0), of(0.0)), (of(55.0), of(55.0)));
-        let modes = |count: usize| telling((0..1000).map(|k| if k < count { 2.0 } else { 0.0 }));
+        let modes = |count: usize| effective_modes((0..1000).map(|k| if k < count { 2.0 } else { 0.0 }));
         assert_eq!((modes(100), modes(0)), (100.0, 0.0));
         // One that tells ten times as much as ninety others: (10 + 90)²/(100 + 90).
-        let uneven = telling(std::iter::once(10.0).chain(std::iter::repeat_n(1.0, 90)));
+        let uneven = effective_modes(std::iter::once(10.0).chain(std::iter::repeat_n(1.0, 90)));
         assert!((uneven - 10_000.0 / 190.0).abs() < 1e-9, "{uneven}");
     }
 
     #[test]
     fn an_addition_pays_the_logarithm_of_the_rows_for_each_parameter() {
         let (before, after) = (tried(-100.0, 1, 0.0), tried(-80.0, 3, -3.0));
-        let one = rated(find("line").unwrap(), after, &before, Looked { numbers: 2, trials: 50.0 }, 1000);
+        let one = score_candidate(
+            find("line").unwrap(),
+            after,
+            &before,
+            SearchEffort { numbers: 2, trials: 50.0 },
+            1000,
+        );
         assert_eq!((one.gain, one.parameters), (20.0, 2));
         // 2 · 20 − 2 ln 1000.
         assert!((one.delta_bic - (40.0 - 2.0 * 1000f64.ln())).abs() < 1e-9);

@@ -1,38 +1,38 @@
-//! What one recording says of a law: score and information of its coefficients under the noise of the recording, the
+//! Information of one recording on a law: score and information of its coefficients under the noise of the recording, the
 //! nuisances of the claim fitted beside them.
 
 use super::law::{Courses, Law};
 use crate::effect::Resolution;
+use crate::mismatch::fitted_hypothesis::FittedHypothesis;
 use crate::mismatch::hypothesis::kept;
 use crate::mismatch::problem::Problem;
 use crate::mismatch::spectral_data::{NuisanceColumn, SpectralData};
-use crate::mismatch::tried::Tried;
 use crate::numeric::least_squares::{Normal, subtract};
 use nalgebra::{DMatrix, DVector};
 
 /// A recording with the noise that it was found to have.
-pub(super) struct Ground<'a> {
+pub(super) struct Baseline<'a> {
     pub problem: &'a Problem,
-    base: &'a Tried,
+    base: &'a FittedHypothesis,
     full: Vec<f64>,
     averaged: Vec<f64>,
 }
 
-/// What one recording says of a law.
+/// Information of one recording on a law.
 #[derive(Clone)]
-pub(super) enum Share {
+pub(super) enum LawInformation {
     /// Of its coefficients.
     Quadratic { score: DVector<f64>, information: DMatrix<f64> },
     /// Gain of log-likelihood by a course without coefficients, nats.
     Gain(f64),
 }
 
-impl<'a> Ground<'a> {
-    pub fn new(problem: &'a Problem, base: &'a Tried) -> Ground<'a> {
+impl<'a> Baseline<'a> {
+    pub fn new(problem: &'a Problem, base: &'a FittedHypothesis) -> Baseline<'a> {
         let powers = |spectral: &SpectralData| spectral.powers(&base.hypothesis.noise.densities(spectral));
         let full = powers(&problem.spectra.full);
         let averaged = powers(problem.spectra.of(Resolution::Averaged));
-        Ground { problem, base, full, averaged }
+        Baseline { problem, base, full, averaged }
     }
 
     /// The data that a law is fitted to.
@@ -40,8 +40,8 @@ impl<'a> Ground<'a> {
         self.problem.spectra.of(law.model.resolution())
     }
 
-    /// What the recording says of a law; `None` where it lacks what the law needs.
-    pub fn share(&self, law: &Law) -> Option<Share> {
+    /// Its information on a law; `None` where it lacks what the law needs.
+    pub fn information(&self, law: &Law) -> Option<LawInformation> {
         let resolution = law.model.resolution();
         let spectral = self.problem.spectra.of(resolution);
         let powers = if resolution == Resolution::Averaged { &self.averaged } else { &self.full };
@@ -58,7 +58,7 @@ impl<'a> Ground<'a> {
                 let mut left = spectral.modes.clone();
                 subtract(&mut left, &spectral.transform(&course), 1.0);
                 let after = Normal::new(&columns, &left, powers).solve().2;
-                Some(Share::Gain(0.5 * (before - after))).filter(|_| after.is_finite())
+                Some(LawInformation::Gain(0.5 * (before - after))).filter(|_| after.is_finite())
             }
             Courses::Columns(all) => {
                 let own: Vec<Vec<f64>> = all.iter().map(|c| spectral.transform(c)).collect();
@@ -70,7 +70,7 @@ impl<'a> Ground<'a> {
                 let fitted = DVector::from_column_slice(fitted.get(first..)?);
                 let information = covariance.try_inverse()?;
                 let finite = information.iter().chain(fitted.iter()).all(|x| x.is_finite());
-                finite.then(|| Share::Quadratic { score: &information * fitted, information })
+                finite.then(|| LawInformation::Quadratic { score: &information * fitted, information })
             }
         }
     }
