@@ -1,5 +1,6 @@
 //! Effects on the mean: a contribution to the rate that parameters and recorded columns determine.
 
+use super::shared::reach::{places_of, varies};
 use super::{Drivers, Effect, Param, Place, Sizing, StatedLine, Values, number};
 use crate::numeric::range::Bounds;
 
@@ -123,11 +124,16 @@ pub(super) fn first(values: &[f64]) -> f64 {
 /// parameters of such a model are the nonlinear ones, in the same order; most have none. A model of another form has its own
 /// `regressors`, `parameters` and `course`.
 pub trait MeanModel: Effect {
-    /// False where the columns, or the claim, leave nothing to fit (a constant temperature, a table at rest).
-    fn applies(&self, drivers: &Drivers) -> bool;
+    /// False where the columns, or the claim, leave nothing to fit (a constant temperature, a table at rest). The columns that an
+    /// effect needs must vary.
+    fn applies(&self, drivers: &Drivers) -> bool {
+        self.needs().iter().all(|column| varies(drivers.column(*column)))
+    }
 
-    /// Intervals in which it shows, principal one first, at most three.
-    fn places(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<Place>;
+    /// Intervals in which it shows, principal one first, at most three: those of the quantity of its domain.
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        places_of(self.domain(), drivers)
+    }
 
     /// The column of a model that has only one, deg/h for a coefficient of 1; `None` where a recorded column or a nonlinear
     /// parameter is missing.

@@ -1,7 +1,6 @@
 //! Sensitivity to the rate about the other axis.
 
-use crate::effect::shared::reach::{reach, varies};
-use crate::effect::{Domain, Drivers, MeanModel, Param, Place};
+use crate::effect::{Drivers, MeanModel, Param};
 
 pub struct CrossAxis;
 
@@ -13,17 +12,8 @@ describe! {
 }
 
 impl MeanModel for CrossAxis {
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.outer_rate.as_deref())
-    }
-
     fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
         Some(drivers.outer_rate.as_ref()?.iter().map(|r| 3.6 * r).collect())
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let outer = drivers.outer_rate.as_deref().unwrap_or(&[]);
-        reach(Domain::OuterRate, outer, outer)
     }
 }
 

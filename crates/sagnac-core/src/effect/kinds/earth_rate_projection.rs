@@ -1,10 +1,9 @@
 //! The Earth rate as a function of heading is wrong or missing.
 
-use crate::effect::shared::reach::varies;
 use crate::effect::shared::sinusoid::{polar, wave};
-use crate::effect::shared::table_angle::{columns, visited};
+use crate::effect::shared::table_angle::columns;
 use crate::effect::sizing::numbers;
-use crate::effect::{Drivers, MeanModel, Param, Place, Regressors, Sizing, Values, number};
+use crate::effect::{Drivers, MeanModel, Param, Regressors, Sizing, Values, number};
 
 pub struct EarthRateProjection;
 
@@ -25,10 +24,6 @@ impl EarthRateProjection {
 }
 
 impl MeanModel for EarthRateProjection {
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.table_angle.as_deref())
-    }
-
     fn regressors(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         Regressors::columns(columns(1.0, drivers))
     }
@@ -52,10 +47,6 @@ impl MeanModel for EarthRateProjection {
         drivers.table_angle.as_ref()?;
         let phase = number(values, PARAMS[1].name).unwrap_or(0.0);
         Some(wave(number(values, PARAMS[0].name)?, phase, &columns(1.0, drivers)))
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        visited(drivers)
     }
 
     /// A table that turns is no heading: what repeats with its angle is more likely the table's own, or that of the gyro

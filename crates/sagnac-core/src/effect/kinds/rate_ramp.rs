@@ -1,7 +1,6 @@
 //! A linear drift.
 
-use crate::effect::shared::reach::record;
-use crate::effect::{Drivers, MeanModel, Param, Place};
+use crate::effect::{Drivers, MeanModel, Param};
 
 pub struct RateRamp;
 
@@ -22,10 +21,6 @@ impl MeanModel for RateRamp {
     fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
         let middle = 0.5 * drivers.length_s();
         Some(drivers.of_time(|t| (t - middle) / 3600.0))
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        record(drivers)
     }
 }
 

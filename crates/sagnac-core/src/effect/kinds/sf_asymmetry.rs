@@ -1,7 +1,6 @@
 //! Different scale factors for positive and negative rate.
 
-use crate::effect::shared::reach::large_rates;
-use crate::effect::{Drivers, MeanModel, Param, Place};
+use crate::effect::{Drivers, MeanModel, Param};
 use crate::numeric::range::{Bounds, ends};
 
 pub struct SfAsymmetry;
@@ -24,10 +23,6 @@ impl MeanModel for SfAsymmetry {
 
     fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
         Some(drivers.table_rate.as_ref()?.iter().map(|r| 1800e-6 * r.abs()).collect())
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        large_rates(drivers)
     }
 }
 

@@ -1,7 +1,6 @@
 //! A scale factor that differs from the claimed one.
 
-use crate::effect::shared::reach::{large_rates, varies};
-use crate::effect::{Drivers, MeanModel, Nuisance, Param, Place};
+use crate::effect::{Drivers, MeanModel, Nuisance, Param};
 
 pub struct SfError;
 
@@ -17,24 +16,16 @@ impl MeanModel for SfError {
         Some(Nuisance::ScaleFactor)
     }
 
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.table_rate.as_deref())
-    }
-
     fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
         Some(drivers.table_rate.as_ref()?.iter().map(|r| 3600e-6 * r).collect())
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        large_rates(drivers)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::effect::sizing::numbers;
     use crate::effect::Values;
+    use crate::effect::sizing::numbers;
 
     #[test]
     fn a_millionth_of_one_deg_s_is_0_0036_deg_h() {

@@ -1,8 +1,8 @@
 //! A scale factor that depends on the size of the rate.
 
 use crate::effect::mean::first;
-use crate::effect::shared::reach::{large_rates, largest_rate, varies};
-use crate::effect::{Drivers, MeanModel, Param, Place, Values, number};
+use crate::effect::shared::reach::{largest_rate, varies};
+use crate::effect::{Drivers, MeanModel, Param, Values, number};
 
 pub struct SfNonlinearity;
 
@@ -43,10 +43,6 @@ impl MeanModel for SfNonlinearity {
         let coefficient = number(values, PARAMS[0].name)?;
         let at = number(values, PARAMS[1].name).unwrap_or_else(|| largest_rate(drivers));
         Some(cubic(at, drivers)?.into_iter().map(|x| coefficient * x).collect())
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        large_rates(drivers)
     }
 }
 

@@ -1,7 +1,6 @@
 //! The bias follows the supply voltage.
 
-use crate::effect::shared::reach::{reach, varies};
-use crate::effect::{Domain, Drivers, MeanModel, Param, Place};
+use crate::effect::{Drivers, MeanModel, Param};
 
 pub struct SupplySensitivity;
 
@@ -14,20 +13,11 @@ describe! {
 }
 
 impl MeanModel for SupplySensitivity {
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.supply.as_deref())
-    }
-
     /// Voltage about its mean.
     fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
         let supply = drivers.supply.as_ref()?;
         let mean = supply.iter().sum::<f64>() / supply.len().max(1) as f64;
         Some(supply.iter().map(|u| u - mean).collect())
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let supply = drivers.supply.as_deref().unwrap_or(&[]);
-        reach(Domain::Supply, supply, supply)
     }
 }
 

@@ -1,14 +1,11 @@
 //! A contribution that is periodic in the table angle.
 
 use crate::effect::mean::first;
-use crate::effect::shared::reach::varies;
 use crate::effect::shared::search::best_of;
 use crate::effect::shared::sinusoid::{polar, wave};
-use crate::effect::shared::table_angle::{columns, visited};
+use crate::effect::shared::table_angle::columns;
 use crate::effect::sizing::numbers;
-use crate::effect::{
-    Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
-};
+use crate::effect::{Drivers, MeanModel, Param, Regressors, SearchContext, Sizing, Starts, Values, number};
 use crate::numeric::range::Bounds;
 
 pub struct TableHarmonic;
@@ -25,10 +22,6 @@ describe! {
 }
 
 impl MeanModel for TableHarmonic {
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.table_angle.as_deref())
-    }
-
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let orders = (1..=8).map(|k| vec![f64::from(k)]);
         Starts { points: best_of(self, orders, 3, drivers, context), trials: 8.0 }
@@ -59,10 +52,6 @@ impl MeanModel for TableHarmonic {
         let (order, amplitude) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
         let phase = number(values, PARAMS[2].name).unwrap_or(0.0);
         Some(wave(amplitude, phase, &columns(order, drivers)))
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        visited(drivers)
     }
 
     fn whole(&self) -> &'static [usize] {

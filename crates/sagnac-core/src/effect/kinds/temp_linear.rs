@@ -1,6 +1,5 @@
 //! A linear temperature coefficient that differs from the claimed one.
 
-use crate::effect::shared::reach::varies;
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{Domain, Drivers, MeanModel, Nuisance, Param, Place};
 use crate::numeric::range::{Bounds, ends};
@@ -32,10 +31,6 @@ pub(super) fn reference(drivers: &Drivers) -> f64 {
 impl MeanModel for TempLinear {
     fn replaces(&self) -> Option<Nuisance> {
         Some(Nuisance::TemperatureCoefficient)
-    }
-
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.temperature.as_deref())
     }
 
     fn claimed_coefficient(&self, drivers: &Drivers) -> f64 {

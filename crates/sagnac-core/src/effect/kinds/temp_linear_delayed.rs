@@ -3,9 +3,7 @@
 
 use super::temp_linear::{LINEAR_COEFFICIENT, claimed, reference};
 use crate::effect::shared::behind_delay::{self, late};
-use crate::effect::shared::reach::{reach, varies};
-use crate::effect::shared::thermal::smooth;
-use crate::effect::{Domain, Drivers, MeanModel, Param, Place, SearchContext, Starts};
+use crate::effect::{Drivers, MeanModel, Param, SearchContext, Starts};
 use crate::numeric::range::Bounds;
 
 pub struct TempLinearDelayed;
@@ -26,10 +24,6 @@ fn temperature(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
 }
 
 impl MeanModel for TempLinearDelayed {
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.temperature.as_deref())
-    }
-
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         behind_delay::starts(self, drivers, context)
     }
@@ -48,11 +42,6 @@ impl MeanModel for TempLinearDelayed {
 
     fn initial_state(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<Vec<f64>> {
         behind_delay::initial_state(nonlinear_parameters, drivers)
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let t = smooth(drivers).unwrap_or_default();
-        reach(Domain::Temperature, t, t)
     }
 }
 

@@ -1,7 +1,7 @@
 //! Static nonlinear dependence of the bias on temperature.
 
 use crate::effect::shared::polynomial::{Scale, powers, sum};
-use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::reach::reach;
 use crate::effect::shared::response::{self, COEFFICIENTS_LIST};
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::thermal::smooth;
@@ -39,10 +39,6 @@ fn order(nonlinear_parameters: &[f64]) -> usize {
 impl MeanModel for TempPolynomial {
     fn replaces(&self) -> Option<Nuisance> {
         Some(Nuisance::TemperatureCoefficient)
-    }
-
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.temperature.as_deref())
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {

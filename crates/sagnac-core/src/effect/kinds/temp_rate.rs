@@ -1,8 +1,8 @@
 //! Bias proportional to the rate of change of temperature.
 
-use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::reach::varies;
 use crate::effect::shared::thermal::rate;
-use crate::effect::{Domain, Drivers, MeanModel, Param, Place};
+use crate::effect::{Drivers, MeanModel, Param};
 
 pub struct TempRate;
 
@@ -25,9 +25,5 @@ impl MeanModel for TempRate {
 
     fn column(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
         rate(drivers)
-    }
-
-    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        rate(drivers).map_or_else(Vec::new, |r| reach(Domain::TemperatureRate, &r, &r))
     }
 }

@@ -3,7 +3,7 @@
 
 use super::temp_rate::RATE_COEFFICIENT;
 use crate::effect::shared::behind_delay::{self, late};
-use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::reach::reach;
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{Domain, Drivers, MeanModel, Param, Place, SearchContext, Starts};
 use crate::numeric::range::Bounds;
@@ -26,10 +26,6 @@ fn rate(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
 }
 
 impl MeanModel for TempRateDelayed {
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.temperature.as_deref())
-    }
-
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         behind_delay::starts(self, drivers, context)
     }

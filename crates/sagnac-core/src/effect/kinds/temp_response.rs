@@ -6,7 +6,7 @@ use super::{
     TempRateDelayed, ThermalLag,
 };
 use crate::effect::shared::polynomial::sum;
-use crate::effect::shared::reach::{reach, varies};
+use crate::effect::shared::reach::reach;
 use crate::effect::shared::response::{
     self, CENTER_NAME, COEFFICIENTS_LIST, HALF_RANGE, SCALES_LIST, TERMS_LIST,
 };
@@ -52,10 +52,6 @@ fn mask(nonlinear_parameters: &[f64]) -> u32 {
 }
 
 impl MeanModel for TempResponse {
-    fn applies(&self, drivers: &Drivers) -> bool {
-        varies(drivers.temperature.as_deref())
-    }
-
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
         let found = smooth(drivers).and_then(|t| response::search(t, drivers, context));
         let trials = found.as_ref().map_or(1.0, |f| f.trials);

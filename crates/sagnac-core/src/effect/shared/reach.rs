@@ -1,5 +1,7 @@
 //! Values of a column at which an effect acts, and columns that vary.
 
+use super::table_angle::visited;
+use super::thermal::{rate, smooth};
 use crate::effect::{Domain, Drivers, Place};
 use crate::numeric::range::{Bounds, ends};
 
@@ -13,6 +15,21 @@ pub(in crate::effect) fn reach(domain: Domain, column: &[f64], contribution: &[f
     let acts = column.iter().zip(contribution).filter(|(_, c)| (**c - mean).abs() >= 0.5 * largest);
     let (from, to) = acts.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), (x, _)| (a.min(*x), b.max(*x)));
     if from <= to { vec![Place { domain, from, to }] } else { vec![] }
+}
+
+/// Intervals in which the quantity of a domain is far from its mean, or acts at all: where an effect shows that follows it.
+pub(in crate::effect) fn places_of(domain: Domain, drivers: &Drivers) -> Vec<Place> {
+    let of_values = |values: Option<&[f64]>| values.map_or_else(Vec::new, |v| reach(domain, v, v));
+    match domain {
+        Domain::Time => record(drivers),
+        Domain::Angle => visited(drivers),
+        Domain::InputRate => large_rates(drivers),
+        Domain::OuterRate => of_values(drivers.outer_rate.as_deref()),
+        Domain::Supply => of_values(drivers.supply.as_deref()),
+        Domain::Temperature => of_values(smooth(drivers)),
+        Domain::TemperatureRate => of_values(rate(drivers).as_deref()),
+        Domain::Frequency | Domain::Lag | Domain::Amplitude | Domain::Timestamps | Domain::Driver => vec![],
+    }
 }
 
 /// Largest size of the rate of the table, deg/s; 0 without a table.
