@@ -1,13 +1,12 @@
 //! A periodic disturbance with harmonics, of one cause; or one that repeats with the phase of a recorded ramp.
 
 use crate::effect::mean::first;
-use crate::effect::shared::periodogram::LineGains;
 use crate::effect::shared::phase::Phase;
 use crate::effect::shared::polynomial::{Scale, sum};
 use crate::effect::shared::reach::varies;
 use crate::effect::shared::response::{CENTER_NAME, COEFFICIENTS_LIST, HALF_RANGE};
 use crate::effect::shared::search::gain_of;
-use crate::effect::shared::sinusoid;
+use crate::effect::shared::sinusoid::{self, LineGains};
 use crate::effect::{
     COLUMN_TEXT, Column, Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values,
     list, number, text,

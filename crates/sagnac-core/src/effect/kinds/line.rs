@@ -1,9 +1,8 @@
 //! A coherent sinusoid.
 
 use crate::effect::mean::first;
-use crate::effect::shared::periodogram::LineGains;
 use crate::effect::shared::search::{log_grid, peaks};
-use crate::effect::shared::sinusoid::{averaged, columns, polar, wave};
+use crate::effect::shared::sinusoid::{LineGains, averaged, columns, polar, wave};
 use crate::effect::sizing::numbers;
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, StatedLine, Values,

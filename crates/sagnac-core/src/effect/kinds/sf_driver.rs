@@ -1,8 +1,8 @@
 //! A scale factor that follows a recorded column other than temperature.
 
+use super::sf_temperature::{self, is_moving};
 use crate::effect::mean::first;
 use crate::effect::shared::reach::{large_rates, reach, varies};
-use crate::effect::shared::scale_factor;
 use crate::effect::sizing::numbers;
 use crate::effect::{
     COLUMN_TEXT, Column, Drivers, MeanModel, Param, Place, SearchContext, Sizing, Starts, Value, Values,
@@ -42,12 +42,12 @@ fn mean(values: &[f64]) -> f64 {
 
 /// The product that a column makes with the rate, deg/h for 1 ppm a unit.
 fn product(column: Column, reference: f64, drivers: &Drivers) -> Option<Vec<f64>> {
-    scale_factor::product(drivers.column(column)?, reference, drivers)
+    sf_temperature::product(drivers.column(column)?, reference, drivers)
 }
 
 impl MeanModel for SfDriver {
     fn applies(&self, drivers: &Drivers) -> bool {
-        scale_factor::is_moving(drivers) && !columns(drivers).is_empty()
+        is_moving(drivers) && !columns(drivers).is_empty()
     }
 
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {

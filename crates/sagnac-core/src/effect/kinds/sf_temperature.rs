@@ -2,7 +2,6 @@
 
 use super::temp_linear::reference;
 use crate::effect::shared::reach::{large_rates, reach, varies};
-use crate::effect::shared::scale_factor::{is_moving, product};
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{Domain, Drivers, MeanModel, Param, Place};
 
@@ -14,6 +13,17 @@ describe! {
     SfTemperature, "sf_temperature", Mean in Temperature, needs [TableRate, Temperature],
     confusers [SfError, TempLinear, SfNonlinearity],
     properties [carried_over]
+}
+
+/// True where the table moves.
+pub(super) fn is_moving(drivers: &Drivers) -> bool {
+    drivers.table_rate.iter().flatten().any(|r| *r != 0.0)
+}
+
+/// Rate of the table times the departure of a column from a reference, deg/h for 1 ppm a unit of the column.
+pub(super) fn product(values: &[f64], reference: f64, drivers: &Drivers) -> Option<Vec<f64>> {
+    let rate = drivers.table_rate.as_ref()?;
+    Some(rate.iter().zip(values).map(|(r, v)| 3600e-6 * r * (v - reference)).collect())
 }
 
 impl MeanModel for SfTemperature {

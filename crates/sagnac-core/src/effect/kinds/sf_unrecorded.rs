@@ -1,9 +1,9 @@
 //! A scale factor that follows a quantity which was not recorded: it changes smoothly over the record. It is reported as a scale
 //! factor that follows a driver, without a column.
 
+use super::sf_temperature::is_moving;
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{large_rates, record};
-use crate::effect::shared::scale_factor::is_moving;
 use crate::effect::shared::search::gain_of;
 use crate::effect::{
     Drivers, MeanModel, Param, Place, Regressors, SearchContext, Starts, Values, list, number,

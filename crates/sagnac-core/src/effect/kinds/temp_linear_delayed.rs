@@ -2,7 +2,7 @@
 //! which the thermometer on the housing is ahead. It is reported as a linear coefficient that differs.
 
 use super::temp_linear::{LINEAR_COEFFICIENT, claimed, reference};
-use crate::effect::shared::behind_delay::{self, late};
+use crate::effect::shared::first_order::{self, late};
 use crate::effect::{Drivers, MeanModel, Param, SearchContext, Starts};
 use crate::numeric::range::Bounds;
 
@@ -25,11 +25,11 @@ fn temperature(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
 
 impl MeanModel for TempLinearDelayed {
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        behind_delay::starts(self, drivers, context)
+        first_order::starts(self, drivers, context)
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
-        behind_delay::bounds(drivers)
+        first_order::bounds(drivers)
     }
 
     fn claimed_coefficient(&self, drivers: &Drivers) -> f64 {
@@ -41,7 +41,7 @@ impl MeanModel for TempLinearDelayed {
     }
 
     fn initial_state(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<Vec<f64>> {
-        behind_delay::initial_state(nonlinear_parameters, drivers)
+        first_order::initial_state(nonlinear_parameters, drivers)
     }
 }
 

@@ -2,7 +2,7 @@
 //! housing is ahead. It is reported as bias proportional to the rate of change of temperature.
 
 use super::temp_rate::RATE_COEFFICIENT;
-use crate::effect::shared::behind_delay::{self, late};
+use crate::effect::shared::first_order::{self, late};
 use crate::effect::shared::reach::reach;
 use crate::effect::shared::thermal::smooth;
 use crate::effect::{Domain, Drivers, MeanModel, Param, Place, SearchContext, Starts};
@@ -27,11 +27,11 @@ fn rate(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
 
 impl MeanModel for TempRateDelayed {
     fn starts(&self, drivers: &Drivers, context: &SearchContext<'_>) -> Starts {
-        behind_delay::starts(self, drivers, context)
+        first_order::starts(self, drivers, context)
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
-        behind_delay::bounds(drivers)
+        first_order::bounds(drivers)
     }
 
     fn column(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
@@ -39,7 +39,7 @@ impl MeanModel for TempRateDelayed {
     }
 
     fn initial_state(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<Vec<f64>> {
-        behind_delay::initial_state(nonlinear_parameters, drivers)
+        first_order::initial_state(nonlinear_parameters, drivers)
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

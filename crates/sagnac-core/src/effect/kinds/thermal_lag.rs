@@ -1,10 +1,10 @@
 //! The claimed temperature dependence acts through a delayed temperature.
 
 use crate::effect::mean::first;
-use crate::effect::shared::behind_delay::initial_state;
+use crate::effect::shared::first_order::{delayed, initial_state};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::search::{best_of, log_grid};
-use crate::effect::shared::thermal::{delayed, rate, smooth};
+use crate::effect::shared::thermal::{rate, smooth};
 use crate::effect::{
     Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
 };

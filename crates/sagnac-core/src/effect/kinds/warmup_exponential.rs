@@ -1,6 +1,6 @@
 //! A transient that decays from the beginning of the record.
 
-use crate::effect::shared::decay::decay;
+use crate::effect::shared::first_order::decay;
 use crate::effect::shared::reach::beginning_s;
 use crate::effect::shared::search::{best_of, log_grid};
 use crate::effect::sizing::numbers;

@@ -4,12 +4,12 @@
 //! under the noise at hand. A law that columns shifted in time reach as well is chance.
 
 use super::chance::{is_chance, moved, orthonormal};
-use super::decay::decay;
+use super::first_order::{decay, delayed};
 use super::polynomial::Scale;
 use super::pursuit::{Pursuit, choices, matching_pursuit, remove, unit};
 use super::reach::varies;
 use super::response::rate_per_hour;
-use super::thermal::{self, delayed};
+use super::thermal;
 use crate::effect::{Column, Drivers, SearchContext};
 use crate::numeric::cosine::dct2;
 use crate::numeric::parallel;

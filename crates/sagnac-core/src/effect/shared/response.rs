@@ -5,10 +5,9 @@
 //! The terms are chosen one by one by what they gain under the noise at hand, each for a price, so that a response of one law
 //! stays as cheap as that law.
 
-use super::decay::decay;
+use super::first_order::{decay, delayed};
 use super::polynomial::Scale;
 use super::pursuit::{choices, matching_pursuit, remove, unit};
-use super::thermal::delayed;
 use crate::effect::{Drivers, Regressors, SearchContext, Unmodelled, Values, list, number};
 use crate::numeric::cosine::dct2;
 use crate::numeric::special;

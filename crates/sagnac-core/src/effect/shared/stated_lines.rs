@@ -1,8 +1,7 @@
 //! Lines that a claim states, seen with a clock that runs at another rate.
 
-use super::periodogram::LineGains;
 use super::search::peaks;
-use super::sinusoid::{columns, polar, wave};
+use super::sinusoid::{LineGains, columns, polar, wave};
 use crate::effect::{Domain, Drivers, Place, SearchContext, StatedLine};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::order::SortByNumber;
