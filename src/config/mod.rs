@@ -26,6 +26,7 @@ pub mod sheet;
 pub mod shipped;
 pub mod spec;
 mod syntax;
+pub(crate) mod table;
 pub(crate) mod text_file;
 mod texts;
 pub mod user;

@@ -183,11 +183,8 @@ impl Reader<'_> {
                     };
                     self.error(&section.span.clone(), message, Some(help));
                 }
-                Need::Default(text) => {
-                    let Ok(value) = DeValue::parse(text) else { continue };
-                    if let Some(entry) =
-                        self.value(Value { key, toml: value.get_ref(), span: &section.span }, &section.span)
-                    {
+                Need::Default(_) => {
+                    if let Some(entry) = entry_of_default(key) {
                         section.entries.insert(key.name, (entry, section.span.clone()));
                     }
                 }
@@ -309,6 +306,23 @@ impl Reader<'_> {
         }
         found
     }
+}
+
+/// The value that a key has where it is left out; `None` where it has none.
+pub(crate) fn entry_of_default(key: &'static KeySpec) -> Option<Entry> {
+    match key.need {
+        Need::Default(text) => entry_of_literal(key, text),
+        _ => None,
+    }
+}
+
+/// The value of a key that is written so.
+pub(crate) fn entry_of_literal(key: &'static KeySpec, literal: &str) -> Option<Entry> {
+    static NO_FILE: TableSpec = TableSpec { name: "", doc: "", keys: &[] };
+    let source = SourceText::new("", literal.to_owned());
+    let mut reader = Reader { source: &source, root: &NO_FILE, problems: Problems::default() };
+    let value = DeValue::parse(literal).ok()?;
+    reader.value(Value { key, toml: value.get_ref(), span: &(0..literal.len()) }, &(0..0))
 }
 
 /// The unit a dependent quantity is converted to; `None` when the key it depends on is unusable.

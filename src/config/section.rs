@@ -96,7 +96,7 @@ impl std::fmt::Display for Allowance {
 }
 
 /// A table that was read: the values that are sound.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Section {
     /// Where the table begins.
     pub span: Span,

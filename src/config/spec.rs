@@ -6,7 +6,7 @@
 use crate::i18n::Note;
 
 /// A table and its keys.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub struct TableSpec {
     /// Path of the table as it is written, for example `conditions.temperature`.
     pub name: &'static str,
@@ -17,7 +17,7 @@ pub struct TableSpec {
 }
 
 /// One key.
-#[derive(Debug)]
+#[derive(Debug, Clone, Copy)]
 pub struct KeySpec {
     /// Name.
     pub name: &'static str,
