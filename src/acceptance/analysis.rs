@@ -3,7 +3,9 @@
 use super::column_choice::{ColumnChoice, about};
 use super::request::Request;
 use crate::config::procedure::EffectiveLimits;
-use crate::config::procedure::model::{ChannelSpec, Conditions, EarthRate, MeasurandSpec, Procedure};
+use crate::config::procedure::model::{
+    ChannelSpec, Conditions, EarthRate, MeasurandSpec, Procedure, UnitSpec,
+};
 use crate::i18n::Note;
 use crate::ingest::Source;
 use crate::measurand::{MEASURANDS, Test};
@@ -89,6 +91,7 @@ pub fn procedure(channels: Vec<Channel>, sample_rate_hz: Option<f64>, warm_up_s:
             })
             .collect(),
         conditions: Conditions { warm_up_s, ..Conditions::default() },
+        unit_under_test: UnitSpec { serial_required: false, ..UnitSpec::default() },
         measurands: MEASURANDS
             .iter()
             .filter(|m| m.test() == Test::Static && !m.from_site)

@@ -18,7 +18,6 @@ pub mod quantity;
 pub(crate) mod read_tables;
 pub(crate) mod reader;
 pub mod recording_keys;
-pub(crate) mod recording_options;
 pub(crate) mod role_words;
 pub mod schedule;
 pub(crate) mod section;

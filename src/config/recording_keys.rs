@@ -1,60 +1,81 @@
 //! The keys by which procedures and manifests say how a recording is to be read, and the words of their values, which
 //! the options of the command line share.
 
-use crate::config::spec::{KeySpec, Kind, Range, Word, optional};
-use sagnac_ingest::Encoding;
+use crate::config::reader::{Reader, shorten};
+use crate::config::section::Section;
+use crate::config::spec::Word;
+use crate::config::table::Table;
+use crate::i18n::Note;
+use sagnac_ingest::{Encoding, FORMATS, ReadOptions, TextOptions};
 
-pub(crate) const FORMAT: KeySpec =
-    optional("format", Kind::Text, "\"csv\"", "Id of the file format; detected if omitted.");
+/// How a recording is to be read.
+#[derive(Table)]
+pub(crate) struct RecordingKeys {
+    /// Id of the file format; detected if omitted.
+    #[key(example = "csv")]
+    format: Option<String>,
+    /// Character encoding of a text file; detected if omitted.
+    #[key(choice = ENCODINGS, example = "windows-1251")]
+    encoding: Option<&'static str>,
+    /// Field delimiter of a text file; detected if omitted.
+    #[key(choice = DELIMITERS, example = "semicolon")]
+    delimiter: Option<&'static str>,
+    /// Decimal mark of a text file; detected if omitted.
+    #[key(choice = DECIMALS, example = "comma")]
+    decimal: Option<&'static str>,
+    /// Line with the column names of a text file, counted from 1; 0: none; detected if omitted.
+    #[key(min = 0, max = 1e6, example = 4)]
+    header_line: Option<f64>,
+    /// First data line of a text file, counted from 1; detected if omitted.
+    #[key(min = 1, max = 1e6, example = 6)]
+    first_line: Option<f64>,
+    /// Start of comment lines of a text file. Default: `#`, `%`, `//`, and `;` where it is not the delimiter.
+    #[key(example = "#")]
+    comment: Option<String>,
+    /// Part of a container that holds the recording: a dataset, a variable, a topic.
+    #[key(example = "/imu/gyro")]
+    part: Option<String>,
+}
 
-pub(crate) const ENCODING: KeySpec = optional(
-    "encoding",
-    Kind::Choice(ENCODINGS),
-    "\"windows-1251\"",
-    "Character encoding of a text file; detected if omitted.",
-);
-
-pub(crate) const DELIMITER: KeySpec = optional(
-    "delimiter",
-    Kind::Choice(DELIMITERS),
-    "\"semicolon\"",
-    "Field delimiter of a text file; detected if omitted.",
-);
-
-pub(crate) const DECIMAL: KeySpec = optional(
-    "decimal",
-    Kind::Choice(DECIMALS),
-    "\"comma\"",
-    "Decimal mark of a text file; detected if omitted.",
-);
-
-pub(crate) const HEADER_LINE: KeySpec = optional(
-    "header_line",
-    Kind::Number(Range::between(0.0, 1e6)),
-    "4",
-    "Line with the column names of a text file, counted from 1; 0: none; detected if omitted.",
-);
-
-pub(crate) const FIRST_LINE: KeySpec = optional(
-    "first_line",
-    Kind::Number(Range::between(1.0, 1e6)),
-    "6",
-    "First data line of a text file, counted from 1; detected if omitted.",
-);
-
-pub(crate) const COMMENT: KeySpec = optional(
-    "comment",
-    Kind::Text,
-    "\"#\"",
-    "Start of comment lines of a text file. Default: `#`, `%`, `//`, and `;` where it is not the delimiter.",
-);
-
-pub(crate) const PART: KeySpec = optional(
-    "part",
-    Kind::Text,
-    "\"/imu/gyro\"",
-    "Part of a container that holds the recording: a dataset, a variable, a topic.",
-);
+impl RecordingKeys {
+    /// What the keys decide, with the problems of their table. The layout is left to the caller: each kind of file has its
+    /// own rule where it may stand.
+    pub(crate) fn options(self, section: &Section, reader: &mut Reader<'_>) -> ReadOptions {
+        if let Some(unknown) = self.format.as_deref().filter(|id| !FORMATS.iter().any(|f| f.id() == *id)) {
+            let ids: Vec<&str> = FORMATS.iter().map(|f| f.id()).collect();
+            let at = reader.source.inside_quotes(&section.span_of("format"));
+            let message = Note::new("reading.no_format").with("format", shorten(unknown));
+            reader.error(&at, message, Some(Note::new("reading.formats").with("formats", ids.join(", "))));
+        }
+        let mut line = |number: Option<f64>, key: &str| {
+            if number?.fract() == 0.0 {
+                return number.map(|line| line as u64);
+            }
+            reader.error(&section.span_of(key), Note::new("reading.whole").with("key", key), None);
+            None
+        };
+        let header_line = line(self.header_line, "header_line");
+        let first_line = line(self.first_line, "first_line");
+        if let Some((header, first)) = header_line.zip(first_line).filter(|(header, first)| header >= first) {
+            let message = Note::new("reading.lines").with("first", first).with("header", header);
+            reader.error(&section.span_of("first_line"), message, Some("reading.below".into()));
+        }
+        let text = TextOptions {
+            encoding: self.encoding.and_then(encoding),
+            delimiter: self.delimiter.and_then(delimiter),
+            decimal: self.decimal.and_then(decimal),
+            header_line,
+            first_line,
+            comment: self.comment,
+            stamps: Vec::new(),
+        };
+        if text.delimiter == Some(b',') && text.decimal == Some(b',') {
+            let help = Some("reading.comma_quotes".into());
+            reader.error(&section.span_of("decimal"), "reading.comma_twice", help);
+        }
+        ReadOptions { format: self.format, text, part: self.part, layout: None }
+    }
+}
 
 /// Character encodings of text files.
 pub const ENCODINGS: &[Word] = &[

@@ -176,23 +176,9 @@ impl Section {
         }
     }
 
-    pub fn date(&self, key: &str) -> Option<NaiveDate> {
-        match self.entry(key) {
-            Some(Entry::Date(date)) => Some(*date),
-            _ => None,
-        }
-    }
-
     pub fn measurand(&self, key: &str) -> Option<&'static Measurand> {
         match self.entry(key) {
             Some(Entry::Measurand(id)) => Some(id),
-            _ => None,
-        }
-    }
-
-    pub fn allowance(&self, key: &str) -> Option<Allowance> {
-        match self.entry(key) {
-            Some(Entry::Allowance(allowance)) => Some(*allowance),
             _ => None,
         }
     }
@@ -211,5 +197,17 @@ impl Section {
             Some(Entry::Table(section)) => std::slice::from_ref(section),
             _ => &[],
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_counts_samples_and_a_count_does_not() {
+        assert!(Allowance::Share(0.001).allows(36, 36_000) && !Allowance::Share(0.001).allows(37, 36_000));
+        assert!(Allowance::Count(0).allows(0, 5) && !Allowance::Count(0).allows(1, 36_000_000));
+        assert_eq!(Allowance::Share(0.001).to_string(), "0.1 %");
     }
 }

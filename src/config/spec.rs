@@ -285,11 +285,6 @@ pub(crate) const fn quantity(unit: &'static str, range: Range) -> Kind {
     Kind::Quantity { unit, difference: false, range }
 }
 
-/// A difference or an uncertainty in a unit.
-pub(crate) const fn difference(unit: &'static str, range: Range) -> Kind {
-    Kind::Quantity { unit, difference: true, range }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,12 +4,12 @@
 
 pub mod tables;
 
-use super::recording_options;
 use crate::config::contained_files::{self, ContainedFile};
 use crate::config::diagnostics::{Problems, Span};
 use crate::config::read_tables::checked;
 use crate::config::reader::Reader;
 use crate::config::section::Section;
+use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
 use crate::i18n::Note;
 use crate::record::UnitUnderTest;
@@ -19,7 +19,7 @@ use sagnac_ingest::pattern::natural;
 use sagnac_ingest::{ReadOptions, TextOptions, byte_stream, pattern};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use tables::MANIFEST_FILE;
+use tables::{FileKeys, MANIFEST_FILE, ManifestTables, ReadingKeys, UnitKeys};
 
 /// What is said of a manifest that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
@@ -111,28 +111,31 @@ pub fn load(path: &Path) -> Result<Manifest, Problems> {
 /// # Errors
 /// As [`load`].
 pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Manifest, Problems> {
-    let (manifest, problems) =
-        checked(&text_file::source(name, bytes)?, &MANIFEST_FILE, |root, reader| Manifest {
+    let (manifest, problems) = checked(&text_file::source(name, bytes)?, &MANIFEST_FILE, |root, reader| {
+        let mut tables = ManifestTables::read(root);
+        Manifest {
             path: path.to_owned(),
-            serial: root.text("serial"),
-            unit: root.table("unit").map(unit).unwrap_or_default(),
-            contiguous: root.flag("contiguous"),
-            options: root.table("recording").map(|r| options(r, folder, reader)).unwrap_or_default(),
-            files: files(root, folder, reader),
-        });
+            serial: tables.serial.take(),
+            unit: std::mem::take(&mut tables.unit).into(),
+            contiguous: tables.contiguous,
+            options: options(std::mem::take(&mut tables.recording), folder, reader),
+            files: files(tables, folder, reader),
+        }
+    });
     manifest.ok_or(problems)
 }
 
-/// What a manifest says of its unit, but for the serial number.
-fn unit(section: &Section) -> UnitUnderTest {
-    let attribute = |s: &Section| Some((s.text("name")?, s.text("value")?));
-    UnitUnderTest {
-        model: section.text("model"),
-        lot: section.text("lot"),
-        build_date: section.date("build_date").map(|d| d.to_string()),
-        reference: section.flag("reference"),
-        attributes: section.tables("attribute").iter().filter_map(attribute).collect(),
-        ..UnitUnderTest::default()
+impl From<UnitKeys> for UnitUnderTest {
+    /// The unit without its serial number.
+    fn from(keys: UnitKeys) -> UnitUnderTest {
+        UnitUnderTest {
+            model: keys.model,
+            lot: keys.lot,
+            build_date: keys.build_date.map(|d| d.to_string()),
+            reference: keys.reference,
+            attributes: keys.attributes.into_iter().map(|a| (a.name, a.value)).collect(),
+            ..UnitUnderTest::default()
+        }
     }
 }
 
@@ -140,9 +143,9 @@ fn complain(reader: &mut Reader<'_>, span: &Span, note: Note, help: Option<&'sta
     reader.error(span, note, help.map(Note::new));
 }
 
-fn files(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
-    let (pattern, listed) = (root.text("files"), root.tables("file"));
-    match (pattern, root.entry("file").is_some()) {
+fn files(tables: ManifestTables, folder: &Path, reader: &mut Reader<'_>) -> Vec<ManifestFile> {
+    let root = &tables.section;
+    match (&tables.files, root.entry("file").is_some()) {
         (Some(_), true) => {
             let at = root.span_of("files");
             complain(reader, &at, Note::new("manifest.both"), Some("manifest.help.both"));
@@ -160,13 +163,13 @@ fn files(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Vec<Manifest
             }
             vec![]
         }
-        (Some(pattern), false) => by_pattern(&pattern, &root.span_of("files"), folder, reader),
-        (None, true) => by_list(listed, root.flag("several_phases"), folder, reader),
+        (Some(pattern), false) => by_pattern(pattern, &root.span_of("files"), folder, reader),
+        (None, true) => by_list(tables.listed, tables.several_phases, folder, reader),
     }
 }
 
 fn by_list(
-    listed: &[Section],
+    listed: Vec<FileKeys>,
     several_phases: bool,
     folder: &Path,
     reader: &mut Reader<'_>,
@@ -175,11 +178,11 @@ fn by_list(
     let mut real: BTreeMap<PathBuf, usize> = BTreeMap::new();
     let most = sagnac_ingest::multi_file::MAX_FILES;
     if let Some(beyond) = listed.get(most) {
-        complain(reader, &beyond.span, Note::new("manifest.too_many").with("most", most), None);
+        complain(reader, &beyond.section.span, Note::new("manifest.too_many").with("most", most), None);
         return found;
     }
-    for section in listed {
-        let Some(text) = section.text("path") else { continue };
+    for FileKeys { path, sha256, phase, section } in listed {
+        let Some(text) = path else { continue };
         let at = reader.source.inside_quotes(&section.span_of("path"));
         let Some(ContainedFile { path, canonical }) = contained_files::file(&text, folder, &at, reader)
         else {
@@ -191,8 +194,7 @@ fn by_list(
             continue;
         }
         real.insert(canonical, reader.source.error(&at, "").line);
-        let sha256 = section.text("sha256").filter(|stated| hash_holds(stated, &path, section, reader));
-        let phase = section.text("phase");
+        let sha256 = sha256.filter(|stated| hash_holds(stated, &path, &section, reader));
         if let Some(other) = found.last().filter(|f| f.phase != phase && !several_phases) {
             let span = if phase.is_some() { section.span_of("phase") } else { section.span.clone() };
             let word = |p: &Option<String>| p.clone().unwrap_or_else(|| "-".to_owned());
@@ -259,10 +261,10 @@ fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>
     found
 }
 
-fn options(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ReadOptions {
-    let layout = section.text("layout").and_then(|text| {
-        let at = reader.source.inside_quotes(&section.span_of("layout"));
+fn options(keys: ReadingKeys, folder: &Path, reader: &mut Reader<'_>) -> ReadOptions {
+    let layout = keys.layout.and_then(|text| {
+        let at = reader.source.inside_quotes(&keys.section.span_of("layout"));
         contained_files::file(&text, folder, &at, reader).map(|f| LayoutFile::at(f.path))
     });
-    ReadOptions { layout, ..recording_options::read(section, reader) }
+    ReadOptions { layout, ..keys.reading.options(&keys.section, reader) }
 }

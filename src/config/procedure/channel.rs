@@ -3,7 +3,8 @@
 use super::quantity;
 use super::reader::Reader;
 use super::recording_options;
-use super::section::{Entry, Section};
+use super::section::Section;
+use super::tables::ChannelKeys;
 use crate::i18n::Note;
 use crate::recording::{Channel, Role};
 use crate::units::Unit;
@@ -12,21 +13,18 @@ use crate::units::Unit;
 ///
 /// Counts become a physical unit here: `unit = "count"` with `scale = "0.01 arcsec/count"` is a channel in arcsec
 /// with a factor of 0.01.
-pub(crate) fn read(section: &Section, reader: &mut Reader<'_>) -> Option<(Channel, String)> {
-    let id = section.text("id")?;
-    let column = match section.entry("column") {
-        Some(Entry::Column(column)) => recording_options::column(section, column.clone()),
-        _ => return None,
-    };
-    let role = Role::ALL.iter().copied().find(|r| Some(r.id()) == section.word("role"))?;
-    let Some(Entry::Unit(unit)) = section.entry("unit") else { return None };
+pub(crate) fn read(keys: &ChannelKeys, reader: &mut Reader<'_>) -> Option<(Channel, String)> {
+    let section = &keys.section;
+    let id = keys.id.clone()?;
+    let column = recording_options::column(keys)?;
+    let (role, unit) = (keys.role?, keys.unit.as_ref()?);
     let in_file = unit.text().to_owned();
-    let (unit, size) = match section.text("scale") {
-        Some(scale) => scaled(&scale, unit, role, section, reader)?,
+    let (unit, size) = match &keys.scale {
+        Some(scale) => scaled(scale, unit, role, section, reader)?,
         None => (unit.clone(), 1.0),
     };
     suits(&unit, &in_file, role, section, reader)?;
-    let scale = if section.flag("reversed") { -size } else { size };
+    let scale = if keys.reversed { -size } else { size };
     if role == Role::Time && scale < 0.0 {
         reader.error(&section.span_of("reversed"), "check.time_backwards", None);
         return None;
@@ -70,9 +68,9 @@ fn scaled(
 }
 
 /// The period after which a channel starts again: s of stamps, counts of a counter, arcsec of an accumulated angle.
-pub(super) fn rollover(section: &Section, role: Role, reader: &mut Reader<'_>) -> Option<f64> {
-    let text = section.text("rollover")?;
-    let at = section.span_of("rollover");
+pub(super) fn rollover(keys: &ChannelKeys, role: Role, reader: &mut Reader<'_>) -> Option<f64> {
+    let text = keys.rollover.as_ref()?;
+    let at = keys.section.span_of("rollover");
     let unit = match role {
         Role::Time => "s",
         Role::Counter => "count",
@@ -89,7 +87,7 @@ pub(super) fn rollover(section: &Section, role: Role, reader: &mut Reader<'_>) -
         _ => "rollover = \"86400 s\"",
     };
     let example = || Note::new("keyed.help.example").with("example", example);
-    match quantity::parse(&text, unit, true, false) {
+    match quantity::parse(text, unit, true, false) {
         Ok(period) if period > 0.0 => Some(period),
         Ok(_) => {
             reader.error(&at, "time_base.rollover_positive", Some(example()));

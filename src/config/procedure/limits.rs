@@ -6,8 +6,9 @@ use super::model::{Loaded, Procedure};
 use super::quantity::AS_RECORDED;
 use super::reader::Reader;
 use super::scale_factor_unit;
-use super::section::{Entry, Section};
+use super::section::Section;
 use super::slips;
+use super::tables::limits::{LimitKeys, ReferenceKeys, TypicalValues};
 use crate::estimate::{Limit, Rule};
 use crate::i18n::Note;
 use crate::measurand::Measurand;
@@ -148,39 +149,38 @@ fn not_measured(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Vec<Problem
     warnings
 }
 
-/// Reads limits, references and typical values from the root of a file.
-pub(super) fn read_set(root: &Section, general_factor: Option<f64>, reader: &mut Reader<'_>) -> LimitSet {
+/// Limits, references and typical values of a file, checked.
+pub(super) fn read_set(
+    limits: Vec<LimitKeys>,
+    references: Vec<ReferenceKeys>,
+    typical: TypicalValues,
+    general_factor: Option<f64>,
+    reader: &mut Reader<'_>,
+) -> LimitSet {
     let mut set = LimitSet::default();
-    for section in root.tables("reference") {
-        let (Some(measurand), Some(value)) = (section.measurand("measurand"), section.number("value")) else {
-            continue;
-        };
+    for keys in references {
+        let (Some(measurand), Some(value)) = (keys.measurand, keys.value) else { continue };
         if value < 0.0 && !measurand.signed {
-            reader.error(&section.span_of("value"), about("check.never_negative", measurand), None);
+            reader.error(&keys.section.span_of("value"), about("check.never_negative", measurand), None);
         }
         set.references.push(Reference {
             measurand,
-            channel: section.text("channel"),
-            record: ReferenceRecord {
-                value,
-                source: section.local_text("source").unwrap_or_default(),
-                note: section.local_text("note"),
-            },
-            span: section.span.clone(),
+            channel: keys.channel,
+            record: ReferenceRecord { value, source: keys.source, note: keys.note },
+            span: keys.section.span,
         });
     }
-    if let Some(Entry::Quantities(list)) = root.entry("expected") {
-        for (measurand, value, span) in list {
-            if *value < 0.0 && !measurand.signed {
-                reader.error(span, about("check.cannot_be_negative", measurand), None);
-            }
-            set.expected.push(Expected { measurand, value: *value, span: span.clone() });
+    for (measurand, value, span) in typical {
+        if value < 0.0 && !measurand.signed {
+            reader.error(&span, about("check.cannot_be_negative", measurand), None);
         }
+        set.expected.push(Expected { measurand, value, span });
     }
-    for section in root.tables("limit") {
-        if let Some(limit) = read_limit(section, &set.references, reader) {
+    for keys in limits {
+        let section = keys.section.clone();
+        if let Some(limit) = read_limit(keys, &set.references, reader) {
             set.limits.push(limit);
-            set.fast_units.extend(slips::fast_unit(section, reader));
+            set.fast_units.extend(slips::fast_unit(&section, reader));
         }
     }
     if let Some(factor) = general_factor {
@@ -212,6 +212,7 @@ struct Bounds {
 
 /// Makes a limit of every first reference value that has no limit of its own.
 fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
+    let LimitKeys { rule, risk, .. } = LimitKeys::default();
     // A multiple of an output per input bounds nothing that anybody means.
     for reference in set.references.iter().filter(|r| !r.measurand.unit.is_empty()) {
         let taken = |l: &LimitSpec| {
@@ -222,7 +223,7 @@ fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
         set.limits.push(LimitSpec {
             measurand: reference.measurand,
             channel: reference.channel.clone(),
-            limit: Limit { min, max, rule: Rule::GuardBand, risk: 0.05, source: source.to_owned() },
+            limit: Limit { min, max, rule, risk, source: source.to_owned() },
             recorded_unit: None,
             span: reference.span.clone(),
         });
@@ -232,22 +233,20 @@ fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
 /// The keys that bound a value.
 const BOUNDS: [&str; 4] = ["min", "max", "max_abs", "factor"];
 
-fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'_>) -> Option<LimitSpec> {
-    let measurand = section.measurand("measurand")?;
-    let channel = section.text("channel");
+fn read_limit(keys: LimitKeys, references: &[Reference], reader: &mut Reader<'_>) -> Option<LimitSpec> {
+    let (measurand, section) = (keys.measurand?, &keys.section);
     bounds_are_stated_once(section, measurand, reader)?;
-    let mut bounds = stated_bounds(section, measurand, reader)?;
-    let factor = section.number("factor");
+    let mut bounds = stated_bounds(&keys, measurand, reader)?;
     let units: Vec<&'static str> =
         ["min", "max", "max_abs"].into_iter().filter_map(|key| section.recorded_unit(key)).collect();
-    if units.windows(2).any(|pair| pair[0] != pair[1]) || factor.is_some() && measurand.unit.is_empty() {
+    if units.windows(2).any(|pair| pair[0] != pair[1]) || keys.factor.is_some() && measurand.unit.is_empty() {
         let help = Note::new("keyed_more.help.as_recorded").with("units", AS_RECORDED.join(", "));
         reader.error(&section.span, about("check.limit_as_recorded", measurand), Some(help));
         return None;
     }
-    if let Some(factor) = factor {
+    if let Some(factor) = keys.factor {
         let matching =
-            |r: &&Reference| r.measurand == measurand && (r.channel == channel || r.channel.is_none());
+            |r: &&Reference| r.measurand == measurand && (r.channel == keys.channel || r.channel.is_none());
         let reference = references.iter().find(matching);
         bounds = bounds_by_factor(section, measurand, factor, reference, reader)?;
     }
@@ -256,11 +255,10 @@ fn read_limit(section: &Section, references: &[Reference], reader: &mut Reader<'
     if min.is_none() && max.is_none() {
         return None;
     }
-    let rule = if section.word("rule") == Some("simple") { Rule::Simple } else { Rule::GuardBand };
-    let risk = section.number("risk").unwrap_or(0.05);
+    let LimitKeys { channel, rule, risk, .. } = keys;
     let limit = Limit { min, max, rule, risk, source: reader.source.name.clone() };
     let recorded_unit = units.first().copied();
-    Some(LimitSpec { measurand, channel, limit, recorded_unit, span: section.span.clone() })
+    Some(LimitSpec { measurand, channel, limit, recorded_unit, span: keys.section.span })
 }
 
 /// Reports a limit without bounds, or with `max_abs` or `factor` beside other bounds.
@@ -281,11 +279,11 @@ fn bounds_are_stated_once(section: &Section, measurand: &Measurand, reader: &mut
 }
 
 /// The bounds that are given as values.
-fn stated_bounds(section: &Section, measurand: &Measurand, reader: &mut Reader<'_>) -> Option<Bounds> {
-    let Some(bound) = section.number("max_abs") else {
-        return Some(Bounds { min: section.number("min"), max: section.number("max") });
+fn stated_bounds(keys: &LimitKeys, measurand: &Measurand, reader: &mut Reader<'_>) -> Option<Bounds> {
+    let Some(bound) = keys.max_abs else {
+        return Some(Bounds { min: keys.min, max: keys.max });
     };
-    let at = section.span_of("max_abs");
+    let at = keys.section.span_of("max_abs");
     if !measurand.signed {
         let help = Some("check.help.max_for_max_abs".into());
         reader.error(&at, about("check.never_negative", measurand), help);

@@ -4,6 +4,7 @@
 pub(crate) mod channel;
 pub mod check;
 pub mod guide;
+mod instrument;
 pub mod limit_set;
 pub mod limits;
 mod load;

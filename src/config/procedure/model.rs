@@ -1,17 +1,20 @@
 //! A procedure after reading: plain values in inside units (deg/h, s, degC, Hz).
 
 use super::diagnostics::{Problem, SourceText, Span};
+pub use super::instrument::Instrument;
 use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
+use super::spec::Word;
+use super::tables::FIGURES;
+pub use super::tables::conditions::{Conditions, FaultBudget, SupplyCondition, TemperatureCondition};
 use super::unit_facts::UnitFact;
+use crate::config::table::{Table, words};
 use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::measurand::Measurand;
 use crate::output::sha256;
-use crate::record::{
-    ClauseRecord, ConditionStatus, ExclusionRecord, InstrumentRecord, ProcedureRecord, WaiverRecord,
-};
+use crate::record::{ClauseRecord, ExclusionRecord, ProcedureRecord, WaiverRecord};
 use crate::recording::Channel;
 use crate::signing::Role;
 use crate::temperature::{TemperatureTest, WarmUpTest};
@@ -101,18 +104,24 @@ pub struct RecordingSpec {
     pub read: ReadOptions,
 }
 
-/// The unit a procedure is for.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+/// The unit the procedure is for. The serial number is given when the test is run.
+#[derive(Debug, Clone, PartialEq, Eq, Table)]
+#[table("unit_under_test")]
 pub struct UnitSpec {
     /// Family of devices.
+    #[key(example = "OIUS-501")]
     pub family: Option<LocalText>,
     /// Part number.
+    #[key(example = "501-00-01")]
     pub part: Option<String>,
     /// Revision of the part.
+    #[key(example = "C")]
     pub revision: Option<String>,
-    /// True when a run without a serial number is an error.
+    /// Whether a run is an error if neither `--serial` nor the recording states a serial number.
+    #[key(default = true, example = true)]
     pub serial_required: bool,
-    /// What else must be known of the unit.
+    /// What must be known of the unit besides, or a run is an error: from `--lot`, `--unit-data` or the manifest.
+    #[key(example = ["lot"])]
     pub requires: Vec<UnitFact>,
 }
 
@@ -137,152 +146,34 @@ pub struct ChannelSpec {
     pub column_span: Span,
 }
 
-/// Conditions under which a test is valid.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Conditions {
-    /// Least usable time, s.
-    pub minimum_duration_s: Option<f64>,
-    /// Usable time that the limits are to be decided in, s; `None`: the least.
-    pub planned_duration_s: Option<f64>,
-    /// Time at the beginning that is left out, s.
-    pub warm_up_s: f64,
-    /// Temperatures to be held.
-    pub temperatures: Vec<TemperatureCondition>,
-    /// Supply voltages to be held.
-    pub supplies: Vec<SupplyCondition>,
-    /// Faults that are tolerated.
-    pub faults: FaultBudget,
-}
-
-/// A temperature that must hold. Shown when |T − nominal| ≤ tolerance − k·u for every smoothed value.
-#[derive(Debug, Clone, PartialEq)]
-pub struct TemperatureCondition {
-    /// Channel judged.
-    pub channel: String,
-    /// Nominal temperature, degC.
-    pub nominal_deg_c: f64,
-    /// Largest difference from it, degC.
-    pub tolerance_deg_c: f64,
-    /// Standard uncertainty of the sensor, degC.
-    pub sensor_uncertainty_deg_c: f64,
-    /// Multiple k of it by which the tolerance is narrowed.
-    pub coverage_factor: f64,
-    /// Length of the moving mean, s; 0 for none.
-    pub smoothing_s: f64,
-}
-
-impl TemperatureCondition {
-    /// Largest difference from nominal at which the tolerance is shown to hold, degC: tolerance − k·u.
-    pub fn provable_deg_c(&self) -> f64 {
-        self.tolerance_deg_c - self.coverage_factor * self.sensor_uncertainty_deg_c
-    }
-}
-
-/// A supply voltage that must hold, judged as a temperature is.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SupplyCondition {
-    /// Channel judged.
-    pub channel: String,
-    /// Nominal voltage, V.
-    pub nominal_v: f64,
-    /// Largest difference from it, V.
-    pub tolerance_v: f64,
-    /// Standard uncertainty of the reading, V.
-    pub sensor_uncertainty_v: f64,
-    /// Multiple of it by which the tolerance is narrowed.
-    pub coverage_factor: f64,
-}
-
-impl SupplyCondition {
-    /// Largest difference from nominal at which the tolerance is shown to hold, V: tolerance − k·u.
-    pub fn provable_v(&self) -> f64 {
-        self.tolerance_v - self.coverage_factor * self.sensor_uncertainty_v
-    }
-}
-
-/// Faults that are tolerated; `None` is counted and reported, and not judged.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-#[allow(missing_docs)]
-pub struct FaultBudget {
-    pub gaps: Option<Allowance>,
-    pub missing_samples: Option<Allowance>,
-    /// Longest gap, s.
-    pub longest_gap_s: Option<f64>,
-    pub duplicate_timestamps: Option<Allowance>,
-    pub backward_timestamps: Option<Allowance>,
-    pub non_finite: Option<Allowance>,
-    pub unparsable: Option<Allowance>,
-    pub outliers: Option<Allowance>,
-    pub saturated: Option<Allowance>,
-    pub stuck: Option<Allowance>,
-    pub repeated: Option<Allowance>,
-    /// Rms deviation of the stamps from a uniform clock, s.
-    pub timestamp_jitter_s: Option<f64>,
-}
-
-/// An instrument.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Instrument {
-    /// What it is.
-    pub name: LocalText,
-    /// Serial number.
-    pub serial: Option<String>,
-    /// Last day on which its calibration is valid.
-    pub calibration_due: Option<NaiveDate>,
-    /// True when it makes the test invalid to use it without a valid calibration.
-    pub required: bool,
-    /// Where it is declared.
-    pub span: Span,
-}
-
-impl Instrument {
-    /// The record of the instrument with its state on the day of the test.
-    ///
-    /// A calibration that has run out makes the test invalid where the instrument is required, and is a remark
-    /// otherwise; so is one that states no date. The last day of validity counts as valid. A valid date without a
-    /// serial number is a remark too: it belongs to no certain instrument.
-    pub fn record_on(&self, day: NaiveDate) -> InstrumentRecord {
-        let identified = self.serial.as_deref().is_some_and(|s| !s.trim().is_empty());
-        let status = match self.calibration_due {
-            Some(due) if day > due && self.required => ConditionStatus::Invalid,
-            Some(due) if day <= due && identified => ConditionStatus::Ok,
-            _ => ConditionStatus::Remark,
-        };
-        InstrumentRecord {
-            name: self.name.clone(),
-            serial: self.serial.clone(),
-            calibration_due: self.calibration_due.map(|d| d.to_string()),
-            status,
-        }
-    }
-}
-
 /// Options of the analysis.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("analysis")]
 pub struct Analysis {
-    /// Averaging times.
+    /// Averaging times of the Allan deviation.
+    #[key(default = "octave", example = "octave")]
     pub taus: Taus,
-    /// Every overlapping term at any length.
+    /// Sum every overlapping term at any record length, at the cost of time and memory.
+    #[key(default = false, example = true)]
     pub exact: bool,
-    /// Probability that noise alone shows a line anywhere.
+    /// Probability that noise alone gives a line anywhere in the spectrum.
+    #[key(min = 1e-9, max = 0.5, default = 0.01, example = 0.01)]
     pub line_false_alarm: f64,
 }
 
-impl Default for Analysis {
-    /// Octaves, a false line in one of a hundred recordings.
-    fn default() -> Analysis {
-        Analysis { taus: Taus::Octave, exact: false, line_false_alarm: 0.01 }
-    }
-}
-
-/// The recording against a model.
-#[derive(Debug, Clone, PartialEq)]
+/// Compares the recording with a model: whether the unit behaves like its family, and if not, where it differs and
+/// why. The finding is reported next to the verdict and is not part of it.
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("explain")]
 pub struct ExplainSpec {
-    /// The model's file.
+    /// The model, a file as `sagnac explain` reads it, relative to the procedure.
+    #[key(example = "family.toml")]
     pub model: PathBuf,
-    /// Probability at which a correct model is called a mismatch.
+    /// Probability of calling a correct model a mismatch.
+    #[key(min = 1e-9, max = 0.5, default = 0.01, example = 0.01)]
     pub alpha: f64,
-    /// Most effects that are added.
+    /// Maximum number of effects added to the model.
+    #[key(min = 1, max = 8, default = 3, example = 2)]
     pub max_effects: usize,
 }
 
@@ -299,6 +190,54 @@ pub struct MeasurandSpec {
     pub span: Span,
 }
 
+/// A quantity to determine, for one channel or for every gyro channel.
+#[derive(Table)]
+#[table("measurand")]
+pub(super) struct MeasurandKeys {
+    /// Id of the measurand.
+    #[key(required, example = "angle_random_walk")]
+    id: Option<&'static Measurand>,
+    /// Channel. Default: every channel with the role `rate` or `angle_increment`.
+    #[key(id, example = "x")]
+    channel: Option<String>,
+    /// Options of the measurand, if it has any.
+    #[key(optional)]
+    options: MeasurandOptions,
+    #[key(span)]
+    span: Span,
+}
+
+/// Options of a measurand. `earth_rate` belongs to `static_bias`.
+///
+/// Which measurand takes which stands in the table of measurands.
+#[derive(Table)]
+#[table("measurand.options")]
+pub(super) struct MeasurandOptions {
+    /// Treatment of the Earth rate along the input axis. Default: "remove".
+    #[key(optional, example = "remove")]
+    earth_rate: EarthRate,
+}
+
+impl MeasurandKeys {
+    /// What is to be determined, where its measurand is known.
+    pub(super) fn spec(self) -> Option<MeasurandSpec> {
+        let MeasurandKeys { id, channel, options, span } = self;
+        Some(MeasurandSpec { measurand: id?, channel, earth_rate: options.earth_rate, span })
+    }
+}
+
+/// Treatments of the Earth rate.
+const EARTH_RATE: &[Word] = &[
+    ("remove", "the Earth rate is subtracted, with its uncertainty; needs [site]"),
+    ("keep", "the mean rate is reported as recorded"),
+];
+
+words!(EarthRate, EARTH_RATE, |word: &str| match word {
+    "keep" => Some(EarthRate::Keep),
+    "remove" => Some(EarthRate::Remove),
+    _ => None,
+});
+
 /// What is done with the Earth rate along the input axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum EarthRate {
@@ -309,25 +248,31 @@ pub enum EarthRate {
     Keep,
 }
 
-/// What a report shows.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// What the report shows.
+#[derive(Debug, Clone, PartialEq, Eq, Table)]
+#[table("report")]
 pub struct ReportSpec {
-    /// Title; `None`: that of the procedure.
+    /// Title. Default: the title of the procedure.
+    #[key(example = "Acceptance report")]
     pub title: Option<LocalText>,
-    /// Ids of figures in their order; `None`: all.
+    /// Figures, in this order. Default: all.
+    #[key(choice = FIGURES, example = ["rate", "sigma_tau"])]
     pub figures: Option<Vec<&'static str>>,
-    /// Whether published values stand beside the measured ones.
+    /// Whether published values are shown in a column next to the measured ones.
+    #[key(default = true, example = true)]
     pub show_reference: bool,
-    /// Roles that must sign a result, each by a key of its own.
+    /// Who must sign the result, each by a key of their own; `sagnac verify` asks for it. Default: nobody.
+    #[key(example = ["tested", "approved"])]
     pub signatures: Vec<Role>,
 }
 
-impl Default for ReportSpec {
-    /// Every figure, and published values.
-    fn default() -> ReportSpec {
-        ReportSpec { title: None, figures: None, show_reference: true, signatures: vec![] }
-    }
-}
+const SIGNER_ROLES: &[Word] = &[
+    ("tested", "who made the test"),
+    ("reviewed", "who checked the result"),
+    ("approved", "who decided on the unit"),
+];
+
+words!(Role, SIGNER_ROLES, Role::of);
 
 impl ReportSpec {
     /// Whether a figure is asked for.
@@ -336,13 +281,37 @@ impl ReportSpec {
     }
 }
 
-/// A waiver and the unit it is for.
-#[derive(Debug, Clone, PartialEq)]
+/// A decision to accept one unit in spite of a row. It is recorded next to the verdict and never changes it.
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("waiver")]
 pub struct Waiver {
-    /// Serial number of the unit.
+    /// Serial number of the unit: a waiver is for one unit.
+    #[key(example = "0042")]
     pub serial: String,
-    /// The record that goes into the report of that unit.
-    pub record: WaiverRecord,
+    /// Measurand or condition concerned.
+    #[key(example = "angle_random_walk")]
+    pub row: String,
+    /// Who decided.
+    #[key(example = "J. Smith, quality")]
+    pub by: LocalText,
+    /// Reason, as shown in the report.
+    #[key(example = "used at constant temperature only")]
+    pub reason: LocalText,
+    /// Date of the decision.
+    #[key(example = toml("2026-03-01"))]
+    pub date: NaiveDate,
+}
+
+impl Waiver {
+    /// The waiver as it stands in the report of its unit.
+    fn record(&self) -> WaiverRecord {
+        WaiverRecord {
+            row: self.row.clone(),
+            by: self.by.clone(),
+            reason: self.reason.clone(),
+            date: self.date.to_string(),
+        }
+    }
 }
 
 impl<T> Loaded<T> {
@@ -401,39 +370,6 @@ impl Procedure {
 
     /// The waivers that are for a unit.
     pub fn waivers_for(&self, serial: Option<&str>) -> Vec<WaiverRecord> {
-        self.waivers.iter().filter(|w| Some(w.serial.as_str()) == serial).map(|w| w.record.clone()).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_calibration_holds_through_its_last_day() {
-        let day = |d| NaiveDate::from_ymd_opt(2027, 3, d).unwrap();
-        let mut instrument = Instrument {
-            name: "t".into(),
-            serial: Some("7".into()),
-            calibration_due: Some(day(1)),
-            required: true,
-            span: 0..0,
-        };
-        assert_eq!(instrument.record_on(day(1)).status, ConditionStatus::Ok);
-        assert_eq!(instrument.record_on(day(2)).status, ConditionStatus::Invalid);
-        instrument.serial = Some(" ".into());
-        assert_eq!(instrument.record_on(day(1)).status, ConditionStatus::Remark);
-        assert_eq!(instrument.record_on(day(2)).status, ConditionStatus::Invalid);
-        instrument.required = false;
-        assert_eq!(instrument.record_on(day(2)).status, ConditionStatus::Remark);
-        instrument.calibration_due = None;
-        assert_eq!(instrument.record_on(day(1)).status, ConditionStatus::Remark);
-    }
-
-    #[test]
-    fn a_share_counts_samples_and_a_count_does_not() {
-        assert!(Allowance::Share(0.001).allows(36, 36_000) && !Allowance::Share(0.001).allows(37, 36_000));
-        assert!(Allowance::Count(0).allows(0, 5) && !Allowance::Count(0).allows(1, 36_000_000));
-        assert_eq!(Allowance::Share(0.001).to_string(), "0.1 %");
+        self.waivers.iter().filter(|w| Some(w.serial.as_str()) == serial).map(Waiver::record).collect()
     }
 }

@@ -5,12 +5,12 @@ use super::diagnostics::{Problems, SourceText};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
 use super::reader::Reader;
-use super::section::Section;
-use super::tables::phases::PHASES_FILE;
+use super::tables::phases::{PHASES_FILE, PhaseKeys, PhasesFile};
 use super::unit_facts::UnitFact;
 use crate::config::contained_files;
 use crate::config::read_tables::checked;
 use crate::config::shipped::{self, Shipped};
+use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
 use crate::i18n::{LocalText, Note};
 use crate::record::{ClauseRecord, ProcedureRecord};
@@ -124,43 +124,39 @@ fn read(
     home: Home<'_>,
 ) -> (Option<(Phased, Vec<Stated>)>, Problems) {
     checked(source, &PHASES_FILE, |root, reader| {
-        let stated = stated(root, home, reader);
-        let identity = root.table("procedure");
-        let text = |key| identity.and_then(|i| i.text(key));
-        let local = |key| identity.and_then(|i| i.local_text(key));
-        let unit = root.table("unit_under_test");
-        let of_unit = |key| unit.and_then(|u| u.text(key));
+        let file = PhasesFile::read(root);
+        let (identity, unit) = (file.procedure, file.unit_under_test);
         let phased = Phased {
             identity: ProcedureRecord {
-                id: text("id").unwrap_or_default(),
-                title: local("title").unwrap_or_default(),
-                revision: text("revision").unwrap_or_default(),
-                standard: local("standard"),
-                clause: local("clause"),
-                author: local("author"),
+                id: identity.id,
+                title: identity.title,
+                revision: identity.revision,
+                standard: identity.standard,
+                clause: identity.clause,
+                author: identity.author,
                 path: path.to_owned(),
                 sha256,
                 signatures: None,
                 limits: None,
             },
-            family: unit.and_then(|u| u.local_text("family")),
-            part: of_unit("part"),
-            part_revision: of_unit("revision"),
-            serial_required: unit.is_none_or(|u| u.flag("serial_required")),
-            requires: unit.map(super::parse::required_facts).unwrap_or_default(),
+            family: unit.family,
+            part: unit.part,
+            part_revision: unit.revision,
+            serial_required: unit.serial_required,
+            requires: unit.requires,
             phases: vec![],
-            clauses: root.tables("clause").iter().map(super::parse::clause).collect(),
+            clauses: file.clauses.into_iter().map(Into::into).collect(),
         };
-        (phased, stated)
+        (phased, stated(file.phases, home, reader))
     })
 }
 
-fn stated(root: &Section, home: Home<'_>, reader: &mut Reader<'_>) -> Vec<Stated> {
+fn stated(phases: Vec<PhaseKeys>, home: Home<'_>, reader: &mut Reader<'_>) -> Vec<Stated> {
     let mut list: Vec<Stated> = Vec::new();
-    for section in root.tables("phase") {
-        let Some(id) = section.text("id") else { continue };
-        let mut named = |key: &str| {
-            let text = section.text(key)?;
+    for keys in phases {
+        let (Some(id), section) = (keys.id, keys.section) else { continue };
+        let mut named = |text: Option<String>, key: &str| {
+            let text = text?;
             let at = reader.source.inside_quotes(&section.span_of(key));
             match home {
                 Home::Folder(folder) => contained_files::file(&text, folder, &at, reader).map(|f| f.path),
@@ -168,7 +164,8 @@ fn stated(root: &Section, home: Home<'_>, reader: &mut Reader<'_>) -> Vec<Stated
                 Home::Program => shipped::at(&text).map(Shipped::name_as_path),
             }
         };
-        let (procedure, limits) = (named("procedure"), named("limits"));
+        let procedure = named(keys.procedure, "procedure");
+        let limits = named(keys.limits, "limits");
         let procedure = procedure.unwrap_or_default();
         let clash = |other: &Stated| {
             other.id == id
@@ -179,7 +176,7 @@ fn stated(root: &Section, home: Home<'_>, reader: &mut Reader<'_>) -> Vec<Stated
             let message = Note::new("phases.twice").with("id", id.as_str()).with("other", other.id.as_str());
             reader.error(&section.span_of("id"), message, None);
         }
-        list.push(Stated { id, title: section.local_text("title"), procedure, limits });
+        list.push(Stated { id, title: keys.title, procedure, limits });
     }
     list
 }

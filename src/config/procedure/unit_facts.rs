@@ -1,6 +1,7 @@
 //! What a procedure demands to be known of a unit.
 
 use crate::config::spec::Word;
+use crate::config::table::words;
 use crate::i18n::{Arg, Note};
 use crate::record::UnitUnderTest;
 
@@ -14,6 +15,8 @@ pub enum UnitFact {
     /// The date on which it was built.
     BuildDate,
 }
+
+words!(UnitFact, UnitFact::WORDS, UnitFact::of);
 
 impl UnitFact {
     /// The words of procedures.

@@ -1,9 +1,10 @@
 //! What a procedure says as a whole: references between its tables, contradictions, conditions that cannot be met.
 
 use super::diagnostics::{Problem, SourceText};
-use super::model::{ChannelSpec, EarthRate, MeasurandSpec, Procedure, Taus};
+use super::model::{ChannelSpec, EarthRate, MeasurandOptions, MeasurandSpec, Procedure, Taus};
 use super::reader::{Reader, meant, shorten};
 use super::section::Section;
+use crate::config::table::Table;
 use crate::i18n::Note;
 use crate::measurand::{self, EARTH_RATE_OPTION, Options, Test};
 use crate::recording::{ColumnRef, Role};
@@ -326,7 +327,7 @@ fn measurands(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
             let help = if measurand.from_site { "check.help.site" } else { "check.help.site_or_keep" };
             reader.error(&section.span_of("id"), message, Some(help.into()));
         }
-        for key in super::tables::MEASURAND_OPTIONS.keys {
+        for key in MeasurandOptions::SPEC.keys {
             let set = options.is_some_and(|o| o.entry(key.name).is_some());
             if set && !measurand.options.contains(&key.name) {
                 let at = options.map_or_else(|| section.span.clone(), |o| o.span_of(key.name));

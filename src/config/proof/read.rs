@@ -5,9 +5,11 @@ use super::{ClaimSource, Decoy, Must, Part, ProofFile, Reference, Rule, Shown, S
 use crate::config::contained_files::{self, folder_of};
 use crate::config::diagnostics::Problems;
 use crate::config::procedure::channel;
+use crate::config::procedure::tables::ChannelKeys;
 use crate::config::read_tables::checked;
 use crate::config::reader::{Reader, for_example};
 use crate::config::section::{Entry, Section};
+use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
 use crate::effect::Domain;
 use crate::i18n::Note;
@@ -37,8 +39,12 @@ pub fn parse(name: &str, bytes: &[u8], folder: &Path) -> Result<ProofFile, Probl
 fn build(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Option<ProofFile> {
     let recording = root.table("recording")?;
     let conceal = root.table("conceal");
-    let channels: Vec<_> =
-        root.tables("channel").iter().filter_map(|s| channel::read(s, reader)).map(|(c, _)| c).collect();
+    let channels: Vec<_> = root
+        .tables("channel")
+        .iter()
+        .filter_map(|s| channel::read(&ChannelKeys::read(s), reader))
+        .map(|(c, _)| c)
+        .collect();
     let references: Vec<Reference> =
         root.tables("reference").iter().filter_map(|s| reference(s, reader)).collect();
     let hidden = conceal.and_then(|c| c.names("columns")).unwrap_or_default().to_vec();

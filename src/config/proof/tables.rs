@@ -1,7 +1,8 @@
 //! The tables of a proof file.
 
-use crate::config::procedure::tables::CHANNEL;
+use crate::config::procedure::tables::ChannelKeys;
 use crate::config::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
+use crate::config::table::Table;
 
 /// Version of the format.
 pub const PROOF_FORMAT: &str = "proof/1";
@@ -23,7 +24,7 @@ pub static PROOF_FILE: TableSpec = TableSpec {
         required("recording", Kind::Table(&RECORDING), "", "The recording."),
         optional(
             "channel",
-            Kind::Tables(&CHANNEL),
+            Kind::Tables(ChannelKeys::SPEC),
             "",
             "The columns that are used, as in a procedure. Default: as they are found by their names.",
         ),

@@ -4,13 +4,14 @@ use super::{Estimate, Spread};
 use serde::{Deserialize, Serialize};
 
 /// How a measured value with its uncertainty is compared with a limit.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Rule {
     /// The value itself is compared; the risk of a wrong decision is shared (ILAC-G8). Up to 50 % at the limit.
     Simple,
     /// The one-sided bound at the stated risk is compared (JCGM 106, ISO 14253-1).
+    #[default]
     GuardBand,
 }
 

@@ -1,177 +1,158 @@
 //! The tables of a procedure that declare its conditions.
 
-use crate::config::spec::{Kind, Range, TableSpec, difference, optional, quantity, required, with_default};
+use crate::config::section::Allowance;
+use crate::config::table::Table;
+use crate::i18n::LocalText;
+use crate::record::ExclusionRecord;
 
-pub(crate) static CONDITIONS: TableSpec = TableSpec {
-    name: "conditions",
-    doc: "Conditions under which the test is valid. A condition that is not proven to be met makes the \
-          verdict indeterminate, because an invalid test neither passes nor fails a unit.",
-    keys: &[
-        optional(
-            "minimum_duration",
-            quantity("s", Range::POSITIVE),
-            "\"10 h\"",
-            "Minimum usable time after warm-up, exclusions and gaps.",
-        ),
-        optional(
-            "planned_duration",
-            quantity("s", Range::POSITIVE),
-            "\"100 h\"",
-            "Usable time of a record as planned. `sagnac check` examines whether the limits can be decided in it. \
-             Default: `minimum_duration`.",
-        ),
-        with_default(
-            "warm_up",
-            quantity("s", Range::NOT_NEGATIVE),
-            "\"0 s\"",
-            "\"30 min\"",
-            "Time excluded at the start, fixed before the data are examined.",
-        ),
-        optional(
-            "temperature",
-            Kind::TableOrTables(&TEMPERATURE),
-            "",
-            "Temperature to be held, one table per sensor.",
-        ),
-        optional("supply", Kind::TableOrTables(&SUPPLY), "", "Supply voltage to be held."),
-        optional("faults", Kind::Table(&FAULTS), "", "Maximum number of faults of each kind."),
-    ],
-};
+/// Conditions under which the test is valid. A condition that is not proven to be met makes the verdict
+/// indeterminate, because an invalid test neither passes nor fails a unit.
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("conditions")]
+pub struct Conditions {
+    /// Minimum usable time after warm-up, exclusions and gaps.
+    #[key(quantity = "s", above = 0, example = "10 h")]
+    pub minimum_duration_s: Option<f64>,
+    /// Usable time of a record as planned. `sagnac check` examines whether the limits can be decided in it.
+    /// Default: `minimum_duration`.
+    #[key(quantity = "s", above = 0, example = "100 h")]
+    pub planned_duration_s: Option<f64>,
+    /// Time excluded at the start, fixed before the data are examined.
+    #[key(quantity = "s", min = 0, default = "0 s", example = "30 min")]
+    pub warm_up_s: f64,
+    /// Temperature to be held, one table per sensor.
+    #[key(name = "temperature", one_or_several)]
+    pub temperatures: Vec<TemperatureCondition>,
+    /// Supply voltage to be held.
+    #[key(name = "supply", one_or_several)]
+    pub supplies: Vec<SupplyCondition>,
+    /// Maximum number of faults of each kind.
+    #[key(optional)]
+    pub faults: FaultBudget,
+}
 
-static TEMPERATURE: TableSpec = TableSpec {
-    name: "conditions.temperature",
-    doc: "A temperature that must hold over the whole evaluated window. It holds if every smoothed value \
-          lies inside the tolerance minus `coverage_factor` times the sensor's uncertainty.",
-    keys: &[
-        required("channel", Kind::Id, "\"temp\"", "Channel with the role `temperature`."),
-        required(
-            "nominal",
-            quantity("degC", Range::between(-273.15, 1000.0)),
-            "\"20 degC\"",
-            "Nominal temperature.",
-        ),
-        required(
-            "tolerance",
-            difference("degC", Range::POSITIVE),
-            "\"0.4 degC\"",
-            "Maximum difference from it.",
-        ),
-        required(
-            "sensor_uncertainty",
-            difference("degC", Range::NOT_NEGATIVE),
-            "\"0.05 degC\"",
-            "Standard uncertainty (k = 1) of the sensor, calibration and drift included.",
-        ),
-        with_default(
-            "coverage_factor",
-            Kind::Number(Range::between(0.0, 4.0)),
-            "2.0",
-            "2.0",
-            "Multiple of the sensor's uncertainty by which the tolerance is narrowed.",
-        ),
-        with_default(
-            "smoothing",
-            quantity("s", Range::NOT_NEGATIVE),
-            "\"60 s\"",
-            "\"60 s\"",
-            "Length of the moving average applied to the temperature, so that sensor noise is not mistaken \
-             for the chamber.",
-        ),
-    ],
-};
+/// A temperature that must hold over the whole evaluated window. It holds if every smoothed value lies inside the
+/// tolerance minus `coverage_factor` times the sensor's uncertainty.
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("conditions.temperature")]
+pub struct TemperatureCondition {
+    /// Channel with the role `temperature`.
+    #[key(id, example = "temp")]
+    pub channel: String,
+    /// Nominal temperature.
+    #[key(quantity = "degC", min = -273.15, max = 1000, example = "20 degC")]
+    pub nominal_deg_c: f64,
+    /// Maximum difference from it.
+    #[key(difference = "degC", above = 0, example = "0.4 degC")]
+    pub tolerance_deg_c: f64,
+    /// Standard uncertainty (k = 1) of the sensor, calibration and drift included.
+    #[key(difference = "degC", min = 0, example = "0.05 degC")]
+    pub sensor_uncertainty_deg_c: f64,
+    /// Multiple of the sensor's uncertainty by which the tolerance is narrowed.
+    #[key(min = 0, max = 4, default = 2.0, example = 2.0)]
+    pub coverage_factor: f64,
+    /// Length of the moving average applied to the temperature, so that sensor noise is not mistaken for the
+    /// chamber.
+    #[key(quantity = "s", min = 0, default = "60 s", example = "60 s")]
+    pub smoothing_s: f64,
+}
 
-static SUPPLY: TableSpec = TableSpec {
-    name: "conditions.supply",
-    doc: "A supply voltage that must hold over the whole evaluated window.",
-    keys: &[
-        required("channel", Kind::Id, "\"supply\"", "Channel with the role `supply`."),
-        required("nominal", quantity("V", Range::ANY), "\"5 V\"", "Nominal voltage."),
-        required("tolerance", difference("V", Range::POSITIVE), "\"0.25 V\"", "Maximum difference from it."),
-        with_default(
-            "sensor_uncertainty",
-            difference("V", Range::NOT_NEGATIVE),
-            "\"0 V\"",
-            "\"0.01 V\"",
-            "Standard uncertainty (k = 1) of the reading.",
-        ),
-        with_default(
-            "coverage_factor",
-            Kind::Number(Range::between(0.0, 4.0)),
-            "2.0",
-            "2.0",
-            "Multiple of that uncertainty by which the tolerance is narrowed.",
-        ),
-    ],
-};
+impl TemperatureCondition {
+    /// Largest difference from nominal at which the tolerance is shown to hold, degC: tolerance − k·u.
+    pub fn provable_deg_c(&self) -> f64 {
+        self.tolerance_deg_c - self.coverage_factor * self.sensor_uncertainty_deg_c
+    }
+}
 
-static FAULTS: TableSpec = TableSpec {
-    name: "conditions.faults",
-    doc: "Maximum number of faults of each kind: a count, or a share of the samples. An omitted kind is \
-          counted and reported, but not judged.",
-    keys: &[
-        optional("gaps", Kind::Allowance, "10", "Places where samples are missing."),
-        optional("missing_samples", Kind::Allowance, "\"0.1 %\"", "Missing samples."),
-        optional("longest_gap", quantity("s", Range::NOT_NEGATIVE), "\"10 s\"", "Length of the longest gap."),
-        optional(
-            "duplicate_timestamps",
-            Kind::Allowance,
-            "0",
-            "Rows with the same timestamp as the previous \
-                                                                one.",
-        ),
-        optional(
-            "backward_timestamps",
-            Kind::Allowance,
-            "0",
-            "Rows with an earlier timestamp than a \
-                                                               previous one.",
-        ),
-        optional("non_finite", Kind::Allowance, "\"0.01 %\"", "Fields that are empty, NaN or infinite."),
-        optional("unparsable", Kind::Allowance, "0", "Fields that are not numbers."),
-        optional("outliers", Kind::Allowance, "\"0.1 %\"", "Samples far outside the surrounding noise."),
-        optional("saturated", Kind::Allowance, "0", "Samples at a rail."),
-        optional(
-            "stuck",
-            Kind::Allowance,
-            "0",
-            "Samples that repeat the previous one for longer than chance allows.",
-        ),
-        optional(
-            "repeated",
-            Kind::Allowance,
-            "0",
-            "Samples in stretches that repeat earlier ones bit for bit, beyond chance.",
-        ),
-        optional(
-            "timestamp_jitter",
-            quantity("s", Range::POSITIVE),
-            "\"1 ms\"",
-            "Maximum rms deviation of the timestamps from a uniform clock.",
-        ),
-    ],
-};
+/// A supply voltage that must hold over the whole evaluated window.
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("conditions.supply")]
+pub struct SupplyCondition {
+    /// Channel with the role `supply`.
+    #[key(id, example = "supply")]
+    pub channel: String,
+    /// Nominal voltage.
+    #[key(quantity = "V", example = "5 V")]
+    pub nominal_v: f64,
+    /// Maximum difference from it.
+    #[key(difference = "V", above = 0, example = "0.25 V")]
+    pub tolerance_v: f64,
+    /// Standard uncertainty (k = 1) of the reading.
+    #[key(difference = "V", min = 0, default = "0 V", example = "0.01 V")]
+    pub sensor_uncertainty_v: f64,
+    /// Multiple of that uncertainty by which the tolerance is narrowed.
+    #[key(min = 0, max = 4, default = 2.0, example = 2.0)]
+    pub coverage_factor: f64,
+}
 
-pub(crate) static EXCLUDE: TableSpec = TableSpec {
-    name: "exclude",
-    doc: "A span excluded from the evaluation for a reason known before the data were examined.",
-    keys: &[
-        required(
-            "from",
-            quantity("s", Range::NOT_NEGATIVE),
-            "\"2 h\"",
-            "Start, from the beginning of the recording.",
-        ),
-        required(
-            "to",
-            quantity("s", Range::POSITIVE),
-            "\"2.5 h\"",
-            "End, from the beginning of the recording.",
-        ),
-        required(
-            "reason",
-            Kind::LocalText,
-            "\"door of the chamber opened\"",
-            "Reason, as shown in the report.",
-        ),
-    ],
-};
+impl SupplyCondition {
+    /// Largest difference from nominal at which the tolerance is shown to hold, V: tolerance − k·u.
+    pub fn provable_v(&self) -> f64 {
+        self.tolerance_v - self.coverage_factor * self.sensor_uncertainty_v
+    }
+}
+
+/// Maximum number of faults of each kind: a count, or a share of the samples. An omitted kind is counted and
+/// reported, but not judged.
+#[derive(Debug, Clone, Copy, PartialEq, Table)]
+#[table("conditions.faults")]
+pub struct FaultBudget {
+    /// Places where samples are missing.
+    #[key(example = 10)]
+    pub gaps: Option<Allowance>,
+    /// Missing samples.
+    #[key(example = "0.1 %")]
+    pub missing_samples: Option<Allowance>,
+    /// Length of the longest gap.
+    #[key(quantity = "s", min = 0, example = "10 s")]
+    pub longest_gap_s: Option<f64>,
+    /// Rows with the same timestamp as the previous one.
+    #[key(example = 0)]
+    pub duplicate_timestamps: Option<Allowance>,
+    /// Rows with an earlier timestamp than a previous one.
+    #[key(example = 0)]
+    pub backward_timestamps: Option<Allowance>,
+    /// Fields that are empty, NaN or infinite.
+    #[key(example = "0.01 %")]
+    pub non_finite: Option<Allowance>,
+    /// Fields that are not numbers.
+    #[key(example = 0)]
+    pub unparsable: Option<Allowance>,
+    /// Samples far outside the surrounding noise.
+    #[key(example = "0.1 %")]
+    pub outliers: Option<Allowance>,
+    /// Samples at a rail.
+    #[key(example = 0)]
+    pub saturated: Option<Allowance>,
+    /// Samples that repeat the previous one for longer than chance allows.
+    #[key(example = 0)]
+    pub stuck: Option<Allowance>,
+    /// Samples in stretches that repeat earlier ones bit for bit, beyond chance.
+    #[key(example = 0)]
+    pub repeated: Option<Allowance>,
+    /// Maximum rms deviation of the timestamps from a uniform clock.
+    #[key(quantity = "s", above = 0, example = "1 ms")]
+    pub timestamp_jitter_s: Option<f64>,
+}
+
+/// A span excluded from the evaluation for a reason known before the data were examined.
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("exclude")]
+pub struct Exclusion {
+    /// Start, from the beginning of the recording.
+    #[key(quantity = "s", min = 0, example = "2 h")]
+    pub from_s: f64,
+    /// End, from the beginning of the recording.
+    #[key(quantity = "s", above = 0, example = "2.5 h")]
+    pub to_s: f64,
+    /// Reason, as shown in the report.
+    #[key(example = "door of the chamber opened")]
+    pub reason: LocalText,
+}
+
+impl From<Exclusion> for ExclusionRecord {
+    fn from(exclusion: Exclusion) -> ExclusionRecord {
+        let Exclusion { from_s, to_s, reason } = exclusion;
+        ExclusionRecord { from_s, to_s, reason }
+    }
+}

@@ -4,269 +4,230 @@
 use crate::config::procedure::model::Procedure;
 use crate::config::reader::Reader;
 use crate::config::section::Section;
-use crate::config::spec::{
-    KeySpec, Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default,
-};
+use crate::config::spec::{Range, Word};
+use crate::config::table::Table;
 use crate::i18n::Note;
 use crate::influence::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};
 use crate::measurand::{Evaluation, Measurand, Test};
 use crate::recording::Role;
 
-const PHASE: KeySpec =
-    optional("phase", Kind::Id, "\"on\"", "Its phase in the manifest; all files of the phase belong to it.");
-const FROM: KeySpec = optional(
-    "from",
-    quantity("s", Range::NOT_NEGATIVE),
-    "\"10 min\"",
-    "Start, from the start of the recording.",
-);
-const TO: KeySpec =
-    optional("to", quantity("s", Range::POSITIVE), "\"20 min\"", "End, from the start of the recording.");
-const TEMPERATURE: KeySpec =
-    optional("temperature", Kind::Id, "\"temp\"", "Channel of the unit's temperature. Default: the first.");
-const AXIS: KeySpec = optional("axis", Kind::Id, "\"x\"", "Axis along which it acts, if several are tested.");
+/// A stretch of the recording.
+#[derive(Table)]
+pub(crate) struct StretchKeys {
+    /// Its phase in the manifest; all files of the phase belong to it.
+    #[key(id, example = "on")]
+    phase: Option<String>,
+    /// Start, from the start of the recording.
+    #[key(quantity = "s", min = 0, example = "10 min")]
+    from_s: Option<f64>,
+    /// End, from the start of the recording.
+    #[key(quantity = "s", above = 0, example = "20 min")]
+    to_s: Option<f64>,
+}
 
-pub(crate) static REPEATABILITY_TEST: TableSpec = TableSpec {
-    name: "repeatability_test",
-    doc: "A series of turn-ons. Without [[repeatability_test.run]], every file of a manifest is one run, and \
-          within one file every stretch between pauses in the output.",
-    keys: &[
-        with_default(
-            "settling",
-            quantity("s", Range::NOT_NEGATIVE),
-            "\"0 s\"",
-            "\"5 min\"",
-            "Time after turn-on excluded from every run.",
-        ),
-        with_default(
-            "minimum_run",
-            quantity("s", Range::POSITIVE),
-            "\"60 s\"",
-            "\"10 min\"",
-            "Minimum length of a run without its settling; shorter runs are not evaluated.",
-        ),
-        with_default(
-            "off",
-            quantity("s", Range::POSITIVE),
-            "\"60 s\"",
-            "\"5 min\"",
-            "Minimum pause in the output that separates two runs of one file.",
-        ),
-        with_default(
-            "runs",
-            Kind::Number(Range::between(2.0, 1000.0)),
-            "6",
-            "6",
-            "Minimum number of runs. With 6 runs the standard deviation is known to within 0.62 to 2.45 \
-             times its value.",
-        ),
-        TEMPERATURE,
-        optional(
-            "run",
-            Kind::Tables(&RUN),
-            "",
-            "The runs, if they are neither files nor separated by pauses.",
-        ),
-    ],
-};
+impl From<StretchKeys> for Stated {
+    fn from(keys: StretchKeys) -> Stated {
+        let StretchKeys { phase, from_s, to_s } = keys;
+        Stated { phase, from_s, to_s }
+    }
+}
 
-static RUN: TableSpec = TableSpec {
-    name: "repeatability_test.run",
-    doc: "One run, in the order of time.",
-    keys: &[PHASE, FROM, TO],
-};
+/// A series of turn-ons. Without [[repeatability_test.run]], every file of a manifest is one run, and within
+/// one file every stretch between pauses in the output.
+#[derive(Table)]
+#[table("repeatability_test")]
+pub(crate) struct RepeatabilityKeys {
+    /// Time after turn-on excluded from every run.
+    #[key(quantity = "s", min = 0, default = "0 s", example = "5 min")]
+    settling_s: f64,
+    /// Minimum length of a run without its settling; shorter runs are not evaluated.
+    #[key(quantity = "s", above = 0, default = "60 s", example = "10 min")]
+    minimum_run_s: f64,
+    /// Minimum pause in the output that separates two runs of one file.
+    #[key(quantity = "s", above = 0, default = "60 s", example = "5 min")]
+    off_s: f64,
+    /// Minimum number of runs. With 6 runs the standard deviation is known to within 0.62 to 2.45 times its value.
+    #[key(name = "runs", min = 2, max = 1000, default = 6, example = 6)]
+    fewest_runs: usize,
+    /// Channel of the unit's temperature. Default: the first.
+    #[key(id, example = "temp")]
+    temperature: Option<String>,
+    /// The runs, if they are neither files nor separated by pauses.
+    #[key(name = "run")]
+    runs: Vec<RunKeys>,
+}
 
-const SETTLING: KeySpec = with_default(
-    "settling",
-    quantity("s", Range::NOT_NEGATIVE),
-    "\"5 s\"",
-    "\"10 s\"",
-    "Time excluded after a change of level.",
-);
-const MINIMUM: KeySpec = with_default(
-    "minimum_interval",
-    quantity("s", Range::POSITIVE),
-    "\"30 s\"",
-    "\"60 s\"",
-    "Minimum length of an interval without its settling; shorter intervals are not evaluated.",
-);
-const ALTERNATIONS: KeySpec = with_default(
-    "alternations",
-    Kind::Number(Range::between(1.0, 1000.0)),
-    "2",
-    "3",
-    "Minimum number of intervals with the influence, each between two without. One removes a steady drift; a \
-     second shows whether the change is reproducible.",
-);
-const LEVEL_UNCERTAINTY: KeySpec = with_default(
-    "level_uncertainty",
-    quantity("1", Range::between(0.0, 1.0)),
-    "\"0 %\"",
-    "\"2 %\"",
-    "Standard uncertainty (k = 1) of the level.",
-);
-const TEMPERATURE_DIFFERENCE: KeySpec = with_default(
-    "temperature_difference",
-    difference("degC", Range::POSITIVE),
-    "\"0.3 degC\"",
-    "\"0.3 degC\"",
-    "Maximum temperature difference between any two levels, including the one without influence: the effect \
-     of a larger one on the bias could not be separated from the influence.",
-);
-const TEMPERATURE_COEFFICIENT: KeySpec = optional(
-    "temperature_coefficient",
-    quantity("deg/h/degC", Range::NOT_NEGATIVE),
-    "\"0.003 deg/h/degC\"",
-    "Maximum temperature sensitivity of the bias, from a temperature test: the possible effect of a \
-     temperature correlated with the levels, within `temperature_difference`, is then part of the \
-     uncertainty.",
-);
-const EVIDENCE: KeySpec = optional(
-    "evidence",
-    Kind::Choice(EVIDENCES),
-    "\"declared\"",
-    "If nothing in the recording shows that the influence was applied, the test is invalid unless this key \
-     declares it; report and verdict then say so.",
-);
+/// One run, in the order of time.
+#[derive(Table)]
+#[table("repeatability_test.run")]
+pub(crate) struct RunKeys {
+    #[key(flatten)]
+    stretch: StretchKeys,
+}
+
+impl From<RepeatabilityKeys> for RepeatabilityTest {
+    fn from(keys: RepeatabilityKeys) -> RepeatabilityTest {
+        RepeatabilityTest {
+            settling_s: keys.settling_s,
+            minimum_run_s: keys.minimum_run_s,
+            off_s: keys.off_s,
+            fewest: keys.fewest_runs,
+            temperature: keys.temperature,
+            runs: keys.runs.into_iter().map(|run| run.stretch.into()).collect(),
+        }
+    }
+}
+
+/// Keys of every comparison.
+#[derive(Table)]
+pub(crate) struct ComparisonKeys {
+    /// Time excluded after a change of level.
+    #[key(quantity = "s", min = 0, default = "5 s", example = "10 s")]
+    settling_s: f64,
+    /// Minimum length of an interval without its settling; shorter intervals are not evaluated.
+    #[key(quantity = "s", above = 0, default = "30 s", example = "60 s")]
+    minimum_interval_s: f64,
+    /// Minimum number of intervals with the influence, each between two without. One removes a steady drift; a
+    /// second shows whether the change is reproducible.
+    #[key(min = 1, max = 1000, default = 2, example = 3)]
+    alternations: usize,
+    /// Standard uncertainty (k = 1) of the level.
+    #[key(quantity = "1", min = 0, max = 1, default = "0 %", example = "2 %")]
+    level_uncertainty: f64,
+    /// Maximum temperature difference between any two levels, including the one without influence: the effect of a
+    /// larger one on the bias could not be separated from the influence.
+    #[key(difference = "degC", above = 0, default = "0.3 degC", example = "0.3 degC")]
+    temperature_difference_deg_c: f64,
+    /// Maximum temperature sensitivity of the bias, from a temperature test: the possible effect of a temperature
+    /// correlated with the levels, within `temperature_difference`, is then part of the uncertainty.
+    #[key(quantity = "deg/h/degC", min = 0, example = "0.003 deg/h/degC")]
+    temperature_coefficient_deg_h_deg_c: Option<f64>,
+    /// Channel of the unit's temperature. Default: the first.
+    #[key(id, example = "temp")]
+    temperature: Option<String>,
+    /// If nothing in the recording shows that the influence was applied, the test is invalid unless this key
+    /// declares it; report and verdict then say so.
+    #[key(choice = EVIDENCES, example = "declared")]
+    evidence: Option<&'static str>,
+}
 
 /// Evidence that a procedure may do with.
 const EVIDENCES: &[Word] =
     &[("declared", "that the influence acted, and at which levels, is taken from the procedure")];
 
+impl ComparisonKeys {
+    fn test(self, influence: Influence, reference: f64, intervals: Vec<StatedLevel>) -> ComparisonTest {
+        ComparisonTest {
+            influence,
+            reference,
+            settling_s: self.settling_s,
+            minimum_interval_s: self.minimum_interval_s,
+            alternations: self.alternations,
+            level_uncertainty: self.level_uncertainty,
+            temperature_difference_deg_c: self.temperature_difference_deg_c,
+            temperature_coefficient: self.temperature_coefficient_deg_h_deg_c,
+            declared: self.evidence == Some("declared"),
+            temperature: self.temperature,
+            intervals,
+        }
+    }
+}
+
+/// The table of a comparison and that of its intervals, which differ by the unit of the level.
 macro_rules! comparison_table {
-    ($table:ident, $interval:ident, $name:literal, $interval_name:literal, $unit:literal, $reference:literal,
-     $level:literal, $range:expr, $doc:literal) => {
-        pub(crate) static $table: TableSpec = TableSpec {
-            name: $name,
-            doc: $doc,
-            keys: &[
-                with_default(
-                    "reference",
-                    quantity($unit, $range),
-                    $reference,
-                    $reference,
-                    "Level that counts as zero influence.",
-                ),
-                SETTLING,
-                MINIMUM,
-                ALTERNATIONS,
-                LEVEL_UNCERTAINTY,
-                TEMPERATURE_DIFFERENCE,
-                TEMPERATURE_COEFFICIENT,
-                TEMPERATURE,
-                EVIDENCE,
-                optional(
-                    "interval",
-                    Kind::Tables(&$interval),
-                    "",
-                    "The intervals with and without the influence, instead of a channel with the level.",
-                ),
-            ],
-        };
-        static $interval: TableSpec = TableSpec {
-            name: $interval_name,
-            doc: "One interval at a level.",
-            keys: &[
-                PHASE,
-                FROM,
-                TO,
-                required("level", quantity($unit, $range), $level, "Level during the interval."),
-                AXIS,
-            ],
-        };
+    ($keys:ident, $interval:ident, $influence:expr, $name:literal, $interval_name:literal, $unit:literal,
+     $reference:literal, $level:literal, $range:expr, $doc:literal) => {
+        #[doc = $doc]
+        #[derive(Table)]
+        #[table($name)]
+        pub(crate) struct $keys {
+            /// Level that counts as zero influence.
+            #[key(quantity = $unit, range = $range, default = $reference, example = $reference)]
+            reference: f64,
+            #[key(flatten)]
+            common: ComparisonKeys,
+            /// The intervals with and without the influence, instead of a channel with the level.
+            #[key(name = "interval")]
+            intervals: Vec<$interval>,
+        }
+
+        /// One interval at a level.
+        #[derive(Table)]
+        #[table($interval_name)]
+        pub(crate) struct $interval {
+            #[key(flatten)]
+            stretch: StretchKeys,
+            /// Level during the interval.
+            #[key(quantity = $unit, range = $range, example = $level)]
+            level: f64,
+            /// Axis along which it acts, if several are tested.
+            #[key(id, example = "x")]
+            axis: Option<String>,
+        }
+
+        impl From<$interval> for StatedLevel {
+            fn from(keys: $interval) -> StatedLevel {
+                StatedLevel { stretch: keys.stretch.into(), level: keys.level, axis: keys.axis }
+            }
+        }
+
+        impl From<$keys> for ComparisonTest {
+            fn from(keys: $keys) -> ComparisonTest {
+                let intervals = keys.intervals.into_iter().map(StatedLevel::from).collect();
+                keys.common.test($influence, keys.reference, intervals)
+            }
+        }
     };
 }
 
 comparison_table!(
-    MAGNETIC_TEST,
-    MAGNETIC_INTERVAL,
+    MagneticKeys,
+    MagneticIntervalKeys,
+    Influence::MagneticField,
     "magnetic_test",
     "magnetic_test.interval",
     "mT",
-    "\"0 mT\"",
-    "\"0.5 mT\"",
+    "0 mT",
+    "0.5 mT",
     Range::ANY,
     "A comparison without and with a magnetic field. The level is read from the channels with the role \
      `magnetic_field`, one per axis, or stated in [[magnetic_test.interval]]."
 );
 comparison_table!(
-    SUPPLY_TEST,
-    SUPPLY_INTERVAL,
+    SupplyKeys,
+    SupplyIntervalKeys,
+    Influence::Supply,
     "supply_test",
     "supply_test.interval",
     "V",
-    "\"5 V\"",
-    "\"5.25 V\"",
+    "5 V",
+    "5.25 V",
     Range::ANY,
-    "A comparison at several supply voltages. The level is read from the channel with the role `supply`, or stated in \
-     [[supply_test.interval]]."
+    "A comparison at several supply voltages. The level is read from the channel with the role `supply`, or \
+     stated in [[supply_test.interval]]."
 );
 comparison_table!(
-    VIBRATION_TEST,
-    VIBRATION_INTERVAL,
+    VibrationKeys,
+    VibrationIntervalKeys,
+    Influence::Vibration,
     "vibration_test",
     "vibration_test.interval",
     "g",
-    "\"0 g\"",
-    "\"2 g\"",
+    "0 g",
+    "2 g",
     Range::NOT_NEGATIVE,
     "A comparison without and with vibration: the rectified bias, proportional to the square of the rms \
-     level, and the change of N. The level is read from the channels with the role `vibration`, one per \
-     axis, or stated in [[vibration_test.interval]]."
+     level, and the change of N. The level is read from the channels with the role `vibration`, one per axis, \
+     or stated in [[vibration_test.interval]]."
 );
-
-fn stretch(s: &Section) -> Stated {
-    Stated { phase: s.text("phase"), from_s: s.number("from"), to_s: s.number("to") }
-}
-
-/// The series of switching off and on that a table declares.
-pub(crate) fn repeatability(section: &Section) -> RepeatabilityTest {
-    let number = |key| section.number(key);
-    RepeatabilityTest {
-        settling_s: number("settling").unwrap_or(0.0),
-        minimum_run_s: number("minimum_run").unwrap_or(60.0),
-        off_s: number("off").unwrap_or(60.0),
-        fewest: number("runs").unwrap_or(6.0) as usize,
-        temperature: section.text("temperature"),
-        runs: section.tables("run").iter().map(stretch).collect(),
-    }
-}
-
-/// The comparison that a procedure declares.
-pub(crate) fn comparison(root: &Section) -> Option<ComparisonTest> {
-    let (influence, section) = Influence::ALL.into_iter().find_map(|i| Some((i, root.table(i.table())?)))?;
-    let number = |key| section.number(key);
-    let usual = if influence == Influence::Supply { 5.0 } else { 0.0 };
-    Some(ComparisonTest {
-        influence,
-        reference: number("reference").unwrap_or(usual),
-        settling_s: number("settling").unwrap_or(5.0),
-        minimum_interval_s: number("minimum_interval").unwrap_or(30.0),
-        alternations: number("alternations").unwrap_or(2.0) as usize,
-        level_uncertainty: number("level_uncertainty").unwrap_or(0.0),
-        temperature_difference_deg_c: number("temperature_difference").unwrap_or(0.3),
-        temperature_coefficient: number("temperature_coefficient"),
-        declared: section.word("evidence") == Some("declared"),
-        temperature: section.text("temperature"),
-        intervals: section
-            .tables("interval")
-            .iter()
-            .map(|s| StatedLevel {
-                stretch: stretch(s),
-                level: s.number("level").unwrap_or(0.0),
-                axis: s.text("axis"),
-            })
-            .collect(),
-    })
-}
 
 /// The tables of which a measurand needs one, the likeliest first; `None` for one of other tests.
 fn tables_of(measurand: &Measurand) -> Option<Vec<&'static str>> {
     match measurand.evaluation {
-        Evaluation::Repeatability(_) => Some(vec![REPEATABILITY_TEST.name]),
+        Evaluation::Repeatability(_) => Some(vec![RepeatabilityKeys::SPEC.name]),
         Evaluation::Comparison { influence: Some(influence), .. } => Some(vec![influence.table()]),
         Evaluation::Comparison { influence: None, .. } => {
-            Some(vec![VIBRATION_TEST.name, MAGNETIC_TEST.name, SUPPLY_TEST.name])
+            Some(vec![VibrationKeys::SPEC.name, MagneticKeys::SPEC.name, SupplyKeys::SPEC.name])
         }
         _ => None,
     }
@@ -274,7 +235,12 @@ fn tables_of(measurand: &Measurand) -> Option<Vec<&'static str>> {
 
 /// What such tests and their measurands need of each other.
 pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
-    let tests = [REPEATABILITY_TEST.name, MAGNETIC_TEST.name, SUPPLY_TEST.name, VIBRATION_TEST.name];
+    let tests = [
+        RepeatabilityKeys::SPEC.name,
+        MagneticKeys::SPEC.name,
+        SupplyKeys::SPEC.name,
+        VibrationKeys::SPEC.name,
+    ];
     let others = ["rate_table", "temperature_test", "warm_up_test"];
     let asked: Vec<&str> = tests.into_iter().chain(others).filter(|t| root.table(t).is_some()).collect();
     let own = tests.iter().find(|t| root.table(t).is_some());

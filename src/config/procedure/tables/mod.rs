@@ -1,22 +1,28 @@
 //! The tables of a procedure file.
 
-mod conditions;
+pub(crate) mod conditions;
 pub(crate) mod influence;
 pub mod limits;
 pub mod phases;
 pub(crate) mod rate_table;
-mod site;
 pub mod temperature;
 
-use crate::config::procedure::unit_facts::UnitFact;
-use crate::config::recording_keys;
-use crate::config::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
-use conditions::{CONDITIONS, EXCLUDE};
-use influence::{MAGNETIC_TEST, REPEATABILITY_TEST, SUPPLY_TEST, VIBRATION_TEST};
-use limits::{LIMIT, REFERENCE};
-use rate_table::RATE_TABLE;
-use site::{INSTRUMENT, SITE};
-use temperature::{TEMPERATURE_TEST, WARM_UP_TEST};
+use super::model::{Analysis, ExplainSpec, Instrument, MeasurandKeys, ReportSpec, UnitSpec, Waiver};
+use super::section::Section;
+use super::site::Site;
+use crate::config::recording_keys::RecordingKeys;
+use crate::config::spec::{TableSpec, Word};
+use crate::config::table::{Table, words};
+use crate::i18n::LocalText;
+use crate::record::ClauseRecord;
+use crate::recording::{ColumnRef, Role};
+use crate::units::Unit;
+use conditions::{Conditions, Exclusion};
+use influence::{MagneticKeys, RepeatabilityKeys, SupplyKeys, VibrationKeys};
+use limits::{LimitKeys, ReferenceKeys, TypicalValues};
+use rate_table::RateTableKeys;
+use sagnac_ingest::StampWriting;
+use temperature::{TemperatureKeys, WarmUpKeys};
 
 /// Roles a channel may have, with their meaning.
 pub const ROLES: &[Word] = &[
@@ -59,154 +65,123 @@ pub const FIGURES: &[Word] = &[
     ("table_polar", "residual over the angle of the table, as a polar plot"),
 ];
 
+words!(Role, ROLES, |word: &str| Role::ALL.iter().copied().find(|role| role.id() == word));
+
 /// The procedure file as a whole.
-pub static PROCEDURE_FILE: TableSpec = TableSpec {
-    name: "",
-    doc: "A procedure: what is recorded, under which conditions, what is determined from it and by which limits it \
-          is judged.",
-    keys: &[
-        required("format", Kind::Format("procedure/1"), "\"procedure/1\"", "Version of the format."),
-        required("procedure", Kind::Table(&PROCEDURE), "", "Identity of the procedure."),
-        optional("unit_under_test", Kind::Table(&UNIT_UNDER_TEST), "", "The unit the procedure is for."),
-        optional("recording", Kind::Table(&RECORDING), "", "The recording as a whole."),
-        required("channel", Kind::Tables(&CHANNEL), "", "The channels of the recording, one table each."),
-        optional("conditions", Kind::Table(&CONDITIONS), "", "Conditions under which the test is valid."),
-        optional(
-            "exclude",
-            Kind::Tables(&EXCLUDE),
-            "",
-            "Spans excluded from the evaluation, declared beforehand.",
-        ),
-        optional("site", Kind::Table(&SITE), "", "Where the unit stands and where its input axis points."),
-        optional(
-            "instrument",
-            Kind::Tables(&INSTRUMENT),
-            "",
-            "Instruments used, with the validity of their calibration.",
-        ),
-        optional("rate_table", Kind::Table(&RATE_TABLE), "", "A test on a rate table."),
-        optional("analysis", Kind::Table(&ANALYSIS), "", "Options of the analysis."),
-        optional(
-            "explain",
-            Kind::Table(&EXPLAIN),
-            "",
-            "Comparison of the recording with the model of the unit's family.",
-        ),
-        optional("temperature_test", Kind::Table(&TEMPERATURE_TEST), "", "A test over temperature."),
-        optional("warm_up_test", Kind::Table(&WARM_UP_TEST), "", "A test of the warm-up."),
-        optional("repeatability_test", Kind::Table(&REPEATABILITY_TEST), "", "A series of turn-ons."),
-        optional("magnetic_test", Kind::Table(&MAGNETIC_TEST), "", "A comparison in a magnetic field."),
-        optional("supply_test", Kind::Table(&SUPPLY_TEST), "", "A comparison at several supply voltages."),
-        optional("vibration_test", Kind::Table(&VIBRATION_TEST), "", "A comparison under vibration."),
-        required(
-            "measurand",
-            Kind::Tables(&MEASURAND),
-            "",
-            "Quantities to determine, one table each, in the order of the report.",
-        ),
-        optional("limit", Kind::Tables(&LIMIT), "", "Limits. A limits file may replace them."),
-        optional(
-            "reference",
-            Kind::Tables(&REFERENCE),
-            "",
-            "Published or data-sheet values shown for comparison.",
-        ),
-        optional(
-            "expected",
-            Kind::QuantityMap,
-            "",
-            "Typical noise of the family, by measurand id: what the power of the limits is computed from.",
-        ),
-        optional("clause", Kind::Tables(&CLAUSE), "", "Clauses of the standard and where each is covered."),
-        optional("report", Kind::Table(&REPORT), "", "What the report shows."),
-        optional(
-            "waiver",
-            Kind::Tables(&WAIVER),
-            "",
-            "Waivers: recorded next to the verdict, never part of it.",
-        ),
-    ],
-};
+pub static PROCEDURE_FILE: TableSpec = *ProcedureFile::SPEC;
 
-pub(crate) static PROCEDURE: TableSpec = TableSpec {
-    name: "procedure",
-    doc: "Identity of the procedure, shown in the header of every report.",
-    keys: &[
-        required("id", Kind::Id, "\"static-bias\"", "Id, also used in the name of the output folder."),
-        required("title", Kind::LocalText, "\"Static bias and noise\"", "Title of the report."),
-        required(
-            "revision",
-            Kind::Text,
-            "\"A\"",
-            "Revision. Change it whenever anything else in the file changes.",
-        ),
-        optional(
-            "standard",
-            Kind::LocalText,
-            "\"IEEE Std 952-2020\"",
-            "Standard followed, with its edition.",
-        ),
-        optional("clause", Kind::LocalText, "\"12.11 drift-rate series\"", "Clause of the standard."),
-        optional("author", Kind::LocalText, "\"QA department\"", "Author of the procedure."),
-    ],
-};
+/// A procedure: what is recorded, under which conditions, what is determined from it and by which limits it is
+/// judged.
+#[derive(Table)]
+#[table("", format = "procedure/1")]
+pub(in crate::config::procedure) struct ProcedureFile {
+    /// Identity of the procedure.
+    pub procedure: Identity,
+    /// The unit the procedure is for.
+    #[key(optional)]
+    pub unit_under_test: UnitSpec,
+    /// The recording as a whole.
+    #[key(optional)]
+    pub recording: RecordingTable,
+    /// The channels of the recording, one table each.
+    #[key(name = "channel", required)]
+    pub channels: Vec<ChannelKeys>,
+    /// Conditions under which the test is valid.
+    #[key(optional)]
+    pub conditions: Conditions,
+    /// Spans excluded from the evaluation, declared beforehand.
+    #[key(name = "exclude")]
+    pub exclusions: Vec<Exclusion>,
+    /// Where the unit stands and where its input axis points.
+    pub site: Option<Site>,
+    /// Instruments used, with the validity of their calibration.
+    #[key(name = "instrument")]
+    pub instruments: Vec<Instrument>,
+    /// A test on a rate table.
+    pub rate_table: Option<RateTableKeys>,
+    /// Options of the analysis.
+    #[key(optional)]
+    pub analysis: Analysis,
+    /// Comparison of the recording with the model of the unit's family.
+    pub explain: Option<ExplainSpec>,
+    /// A test over temperature.
+    pub temperature_test: Option<TemperatureKeys>,
+    /// A test of the warm-up.
+    pub warm_up_test: Option<WarmUpKeys>,
+    /// A series of turn-ons.
+    pub repeatability_test: Option<RepeatabilityKeys>,
+    /// A comparison in a magnetic field.
+    pub magnetic_test: Option<MagneticKeys>,
+    /// A comparison at several supply voltages.
+    pub supply_test: Option<SupplyKeys>,
+    /// A comparison under vibration.
+    pub vibration_test: Option<VibrationKeys>,
+    /// Quantities to determine, one table each, in the order of the report.
+    #[key(name = "measurand", required)]
+    pub measurands: Vec<MeasurandKeys>,
+    /// Limits. A limits file may replace them.
+    #[key(name = "limit")]
+    pub limits: Vec<LimitKeys>,
+    /// Published or data-sheet values shown for comparison.
+    #[key(name = "reference")]
+    pub references: Vec<ReferenceKeys>,
+    /// Typical noise of the family, by measurand id: what the power of the limits is computed from.
+    #[key(optional)]
+    pub expected: TypicalValues,
+    /// Clauses of the standard and where each is covered.
+    #[key(name = "clause")]
+    pub clauses: Vec<ClauseKeys>,
+    /// What the report shows.
+    #[key(optional)]
+    pub report: ReportSpec,
+    /// Waivers: recorded next to the verdict, never part of it.
+    #[key(name = "waiver")]
+    pub waivers: Vec<Waiver>,
+}
 
-pub(crate) static UNIT_UNDER_TEST: TableSpec = TableSpec {
-    name: "unit_under_test",
-    doc: "The unit the procedure is for. The serial number is given when the test is run.",
-    keys: &[
-        optional("family", Kind::LocalText, "\"OIUS-501\"", "Family of devices."),
-        optional("part", Kind::Text, "\"501-00-01\"", "Part number."),
-        optional("revision", Kind::Text, "\"C\"", "Revision of the part."),
-        with_default(
-            "serial_required",
-            Kind::Flag,
-            "true",
-            "true",
-            "Whether a run is an error if neither `--serial` nor the recording states a serial number.",
-        ),
-        optional(
-            "requires",
-            Kind::Choices(UnitFact::WORDS),
-            "[\"lot\"]",
-            "What must be known of the unit besides, or a run is an error: from `--lot`, `--unit-data` or the manifest.",
-        ),
-    ],
-};
+/// Identity of the procedure, shown in the header of every report.
+#[derive(Table)]
+#[table("procedure")]
+pub(in crate::config::procedure) struct Identity {
+    /// Id, also used in the name of the output folder.
+    #[key(id, example = "static-bias")]
+    pub id: String,
+    /// Title of the report.
+    #[key(example = "Static bias and noise")]
+    pub title: LocalText,
+    /// Revision. Change it whenever anything else in the file changes.
+    #[key(example = "A")]
+    pub revision: String,
+    /// Standard followed, with its edition.
+    #[key(example = "IEEE Std 952-2020")]
+    pub standard: Option<LocalText>,
+    /// Clause of the standard.
+    #[key(example = "12.11 drift-rate series")]
+    pub clause: Option<LocalText>,
+    /// Author of the procedure.
+    #[key(example = "QA department")]
+    pub author: Option<LocalText>,
+}
 
-static RECORDING: TableSpec = TableSpec {
-    name: "recording",
-    doc: "The recording as a whole.",
-    keys: &[
-        optional(
-            "sample_rate",
-            quantity("Hz", Range::POSITIVE),
-            "\"10 Hz\"",
-            "Declared sample rate. Required when no channel has the role `time`; otherwise the measured rate is judged against it.",
-        ),
-        with_default(
-            "sample_rate_tolerance",
-            quantity("1", Range::above_up_to(0.0, 0.5)),
-            "\"1 %\"",
-            "\"0.1 %\"",
-            "Maximum relative difference between the declared and the measured sample rate.",
-        ),
-        recording_keys::FORMAT,
-        recording_keys::ENCODING,
-        recording_keys::DELIMITER,
-        recording_keys::DECIMAL,
-        recording_keys::HEADER_LINE,
-        recording_keys::FIRST_LINE,
-        recording_keys::COMMENT,
-        recording_keys::PART,
-        optional(
-            "layout",
-            Kind::Text,
-            "\"layouts/logger.toml\"",
-            "Layout of the records of a raw binary file, relative to the procedure.",
-        ),
-    ],
-};
+/// The recording as a whole.
+#[derive(Table)]
+#[table("recording")]
+pub(in crate::config::procedure) struct RecordingTable {
+    /// Declared sample rate. Required when no channel has the role `time`; otherwise the measured rate is judged
+    /// against it.
+    #[key(quantity = "Hz", above = 0, example = "10 Hz")]
+    pub sample_rate_hz: Option<f64>,
+    /// Maximum relative difference between the declared and the measured sample rate.
+    #[key(quantity = "1", above = 0, max = 0.5, default = "1 %", example = "0.1 %")]
+    pub sample_rate_tolerance: f64,
+    #[key(flatten)]
+    pub reading: RecordingKeys,
+    /// Layout of the records of a raw binary file, relative to the procedure.
+    #[key(example = "layouts/logger.toml")]
+    pub layout: Option<String>,
+    #[key(section)]
+    pub section: Section,
+}
 
 /// Ways to write time stamps.
 pub const STAMPS: &[Word] = &[
@@ -218,179 +193,82 @@ pub const STAMPS: &[Word] = &[
     ("number", "numbers"),
 ];
 
-pub(crate) static CHANNEL: TableSpec = TableSpec {
-    name: "channel",
-    doc: "One channel: a column of the recording and its role.",
-    keys: &[
-        required("id", Kind::Id, "\"rate\"", "Id of the channel in this procedure and in results."),
-        required(
-            "column",
-            Kind::Column,
-            "\"rate_deg_h\"",
-            "Column: its name in the header, or its position counted from 1.",
-        ),
-        required("role", Kind::Choice(ROLES), "\"rate\"", "What the channel measures."),
-        required(
-            "unit",
-            Kind::UnitText,
-            "\"deg/h\"",
-            "Unit of the numbers in the file; `count` together with `scale`.",
-        ),
-        optional(
-            "scale",
-            Kind::Text,
-            "\"0.01 arcsec/count\"",
-            "Size of one `unit` of the file: a number with unit. The product with `unit` must suit the role.",
-        ),
-        with_default(
-            "reversed",
-            Kind::Flag,
-            "false",
-            "true",
-            "True if the channel has the opposite sign; its values are negated.",
-        ),
-        optional(
-            "stamp",
-            Kind::Choice(STAMPS),
-            "\"day_first\"",
-            "Timestamp format of a text file, for the role `time`; detected if omitted. Timestamps are \
-             converted to seconds, so `unit` is \"s\".",
-        ),
-        optional(
-            "date_column",
-            Kind::Column,
-            "\"date\"",
-            "Column of the dates that belong to the clock times in `column`, for the role `time`.",
-        ),
-        optional(
-            "week_column",
-            Kind::Column,
-            "\"gps_week\"",
-            "Column of the GPS weeks that belong to the seconds of week in `column`, for the role `time`.",
-        ),
-        optional(
-            "rail_low",
-            Kind::QuantityBy("role"),
-            "\"-400 deg/s\"",
-            "Lower rail of the channel: samples at or below it count as saturated.",
-        ),
-        optional(
-            "rail_high",
-            Kind::QuantityBy("role"),
-            "\"400 deg/s\"",
-            "Upper rail of the channel: samples at or above it count as saturated.",
-        ),
-        optional(
-            "rollover",
-            Kind::Text,
-            "\"86400 s\"",
-            "Period after which timestamps or a counter restart, such as \"86400 s\" for time of day or \
-             \"256 count\" for an 8-bit counter. Common periods are detected if no sample is missing at the \
-             restart.",
-        ),
-        with_default("required", Kind::Flag, "true", "false", "False for an optional column."),
-    ],
-};
+words!(StampWriting, STAMPS, |word: &str| match word {
+    "iso8601" => Some(StampWriting::Iso8601),
+    "day_first" => Some(StampWriting::DayFirst),
+    "month_first" => Some(StampWriting::MonthFirst),
+    "clock" => Some(StampWriting::Clock),
+    "gps_week_seconds" => Some(StampWriting::GpsWeekSeconds),
+    "number" => Some(StampWriting::Number),
+    _ => None,
+});
 
-static ANALYSIS: TableSpec = TableSpec {
-    name: "analysis",
-    doc: "Options of the analysis.",
-    keys: &[
-        with_default(
-            "taus",
-            Kind::Taus,
-            "\"octave\"",
-            "\"octave\"",
-            "Averaging times of the Allan deviation.",
-        ),
-        with_default(
-            "exact",
-            Kind::Flag,
-            "false",
-            "true",
-            "Sum every overlapping term at any record length, at the cost of time and memory.",
-        ),
-        with_default(
-            "line_false_alarm",
-            Kind::Number(Range::between(1e-9, 0.5)),
-            "0.01",
-            "0.01",
-            "Probability that noise alone gives a line anywhere in the spectrum.",
-        ),
-    ],
-};
+/// One channel: a column of the recording and its role.
+#[derive(Table)]
+#[table("channel")]
+pub(crate) struct ChannelKeys {
+    /// Id of the channel in this procedure and in results.
+    #[key(id, required, example = "rate")]
+    pub id: Option<String>,
+    /// Column: its name in the header, or its position counted from 1.
+    #[key(required, example = "rate_deg_h")]
+    pub column: Option<ColumnRef>,
+    /// What the channel measures.
+    #[key(required, example = "rate")]
+    pub role: Option<Role>,
+    /// Unit of the numbers in the file; `count` together with `scale`.
+    #[key(required, example = "deg/h")]
+    pub unit: Option<Unit>,
+    /// Size of one `unit` of the file: a number with unit. The product with `unit` must suit the role.
+    #[key(example = "0.01 arcsec/count")]
+    pub scale: Option<String>,
+    /// True if the channel has the opposite sign; its values are negated.
+    #[key(default = false, example = true)]
+    pub reversed: bool,
+    /// Timestamp format of a text file, for the role `time`; detected if omitted. Timestamps are converted to
+    /// seconds, so `unit` is "s".
+    #[key(example = "day_first")]
+    pub stamp: Option<StampWriting>,
+    /// Column of the dates that belong to the clock times in `column`, for the role `time`.
+    #[key(example = "date")]
+    pub date_column: Option<ColumnRef>,
+    /// Column of the GPS weeks that belong to the seconds of week in `column`, for the role `time`.
+    #[key(example = "gps_week")]
+    pub week_column: Option<ColumnRef>,
+    /// Lower rail of the channel: samples at or below it count as saturated.
+    #[key(unit_of = "role", example = "-400 deg/s")]
+    pub rail_low: Option<f64>,
+    /// Upper rail of the channel: samples at or above it count as saturated.
+    #[key(unit_of = "role", example = "400 deg/s")]
+    pub rail_high: Option<f64>,
+    /// Period after which timestamps or a counter restart, such as "86400 s" for time of day or "256 count" for an
+    /// 8-bit counter. Common periods are detected if no sample is missing at the restart.
+    #[key(example = "86400 s")]
+    pub rollover: Option<String>,
+    /// False for an optional column.
+    #[key(default = true, example = false)]
+    pub required: bool,
+    #[key(section)]
+    pub section: Section,
+}
 
-static EXPLAIN: TableSpec = TableSpec {
-    name: "explain",
-    doc: "Compares the recording with a model: whether the unit behaves like its family, and if not, where \
-          it differs and why. The finding is reported next to the verdict and is not part of it.",
-    keys: &[
-        required(
-            "model",
-            Kind::Text,
-            "\"family.toml\"",
-            "The model, a file as `sagnac explain` reads it, relative to the procedure.",
-        ),
-        with_default(
-            "alpha",
-            Kind::Number(Range::between(1e-9, 0.5)),
-            "0.01",
-            "0.01",
-            "Probability of calling a correct model a mismatch.",
-        ),
-        with_default(
-            "max_effects",
-            Kind::Number(Range::between(1.0, 8.0)),
-            "3",
-            "2",
-            "Maximum number of effects added to the model.",
-        ),
-    ],
-};
-
-static MEASURAND: TableSpec = TableSpec {
-    name: "measurand",
-    doc: "A quantity to determine, for one channel or for every gyro channel.",
-    keys: &[
-        required("id", Kind::Measurand, "\"angle_random_walk\"", "Id of the measurand."),
-        optional(
-            "channel",
-            Kind::Id,
-            "\"x\"",
-            "Channel. Default: every channel with the role `rate` or `angle_increment`.",
-        ),
-        optional("options", Kind::Table(&MEASURAND_OPTIONS), "", "Options of the measurand, if it has any."),
-    ],
-};
-
-/// Options of measurands; which measurand takes which stands in the measurand table.
-pub static MEASURAND_OPTIONS: TableSpec = TableSpec {
-    name: "measurand.options",
-    doc: "Options of a measurand. `earth_rate` belongs to `static_bias`.",
-    keys: &[optional(
-        "earth_rate",
-        Kind::Choice(EARTH_RATE),
-        "\"remove\"",
-        "Treatment of the Earth rate along the input axis. Default: \"remove\".",
-    )],
-};
-
-/// What may be done with the Earth rate.
-pub const EARTH_RATE: &[Word] = &[
-    ("remove", "the Earth rate is subtracted, with its uncertainty; needs [site]"),
-    ("keep", "the mean rate is reported as recorded"),
-];
-
-pub(crate) static CLAUSE: TableSpec = TableSpec {
-    name: "clause",
-    doc: "A clause of the standard and where it is covered.",
-    keys: &[
-        required("clause", Kind::LocalText, "\"12.11\"", "Number of the clause."),
-        required("title", Kind::LocalText, "\"Drift-rate series\"", "Its title."),
-        required("status", Kind::Choice(CLAUSE_STATUS), "\"here\"", "Where it is covered."),
-        optional("note", Kind::LocalText, "\"bias and random drift\"", "Details, or the reason why not."),
-    ],
-};
+/// A clause of the standard and where it is covered.
+#[derive(Table)]
+#[table("clause")]
+pub(in crate::config::procedure) struct ClauseKeys {
+    /// Number of the clause.
+    #[key(example = "12.11")]
+    clause: LocalText,
+    /// Its title.
+    #[key(example = "Drift-rate series")]
+    title: LocalText,
+    /// Where it is covered.
+    #[key(choice = CLAUSE_STATUS, example = "here")]
+    status: &'static str,
+    /// Details, or the reason why not.
+    #[key(example = "bias and random drift")]
+    note: Option<LocalText>,
+}
 
 const CLAUSE_STATUS: &[Word] = &[
     ("here", "dealt with by this procedure"),
@@ -398,58 +276,9 @@ const CLAUSE_STATUS: &[Word] = &[
     ("not_applicable", "does not apply to this unit"),
 ];
 
-static REPORT: TableSpec = TableSpec {
-    name: "report",
-    doc: "What the report shows.",
-    keys: &[
-        optional(
-            "title",
-            Kind::LocalText,
-            "\"Acceptance report\"",
-            "Title. Default: the title of the procedure.",
-        ),
-        optional(
-            "figures",
-            Kind::Choices(FIGURES),
-            "[\"rate\", \"sigma_tau\"]",
-            "Figures, in this order. Default: all.",
-        ),
-        with_default(
-            "show_reference",
-            Kind::Flag,
-            "true",
-            "true",
-            "Whether published values are shown in a column next to the measured ones.",
-        ),
-        optional(
-            "signatures",
-            Kind::Choices(SIGNER_ROLES),
-            "[\"tested\", \"approved\"]",
-            "Who must sign the result, each by a key of their own; `sagnac verify` asks for it. Default: nobody.",
-        ),
-    ],
-};
-
-const SIGNER_ROLES: &[Word] = &[
-    ("tested", "who made the test"),
-    ("reviewed", "who checked the result"),
-    ("approved", "who decided on the unit"),
-];
-
-static WAIVER: TableSpec = TableSpec {
-    name: "waiver",
-    doc: "A decision to accept one unit in spite of a row. It is recorded next to the verdict and never \
-          changes it.",
-    keys: &[
-        required("serial", Kind::Text, "\"0042\"", "Serial number of the unit: a waiver is for one unit."),
-        required("row", Kind::Text, "\"angle_random_walk\"", "Measurand or condition concerned."),
-        required("by", Kind::LocalText, "\"J. Smith, quality\"", "Who decided."),
-        required(
-            "reason",
-            Kind::LocalText,
-            "\"used at constant temperature only\"",
-            "Reason, as shown in the report.",
-        ),
-        required("date", Kind::Date, "2026-03-01", "Date of the decision."),
-    ],
-};
+impl From<ClauseKeys> for ClauseRecord {
+    fn from(keys: ClauseKeys) -> ClauseRecord {
+        let ClauseKeys { clause, title, status, note } = keys;
+        ClauseRecord { clause, title, status: status.to_owned(), note: note.unwrap_or_default() }
+    }
+}

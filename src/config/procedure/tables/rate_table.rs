@@ -3,253 +3,188 @@
 use crate::config::procedure::model::Procedure;
 use crate::config::reader::Reader;
 use crate::config::section::Section;
-use crate::config::spec::{
-    Kind, Range, TableSpec, Word, difference, optional, quantity, required, with_default,
-};
+use crate::config::spec::Word;
+use crate::config::table::Table;
 use crate::i18n::Note;
 use crate::measurand::Test;
 use crate::rate_table::setup::{Input, ReferenceInput, Setup};
 use crate::recording::Role;
 
-pub(crate) static RATE_TABLE: TableSpec = TableSpec {
-    name: "rate_table",
-    doc: "A test on a rate table: steps of constant rate are found in the channels with the roles `table_rate`, \
-          `table_angle` and `outer_rate`, and the output is held against them. Uncertainties are standard uncertainties \
-          (k = 1).",
-    keys: &[
-        with_default(
-            "rows_are_steps",
-            Kind::Flag,
-            "false",
-            "true",
-            "True if every row of the recording is already the mean of a step.",
-        ),
-        with_default(
-            "settling",
-            quantity("s", Range::NOT_NEGATIVE),
-            "\"2 s\"",
-            "\"5 s\"",
-            "Time excluded after a change of rate.",
-        ),
-        with_default(
-            "minimum_step",
-            quantity("s", Range::POSITIVE),
-            "\"5 s\"",
-            "\"20 s\"",
-            "Minimum time at one rate, without the settling; shorter stretches are not evaluated.",
-        ),
-        with_default(
-            "whole_turns",
-            Kind::Flag,
-            "true",
-            "false",
-            "Whether steps of at least one turn are cut to whole turns, over which wobble and the Earth's \
-             rotation average out.",
-        ),
-        optional(
-            "full_scale",
-            quantity("deg/h", Range::POSITIVE),
-            "\"100 deg/s\"",
-            "Full scale: the reference for ppm of full scale; the table must reach it. Default: the highest \
-             rate of the recording.",
-        ),
-        with_default(
-            "rate_tolerance",
-            quantity("1", Range::above_up_to(0.0, 0.5)),
-            "\"1 %\"",
-            "\"0.1 %\"",
-            "How far from full scale the highest rate may stay, and how far the angle of the table may disagree with its rate.",
-        ),
-        optional(
-            "of_rate_from",
-            quantity("deg/h", Range::POSITIVE),
-            "\"1 deg/s\"",
-            "Lowest rate at which residuals are given in ppm of the rate. Default: a tenth of full scale.",
-        ),
-        with_default(
-            "rate_uncertainty",
-            quantity("ppm", Range::NOT_NEGATIVE),
-            "\"0 ppm\"",
-            "\"1 ppm\"",
-            "Calibration of the table's rate or angle over whole turns, and of the clock.",
-        ),
-        optional(
-            "scale_factor_uncertainty",
-            quantity("ppm", Range::POSITIVE),
-            "\"500 ppm\"",
-            "Maximum deviation of the scale factor outside a dead zone from nominal, from a scale-factor \
-             test. If omitted, it is estimated from the small rates alone, and a dead zone as small as the \
-             noise of a step gets an upper limit only.",
-        ),
-        with_default(
-            "angle_uncertainty",
-            quantity("arcsec", Range::NOT_NEGATIVE),
-            "\"0 arcsec\"",
-            "\"2 arcsec\"",
-            "One reading of the table angle.",
-        ),
-        with_default(
-            "alignment_uncertainty",
-            quantity("mrad", Range::NOT_NEGATIVE),
-            "\"0 mrad\"",
-            "\"1 mrad\"",
-            "Angle between the input axis and the axis of the table.",
-        ),
-        optional(
-            "temperature",
-            Kind::Id,
-            "\"temp\"",
-            "Channel of the unit's temperature. Default: the first.",
-        ),
-        with_default(
-            "temperature_uncertainty",
-            difference("degC", Range::NOT_NEGATIVE),
-            "\"0 degC\"",
-            "\"0.2 degC\"",
-            "The thermometer.",
-        ),
-        with_default(
-            "response",
-            Kind::Choice(RESPONSES),
-            "\"line\"",
-            "\"sine\"",
-            "Shape of the output over rate.",
-        ),
-        optional(
-            "position",
-            Kind::Tables(&POSITION),
-            "",
-            "Positions relative to the Earth's rotation, instead of a rotating table; needs [site].",
-        ),
-        optional("turn", Kind::Tables(&TURN), "", "Turns by a known angle, instead of a recorded table."),
-        optional("rest", Kind::Tables(&REST), "", "Rests, which give the bias for the turns."),
-    ],
-};
+/// A test on a rate table: steps of constant rate are found in the channels with the roles `table_rate`,
+/// `table_angle` and `outer_rate`, and the output is held against them. Uncertainties are standard
+/// uncertainties (k = 1).
+#[derive(Table)]
+#[table("rate_table")]
+pub(crate) struct RateTableKeys {
+    /// True if every row of the recording is already the mean of a step.
+    #[key(default = false, example = true)]
+    rows_are_steps: bool,
+    /// Time excluded after a change of rate.
+    #[key(quantity = "s", min = 0, default = "2 s", example = "5 s")]
+    settling_s: f64,
+    /// Minimum time at one rate, without the settling; shorter stretches are not evaluated.
+    #[key(quantity = "s", above = 0, default = "5 s", example = "20 s")]
+    minimum_step_s: f64,
+    /// Whether steps of at least one turn are cut to whole turns, over which wobble and the Earth's rotation
+    /// average out.
+    #[key(default = true, example = false)]
+    whole_turns: bool,
+    /// Full scale: the reference for ppm of full scale; the table must reach it. Default: the highest rate of the
+    /// recording.
+    #[key(quantity = "deg/h", above = 0, example = "100 deg/s")]
+    full_scale_deg_h: Option<f64>,
+    /// How far from full scale the highest rate may stay, and how far the angle of the table may disagree with its
+    /// rate.
+    #[key(quantity = "1", above = 0, max = 0.5, default = "1 %", example = "0.1 %")]
+    rate_tolerance: f64,
+    /// Lowest rate at which residuals are given in ppm of the rate. Default: a tenth of full scale.
+    #[key(quantity = "deg/h", above = 0, example = "1 deg/s")]
+    of_rate_from_deg_h: Option<f64>,
+    /// Calibration of the table's rate or angle over whole turns, and of the clock.
+    #[key(quantity = "ppm", min = 0, default = "0 ppm", example = "1 ppm")]
+    rate_uncertainty_ppm: f64,
+    /// Maximum deviation of the scale factor outside a dead zone from nominal, from a scale-factor test. If
+    /// omitted, it is estimated from the small rates alone, and a dead zone as small as the noise of a step gets an
+    /// upper limit only.
+    #[key(quantity = "ppm", above = 0, example = "500 ppm")]
+    scale_factor_uncertainty_ppm: Option<f64>,
+    /// One reading of the table angle.
+    #[key(quantity = "arcsec", min = 0, default = "0 arcsec", example = "2 arcsec")]
+    angle_uncertainty_arcsec: f64,
+    /// Angle between the input axis and the axis of the table.
+    #[key(quantity = "mrad", min = 0, default = "0 mrad", example = "1 mrad")]
+    alignment_uncertainty_mrad: f64,
+    /// Channel of the unit's temperature. Default: the first.
+    #[key(id, example = "temp")]
+    temperature: Option<String>,
+    /// The thermometer.
+    #[key(difference = "degC", min = 0, default = "0 degC", example = "0.2 degC")]
+    temperature_uncertainty_deg_c: f64,
+    /// Shape of the output over rate.
+    #[key(choice = RESPONSES, default = "line", example = "sine")]
+    response: &'static str,
+    /// Positions relative to the Earth's rotation, instead of a rotating table; needs [site].
+    #[key(name = "position")]
+    positions: Vec<PositionKeys>,
+    /// Turns by a known angle, instead of a recorded table.
+    #[key(name = "turn")]
+    turns: Vec<TurnKeys>,
+    /// Rests, which give the bias for the turns.
+    #[key(name = "rest")]
+    rests: Vec<RestKeys>,
+}
 
 const RESPONSES: &[Word] =
     &[("line", "a straight line: a closed loop"), ("sine", "a sine: an interferometer without a loop")];
 
-const PHASE: crate::config::spec::KeySpec =
-    optional("phase", Kind::Text, "\"z_up\"", "Its phase in the manifest; instead of `from` and `to`.");
-const FROM: crate::config::spec::KeySpec = optional(
-    "from",
-    quantity("s", Range::NOT_NEGATIVE),
-    "\"0 s\"",
-    "Start, from the start of the recording.",
-);
-const TO: crate::config::spec::KeySpec =
-    optional("to", quantity("s", Range::POSITIVE), "\"300 s\"", "End, from the start of the recording.");
-const ANGLE: Range = Range::between(-360.0, 360.0);
+/// A stretch of the recording.
+#[derive(Table)]
+struct StretchKeys {
+    /// Its phase in the manifest; instead of `from` and `to`.
+    #[key(example = "z_up")]
+    phase: Option<String>,
+    /// Start, from the start of the recording.
+    #[key(quantity = "s", min = 0, example = "0 s")]
+    from_s: Option<f64>,
+    /// End, from the start of the recording.
+    #[key(quantity = "s", above = 0, example = "300 s")]
+    to_s: Option<f64>,
+}
 
-static POSITION: TableSpec = TableSpec {
-    name: "rate_table.position",
-    doc: "A position at rest against the Earth's rotation: where the input axis points.",
-    keys: &[
-        PHASE,
-        FROM,
-        TO,
-        optional("channel", Kind::Id, "\"z\"", "Channel of the axis. Default: every gyro channel."),
-        with_default(
-            "heading",
-            quantity("deg", ANGLE),
-            "\"0 deg\"",
-            "\"90 deg\"",
-            "Heading from true north, positive to the east.",
-        ),
-        with_default(
-            "heading_uncertainty",
-            quantity("deg", Range::between(0.0, 360.0)),
-            "\"0 deg\"",
-            "\"1 arcmin\"",
-            "Its uncertainty.",
-        ),
-        required(
-            "elevation",
-            quantity("deg", Range::between(-90.0, 90.0)),
-            "\"-90 deg\"",
-            "Elevation above the horizon: 90 deg is up.",
-        ),
-        with_default(
-            "elevation_uncertainty",
-            quantity("deg", Range::between(0.0, 90.0)),
-            "\"0 deg\"",
-            "\"1 arcmin\"",
-            "Its uncertainty.",
-        ),
-    ],
-};
+/// A position at rest against the Earth's rotation: where the input axis points.
+#[derive(Table)]
+#[table("rate_table.position")]
+pub(crate) struct PositionKeys {
+    #[key(flatten)]
+    stretch: StretchKeys,
+    /// Channel of the axis. Default: every gyro channel.
+    #[key(id, example = "z")]
+    channel: Option<String>,
+    /// Heading from true north, positive to the east.
+    #[key(quantity = "deg", min = -360, max = 360, default = "0 deg", example = "90 deg")]
+    heading_deg: f64,
+    /// Its uncertainty.
+    #[key(quantity = "deg", min = 0, max = 360, default = "0 deg", example = "1 arcmin")]
+    heading_uncertainty_deg: f64,
+    /// Elevation above the horizon: 90 deg is up.
+    #[key(quantity = "deg", min = -90, max = 90, example = "-90 deg")]
+    elevation_deg: f64,
+    /// Its uncertainty.
+    #[key(quantity = "deg", min = 0, max = 90, default = "0 deg", example = "1 arcmin")]
+    elevation_uncertainty_deg: f64,
+}
 
-static TURN: TableSpec = TableSpec {
-    name: "rate_table.turn",
-    doc: "A turn by a known angle, rests at both ends included.",
-    keys: &[
-        PHASE,
-        FROM,
-        TO,
-        required("channel", Kind::Id, "\"x\"", "Channel about whose axis the unit is turned."),
-        required("angle", quantity("deg", Range::ANY), "\"360 deg\"", "Angle turned by."),
-        with_default(
-            "angle_uncertainty",
-            quantity("deg", Range::NOT_NEGATIVE),
-            "\"0 deg\"",
-            "\"0.5 deg\"",
-            "Its uncertainty.",
-        ),
-    ],
-};
+/// A turn by a known angle, rests at both ends included.
+#[derive(Table)]
+#[table("rate_table.turn")]
+pub(crate) struct TurnKeys {
+    #[key(flatten)]
+    stretch: StretchKeys,
+    /// Channel about whose axis the unit is turned.
+    #[key(id, example = "x")]
+    channel: String,
+    /// Angle turned by.
+    #[key(quantity = "deg", example = "360 deg")]
+    angle_deg: f64,
+    /// Its uncertainty.
+    #[key(quantity = "deg", min = 0, default = "0 deg", example = "0.5 deg")]
+    angle_uncertainty_deg: f64,
+}
 
-static REST: TableSpec = TableSpec {
-    name: "rate_table.rest",
-    doc: "A rest, which gives the bias for the turns.",
-    keys: &[PHASE, FROM, TO],
-};
+/// A rest, which gives the bias for the turns.
+#[derive(Table)]
+#[table("rate_table.rest")]
+pub(crate) struct RestKeys {
+    #[key(flatten)]
+    stretch: StretchKeys,
+}
 
-/// The setup that the table declares.
-pub(crate) fn setup(section: &Section, root: &Section) -> Setup {
-    let number = |key: &str| section.number(key);
-    let usual = Setup::default();
-    Setup {
-        rows_are_steps: section.flag("rows_are_steps"),
-        settling_s: number("settling").unwrap_or(usual.settling_s),
-        minimum_step_s: number("minimum_step").unwrap_or(usual.minimum_step_s),
-        whole_turns: section.flag("whole_turns"),
-        by_angle: root.tables("channel").iter().any(|c| c.word("role") == Some("table_angle")),
-        full_scale_deg_h: number("full_scale"),
-        of_rate_from_deg_h: number("of_rate_from"),
-        rate_tolerance: number("rate_tolerance").unwrap_or(usual.rate_tolerance),
-        rate_uncertainty: number("rate_uncertainty").unwrap_or(0.0) * 1e-6,
-        scale_factor_uncertainty: number("scale_factor_uncertainty").map(|u| u * 1e-6),
-        angle_uncertainty_arcsec: number("angle_uncertainty").unwrap_or(0.0),
-        alignment_uncertainty_rad: number("alignment_uncertainty").unwrap_or(0.0) * 1e-3,
-        temperature_uncertainty_deg_c: number("temperature_uncertainty").unwrap_or(0.0),
-        temperature: section.text("temperature"),
-        sine: section.word("response") == Some("sine"),
-        known: known(section),
+impl RateTableKeys {
+    /// The setup that the table declares; `by_angle` where the recording has the angle of the table.
+    pub(crate) fn setup(self, by_angle: bool) -> Setup {
+        let positions = self.positions.into_iter().map(PositionKeys::input);
+        let turns = self.turns.into_iter().map(TurnKeys::input);
+        let rests = self.rests.into_iter().map(|rest| rest.stretch.input(None, Input::Rest));
+        Setup {
+            rows_are_steps: self.rows_are_steps,
+            settling_s: self.settling_s,
+            minimum_step_s: self.minimum_step_s,
+            whole_turns: self.whole_turns,
+            by_angle,
+            full_scale_deg_h: self.full_scale_deg_h,
+            of_rate_from_deg_h: self.of_rate_from_deg_h,
+            rate_tolerance: self.rate_tolerance,
+            rate_uncertainty: self.rate_uncertainty_ppm * 1e-6,
+            scale_factor_uncertainty: self.scale_factor_uncertainty_ppm.map(|u| u * 1e-6),
+            angle_uncertainty_arcsec: self.angle_uncertainty_arcsec,
+            alignment_uncertainty_rad: self.alignment_uncertainty_mrad * 1e-3,
+            temperature_uncertainty_deg_c: self.temperature_uncertainty_deg_c,
+            temperature: self.temperature,
+            sine: self.response == "sine",
+            known: positions.chain(turns).chain(rests).collect(),
+        }
     }
 }
 
-fn known(section: &Section) -> Vec<ReferenceInput> {
-    let one = |s: &Section, input: Input| ReferenceInput {
-        phase: s.text("phase"),
-        from_s: s.number("from"),
-        to_s: s.number("to"),
-        channel: s.text("channel"),
-        input,
-    };
-    let pair = |s: &Section, key: &str, uncertainty: &str| {
-        (s.number(key).unwrap_or(0.0), s.number(uncertainty).unwrap_or(0.0))
-    };
-    let positions = section.tables("position").iter().map(|s| {
-        let heading = pair(s, "heading", "heading_uncertainty");
-        let elevation = pair(s, "elevation", "elevation_uncertainty");
-        one(s, Input::Position { heading, elevation })
-    });
-    let turns = section
-        .tables("turn")
-        .iter()
-        .map(|s| one(s, Input::Turn { angle: pair(s, "angle", "angle_uncertainty") }));
-    let rests = section.tables("rest").iter().map(|s| one(s, Input::Rest));
-    positions.chain(turns).chain(rests).collect()
+impl StretchKeys {
+    fn input(self, channel: Option<String>, input: Input) -> ReferenceInput {
+        ReferenceInput { phase: self.phase, from_s: self.from_s, to_s: self.to_s, channel, input }
+    }
+}
+
+impl PositionKeys {
+    fn input(self) -> ReferenceInput {
+        let heading = (self.heading_deg, self.heading_uncertainty_deg);
+        let elevation = (self.elevation_deg, self.elevation_uncertainty_deg);
+        self.stretch.input(self.channel, Input::Position { heading, elevation })
+    }
+}
+
+impl TurnKeys {
+    fn input(self) -> ReferenceInput {
+        let angle = (self.angle_deg, self.angle_uncertainty_deg);
+        self.stretch.input(Some(self.channel), Input::Turn { angle })
+    }
 }
 
 /// What a table test and its measurands need of each other.
@@ -294,5 +229,15 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
             let message = Note::new("rate_table_check.no_temperature").with("id", id);
             reader.error(&section.span_of("temperature"), message, None);
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_table_without_keys_is_the_usual_setup() {
+        assert_eq!(RateTableKeys::default().setup(false), Setup::default());
     }
 }
