@@ -5,7 +5,8 @@ use super::diagnostics::Problems;
 use super::read_tables::checked;
 use super::reader::Reader;
 use super::section::{Entry, Section};
-use super::spec::{KeySpec, Kind, TableSpec, Word, optional, required, with_default};
+use super::spec::{TableSpec, Word};
+use super::table::{Table, words};
 use super::text_file::{self, Wording};
 use crate::i18n::{Lang, LocalText, Note};
 use std::path::Path;
@@ -14,78 +15,60 @@ use std::path::Path;
 const WORDING: Wording =
     Wording { unreadable: "laboratory_file.unreadable", folder: "laboratory_file.folder" };
 
-/// Version of the format.
-pub const LABORATORY_FORMAT: &str = "laboratory/1";
-
 /// The file as a whole.
-pub static LABORATORY_FILE: TableSpec = TableSpec {
-    name: "",
-    doc: "What a calibration certificate says beside the result: who made it, for whom, where.",
-    keys: &[
-        required("format", Kind::Format(LABORATORY_FORMAT), "\"laboratory/1\"", "Version of the format."),
-        with_default(
-            "languages",
-            Kind::Choices(LANGUAGES),
-            "[\"en\"]",
-            "[\"en\", \"ru\"]",
-            "Languages of the certificate: every name and sentence stands in each of them.",
-        ),
-        optional(
-            "binding_languages",
-            Kind::Choices(LANGUAGES),
-            "[\"en\"]",
-            "Which of them are binding. Default: all.",
-        ),
-        with_default(
-            "place",
-            Kind::Choice(PLACES),
-            "\"laboratory\"",
-            "\"customer\"",
-            "Where the unit was tested.",
-        ),
-        required("laboratory", Kind::Table(&LABORATORY), "", "The laboratory."),
-        optional("customer", Kind::Table(&CUSTOMER), "", "The customer. A certificate needs one."),
-        optional(
-            "person",
-            Kind::Tables(&PERSON),
-            "",
-            "The persons responsible, one table each. A certificate needs at least one.",
-        ),
-    ],
-};
+pub static LABORATORY_FILE: TableSpec = *LaboratoryTables::SPEC;
+
+/// What a calibration certificate says beside the result: who made it, for whom, where.
+#[derive(Table)]
+#[table("", format = "laboratory/1")]
+struct LaboratoryTables {
+    /// Languages of the certificate: every name and sentence stands in each of them.
+    #[key(default = ["en"], example = ["en", "ru"])]
+    languages: Vec<Lang>,
+    /// Which of them are binding. Default: all.
+    #[key(example = ["en"])]
+    binding_languages: Vec<Lang>,
+    /// Where the unit was tested.
+    #[key(default = "laboratory", example = "customer")]
+    place: Place,
+    /// The laboratory.
+    laboratory: LaboratoryKeys,
+    /// The customer. A certificate needs one.
+    customer: Option<CustomerKeys>,
+    /// The persons responsible, one table each. A certificate needs at least one.
+    #[key(name = "person")]
+    persons: Vec<Person>,
+}
 
 const LANGUAGES: &[Word] = &[("en", "English"), ("ru", "Russian")];
 
 const PLACES: &[Word] =
     &[("laboratory", "in the laboratory"), ("customer", "at the customer's"), ("other", "somewhere else")];
 
-static LABORATORY: TableSpec = TableSpec { name: "laboratory", doc: "The laboratory.", keys: CONTACT };
+words!(Lang, LANGUAGES, Lang::from_code);
+words!(Place, PLACES, |word: &str| Place::ALL.into_iter().find(|place| place.id() == word));
 
-static CUSTOMER: TableSpec = TableSpec { name: "customer", doc: "The customer.", keys: CONTACT };
+/// The laboratory.
+#[derive(Table)]
+#[table("laboratory")]
+struct LaboratoryKeys {
+    #[key(flatten)]
+    contact: Contact,
+    #[key(section)]
+    section: Section,
+}
 
-const CONTACT: &[KeySpec] = &[
-    required("name", Kind::LocalText, "\"Gyro Test Laboratory\"", "Name."),
-    optional("street", Kind::Text, "\"Ring Road\"", "Street."),
-    optional("number", Kind::Text, "\"7a\"", "Number of the house."),
-    optional("postcode", Kind::Text, "\"10115\"", "Postcode."),
-    required("city", Kind::Text, "\"Berlin\"", "City."),
-    optional("state", Kind::Text, "\"Berlin\"", "State or region."),
-    required("country", Kind::Text, "\"DE\"", "Country, by its two letters of ISO 3166-1."),
-    optional("email", Kind::Text, "\"test@example.org\"", "E-mail address."),
-    optional("phone", Kind::Text, "\"+49 30 1234567\"", "Telephone number."),
-];
+/// The customer.
+#[derive(Table)]
+#[table("customer")]
+struct CustomerKeys {
+    #[key(flatten)]
+    contact: Contact,
+    #[key(section)]
+    section: Section,
+}
 
-static PERSON: TableSpec = TableSpec {
-    name: "person",
-    doc: "A person responsible for the certificate.",
-    keys: &[
-        required("name", Kind::LocalText, "\"A. Ivanova\"", "Name."),
-        optional("role", Kind::Text, "\"head of the laboratory\"", "What the person answers for."),
-        with_default("main_signer", Kind::Flag, "false", "true", "True for the one who signs first."),
-    ],
-};
-
-/// What a certificate says beside the result.
+/// Contents of a certificate beside the result.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Laboratory {
     /// The laboratory.
@@ -103,36 +86,49 @@ pub struct Laboratory {
 }
 
 /// An organisation and its address.
-#[derive(Debug, Clone, PartialEq, Default)]
+#[derive(Debug, Clone, PartialEq, Table)]
 pub struct Contact {
     /// Name.
+    #[key(example = "Gyro Test Laboratory")]
     pub name: LocalText,
     /// Street.
+    #[key(example = "Ring Road")]
     pub street: Option<String>,
     /// Number of the house.
+    #[key(example = "7a")]
     pub number: Option<String>,
     /// Postcode.
+    #[key(example = "10115")]
     pub postcode: Option<String>,
     /// City.
+    #[key(example = "Berlin")]
     pub city: String,
     /// State or region.
+    #[key(example = "Berlin")]
     pub state: Option<String>,
-    /// Country: two capital letters of ISO 3166-1.
+    /// Country, by its two letters of ISO 3166-1.
+    #[key(example = "DE")]
     pub country: String,
     /// E-mail address.
+    #[key(example = "test@example.org")]
     pub email: Option<String>,
     /// Telephone number.
+    #[key(example = "+49 30 1234567")]
     pub phone: Option<String>,
 }
 
-/// A person responsible for a certificate.
-#[derive(Debug, Clone, PartialEq, Default)]
+/// A person responsible for the certificate.
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("person")]
 pub struct Person {
     /// Name.
+    #[key(example = "A. Ivanova")]
     pub name: LocalText,
     /// What the person answers for.
+    #[key(example = "head of the laboratory")]
     pub role: Option<String>,
     /// True for the one who signs first.
+    #[key(default = false, example = true)]
     pub main_signer: bool,
 }
 
@@ -180,32 +176,35 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<Laboratory, Problems> {
 }
 
 fn build(root: &Section, reader: &mut Reader<'_>) -> Laboratory {
-    let place = root.word("place").unwrap_or_default();
-    let used = languages(root, "languages", reader);
-    let binding = languages(root, "binding_languages", reader);
+    let tables = LaboratoryTables::read(root);
+    let used = each_once(tables.languages, "languages", root, reader);
+    let binding = each_once(tables.binding_languages, "binding_languages", root, reader);
     if let Some(lang) = binding.iter().find(|lang| !used.contains(lang)) {
         let message = Note::new("laboratory_file.not_used").with("code", lang.code());
         let help = Note::new("laboratory_file.help.not_used");
         reader.error(&root.span_of("binding_languages"), message, Some(help));
     }
+    check_country(&tables.laboratory.contact, &tables.laboratory.section, reader);
+    if let Some(customer) = &tables.customer {
+        check_country(&customer.contact, &customer.section, reader);
+    }
     Laboratory {
-        contact: root.table("laboratory").map(|s| contact(s, reader)).unwrap_or_default(),
-        customer: root.table("customer").map(|s| contact(s, reader)),
-        persons: root.tables("person").iter().map(person).collect(),
-        place: Place::ALL.into_iter().find(|p| p.id() == place).unwrap_or_default(),
+        contact: tables.laboratory.contact,
+        customer: tables.customer.map(|customer| customer.contact),
+        persons: tables.persons,
+        place: tables.place,
         binding_languages: if binding.is_empty() { used.clone() } else { binding },
         languages: used,
     }
 }
 
 /// The languages of a list, each once.
-fn languages(root: &Section, key: &str, reader: &mut Reader<'_>) -> Vec<Lang> {
-    let Some(Entry::Words(words)) = root.entry(key) else { return vec![] };
-    if words.is_empty() {
-        reader.error(&root.span_of(key), Note::new("keyed.empty").with("key", key), None);
+fn each_once(list: Vec<Lang>, key: &str, section: &Section, reader: &mut Reader<'_>) -> Vec<Lang> {
+    if matches!(section.entry(key), Some(Entry::Words(words)) if words.is_empty()) {
+        reader.error(&section.span_of(key), Note::new("keyed.empty").with("key", key), None);
     }
     let mut found = vec![];
-    for lang in words.iter().filter_map(|code| Lang::from_code(code)) {
+    for lang in list {
         if !found.contains(&lang) {
             found.push(lang);
         }
@@ -213,33 +212,15 @@ fn languages(root: &Section, key: &str, reader: &mut Reader<'_>) -> Vec<Lang> {
     found
 }
 
-fn contact(section: &Section, reader: &mut Reader<'_>) -> Contact {
-    let country = section.text("country").unwrap_or_default();
+/// Reports a country that is no code of ISO 3166-1.
+fn check_country(contact: &Contact, section: &Section, reader: &mut Reader<'_>) {
+    let country = contact.country.as_str();
     let is_code = country.len() == 2 && country.bytes().all(|b| b.is_ascii_uppercase());
     if !country.is_empty() && !is_code {
-        let message = Note::new("laboratory_file.country").with("given", country.as_str());
+        let message = Note::new("laboratory_file.country").with("given", country);
         let help = Note::new("laboratory_file.help.country");
         let at = reader.source.inside_quotes(&section.span_of("country"));
         reader.error(&at, message, Some(help));
-    }
-    Contact {
-        name: section.local_text("name").unwrap_or_default(),
-        street: section.text("street"),
-        number: section.text("number"),
-        postcode: section.text("postcode"),
-        city: section.text("city").unwrap_or_default(),
-        state: section.text("state"),
-        country,
-        email: section.text("email"),
-        phone: section.text("phone"),
-    }
-}
-
-fn person(section: &Section) -> Person {
-    Person {
-        name: section.local_text("name").unwrap_or_default(),
-        role: section.text("role"),
-        main_signer: section.flag("main_signer"),
     }
 }
 

@@ -120,14 +120,6 @@ impl Section {
         }
     }
 
-    /// A text of the user, in one language for all or in several.
-    pub fn local_text(&self, key: &str) -> Option<LocalText> {
-        match self.entry(key) {
-            Some(Entry::LocalText(text)) => Some(text.clone()),
-            _ => None,
-        }
-    }
-
     pub fn flag(&self, key: &str) -> bool {
         matches!(self.entry(key), Some(Entry::Flag(true)))
     }
@@ -143,28 +135,6 @@ impl Section {
     pub fn recorded_unit(&self, key: &str) -> Option<&'static str> {
         match self.entry(key) {
             Some(Entry::AsRecorded(_, unit)) => Some(unit),
-            _ => None,
-        }
-    }
-
-    pub fn numbers(&self, key: &str) -> Option<&[f64]> {
-        match self.entry(key) {
-            Some(Entry::Numbers(numbers)) => Some(numbers),
-            _ => None,
-        }
-    }
-
-    /// The names and values of a table of such.
-    pub fn values(&self, key: &str) -> &[Named] {
-        match self.entry(key) {
-            Some(Entry::Values(values)) => values,
-            _ => &[],
-        }
-    }
-
-    pub fn names(&self, key: &str) -> Option<&[String]> {
-        match self.entry(key) {
-            Some(Entry::Names(names)) => Some(names),
             _ => None,
         }
     }

@@ -1,4 +1,4 @@
-//! How a table of a TOML file is described: once, as data.
+//! How a table of a TOML file is described: once, as data. `#[derive(Table)]` makes the descriptions from structs.
 //!
 //! Reading with its checks, the JSON Schema for editors and the key reference of the guide all come from these
 //! descriptions, so that none can differ from another.
@@ -247,42 +247,6 @@ impl TableSpec {
         }
         all
     }
-}
-
-/// A key that must be there.
-pub(crate) const fn required(
-    name: &'static str,
-    kind: Kind,
-    example: &'static str,
-    doc: &'static str,
-) -> KeySpec {
-    KeySpec { name, kind, need: Need::Required, example, doc }
-}
-
-/// A key that may be left out.
-pub(crate) const fn optional(
-    name: &'static str,
-    kind: Kind,
-    example: &'static str,
-    doc: &'static str,
-) -> KeySpec {
-    KeySpec { name, kind, need: Need::Optional, example, doc }
-}
-
-/// A key with a value that holds when it is left out.
-pub(crate) const fn with_default(
-    name: &'static str,
-    kind: Kind,
-    default: &'static str,
-    example: &'static str,
-    doc: &'static str,
-) -> KeySpec {
-    KeySpec { name, kind, need: Need::Default(default), example, doc }
-}
-
-/// A quantity in a unit.
-pub(crate) const fn quantity(unit: &'static str, range: Range) -> Kind {
-    Kind::Quantity { unit, difference: false, range }
 }
 
 #[cfg(test)]

@@ -20,6 +20,9 @@ pub(crate) trait Table: Default {
     /// Its description.
     const SPEC: &'static TableSpec;
 
+    /// Version of the format, as a file states it; empty for what is no file.
+    const FORMAT: &'static str = "";
+
     /// The values of a table that was read. Where a key that must be there is missing or unsound, which was reported, a field
     /// is empty: the file is refused then.
     fn read(section: &Section) -> Self;
@@ -38,17 +41,17 @@ pub(crate) trait KeyValue: Sized {
     fn of(entry: &Entry) -> Option<Self>;
 }
 
-/// The value of a key: as it stands in the file, or its default.
+/// The value of a key: as it stands in the file, or its default where it is left out; empty where it is unsound.
 pub(crate) fn value<T: KeyValue + Default>(
     section: &Section,
     keys: &'static [KeySpec],
     name: &'static str,
 ) -> T {
-    let default = || {
-        let key = keys.iter().find(|key| key.name == name)?;
-        entry_of_default(key).as_ref().and_then(T::of)
+    let value = match section.entry(name) {
+        Some(entry) => T::of(entry),
+        None => keys.iter().find(|key| key.name == name).and_then(entry_of_default).as_ref().and_then(T::of),
     };
-    section.entry(name).and_then(T::of).or_else(default).unwrap_or_default()
+    value.unwrap_or_default()
 }
 
 /// A table in which no key stands: every default.

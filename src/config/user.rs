@@ -2,7 +2,8 @@
 
 use super::diagnostics::Problems;
 use super::read_tables::checked;
-use super::spec::{Kind, TableSpec, optional, required};
+use super::spec::TableSpec;
+use super::table::Table;
 use super::text_file::{self, Wording};
 use std::ffi::OsString;
 use std::path::PathBuf;
@@ -11,20 +12,24 @@ use std::path::PathBuf;
 const WORDING: Wording = Wording { unreadable: "user_config.unreadable", folder: "user_config.folder" };
 
 /// The settings as a whole.
-pub static CONFIG_FILE: TableSpec = TableSpec {
-    name: "",
-    doc: "The settings of a user.",
-    keys: &[
-        optional("format", Kind::Format("config/1"), "\"config/1\"", "Version of the format."),
-        optional("store", Kind::Table(&STORE), "", "The store that runs are kept in."),
-    ],
-};
+pub static CONFIG_FILE: TableSpec = *ConfigTables::SPEC;
 
-static STORE: TableSpec = TableSpec {
-    name: "store",
-    doc: "The store that runs are kept in. `--store` and `SAGNAC_STORE` come first.",
-    keys: &[required("path", Kind::Text, "\"/srv/sagnac\"", "Folder of the store, relative to this file.")],
-};
+/// The settings of a user.
+#[derive(Table)]
+#[table("", format = "config/1", format_may_lack)]
+struct ConfigTables {
+    /// The store that runs are kept in.
+    store: Option<StoreKeys>,
+}
+
+/// The store that runs are kept in. `--store` and `SAGNAC_STORE` come first.
+#[derive(Table)]
+#[table("store")]
+struct StoreKeys {
+    /// Folder of the store, relative to this file.
+    #[key(required, example = "/srv/sagnac")]
+    path: Option<PathBuf>,
+}
 
 /// The settings of a user.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -48,7 +53,7 @@ pub fn load(variable: impl Fn(&str) -> Option<OsString>) -> Result<UserConfig, P
     let Some(path) = place(variable).filter(|p| p.exists()) else { return Ok(UserConfig::default()) };
     let source = text_file::source(&path.display().to_string(), &text_file::bytes(&path, &WORDING)?)?;
     let (config, problems) = checked(&source, &CONFIG_FILE, |root, _| {
-        let store = root.table("store").and_then(|s| s.text("path"));
+        let store = ConfigTables::read(root).store.and_then(|s| s.path);
         let folder = path.parent().unwrap_or(&path);
         UserConfig { store: store.map(|s| folder.join(s)) }
     });

@@ -2,7 +2,7 @@
 
 use crate::attributes::{KeyAttribute, KindAttribute, NeedAttribute, RangeAttribute, Role, TableAttribute};
 use crate::literal::{doc, text, toml, unit_suffix};
-use proc_macro2::TokenStream;
+use proc_macro2::{Literal, TokenStream};
 use quote::{format_ident, quote};
 use syn::{Data, DeriveInput, Error, Expr, Field, Fields, GenericArgument, PathArguments, Result, Type};
 
@@ -42,6 +42,7 @@ pub fn table(input: &DeriveInput) -> Result<TokenStream> {
     }
     let name = attribute.name.clone().unwrap_or_default();
     let keys = keys(&attribute, &members);
+    let format = attribute.format.iter().map(|format| quote!(const FORMAT: &'static str = #format;));
     let reads = members.iter().map(|m| &m.read);
     let takes = members.iter().filter_map(|m| match &m.part {
         Part::Key { name, ty, .. } => {
@@ -54,6 +55,7 @@ pub fn table(input: &DeriveInput) -> Result<TokenStream> {
         impl crate::config::table::Table for #ident {
             const SPEC: &'static crate::config::spec::TableSpec =
                 &crate::config::spec::TableSpec { name: #name, doc: #text, keys: #keys };
+            #(#format)*
 
             fn read(section: &crate::config::section::Section) -> Self {
                 Self { #(#reads)* }
@@ -221,14 +223,19 @@ fn range(range: &RangeAttribute) -> Result<TokenStream> {
     if let Some(constant) = &range.constant {
         return Ok(quote!(#constant));
     }
-    let bound = |value: &Option<Expr>, none: TokenStream| match value {
-        Some(value) => quote!((#value) as f64),
-        None => none,
-    };
     let low = if range.above.is_some() { &range.above } else { &range.min };
-    let (low, high) = (bound(low, quote!(f64::MIN)), bound(&range.max, quote!(f64::MAX)));
+    let (low, high) = (bound(low, quote!(f64::MIN))?, bound(&range.max, quote!(f64::MAX))?);
     let open = range.above.is_some();
     Ok(quote!(crate::config::spec::Range { low: #low, high: #high, open: #open }))
+}
+
+/// A bound of a range, or what stands where there is none.
+fn bound(value: &Option<Expr>, none: TokenStream) -> Result<TokenStream> {
+    let Some(value) = value else { return Ok(none) };
+    let number: f64 =
+        toml(value)?.replace('_', "").parse().map_err(|_| Error::new_spanned(value, "expected a number"))?;
+    let size = Literal::f64_suffixed(number.abs());
+    Ok(if number < 0.0 { quote!(-#size) } else { quote!(#size) })
 }
 
 /// The type in the brackets of another, `T` of `Option<T>`.
@@ -291,10 +298,7 @@ mod tests {
                 r#"name:"settle",kind:crate::config::spec::Kind::Quantity{unit:"s",difference:false"#
             )
         );
-        assert!(
-            out.contains("range:crate::config::spec::Range{low:(0)asf64,high:f64::MAX,open:false}"),
-            "{out}"
-        );
+        assert!(out.contains("range:crate::config::spec::Range{low:0f64,high:f64::MAX,open:false}"), "{out}");
         assert!(
             out.contains(r#"Need::Default("\"0s\""),example:"\"30min\"",doc:"Restbeforetherecordcounts.""#)
         );

@@ -5,14 +5,15 @@ mod tables;
 pub use sagnac_core::mismatch::Alternative;
 
 use crate::config::diagnostics::Problems;
-use crate::config::model::{read_effect, write_effect};
+use crate::config::model::write_effect;
 use crate::config::read_tables::checked;
 use crate::config::reader::Reader;
 use crate::config::section::Section;
+use crate::config::table::Table;
 use crate::config::text_file;
 use std::fmt::Write as _;
 pub(crate) use tables::ALTERNATIVES_FILE;
-use tables::ALTERNATIVES_FORMAT;
+use tables::{AlternativeKeys, AlternativesTables};
 
 /// Reads alternatives from the bytes of a file; `name` stands in diagnostics.
 ///
@@ -24,17 +25,17 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<Vec<Alternative>, Problems> {
 }
 
 fn build(root: &Section, reader: &mut Reader<'_>) -> Vec<Alternative> {
-    let one = |section: &Section, reader: &mut Reader<'_>| Alternative {
-        cause: section.number("cause").unwrap_or(1.0) as usize,
-        chosen: section.flag("chosen"),
-        effects: section.tables("effect").iter().filter_map(|s| read_effect(s, reader)).collect(),
+    let mut one = |keys: AlternativeKeys| Alternative {
+        cause: keys.cause,
+        chosen: keys.chosen,
+        effects: keys.effects.into_iter().filter_map(|effect| effect.stated(reader)).collect(),
     };
-    root.tables("alternative").iter().map(|section| one(section, reader)).collect()
+    AlternativesTables::read(root).alternatives.into_iter().map(&mut one).collect()
 }
 
 /// The text of alternatives.
 pub fn write(alternatives: &[Alternative]) -> String {
-    let mut out = format!("format = \"{ALTERNATIVES_FORMAT}\"\n");
+    let mut out = format!("format = \"{}\"\n", AlternativesTables::FORMAT);
     for one in alternatives {
         let _ = write!(out, "\n[[alternative]]\ncause = {}\nchosen = {}\n", one.cause, one.chosen);
         one.effects.iter().for_each(|stated| write_effect(stated, "alternative.effect", &mut out));

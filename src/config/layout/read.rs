@@ -1,10 +1,11 @@
 //! The layout of the records of a raw binary file, read from TOML with every problem at its place.
 
-use super::tables::LAYOUT_FILE;
+use super::tables::{ChecksumKeys, FieldKeys, LAYOUT_FILE, LayoutTables};
 use crate::config::diagnostics::{Problems, Span};
 use crate::config::read_tables::checked;
 use crate::config::reader::Reader;
-use crate::config::section::{Entry, Section};
+use crate::config::section::Section;
+use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
 use crate::i18n::Note;
 use crate::units::{Affine, Unit};
@@ -36,9 +37,9 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<Layout, Problems> {
     layout.flatten().ok_or(problems)
 }
 
-/// A whole number of a key.
-fn whole(section: &Section, key: &str, reader: &mut Reader<'_>) -> Option<u64> {
-    let value = section.number(key)?;
+/// The whole number of a key.
+fn whole(value: Option<f64>, section: &Section, key: &str, reader: &mut Reader<'_>) -> Option<u64> {
+    let value = value?;
     if value.fract() != 0.0 || value < 0.0 {
         let message = Note::new("reading.whole").with("key", key);
         reader.error(&section.span_of(key), message, None);
@@ -47,37 +48,38 @@ fn whole(section: &Section, key: &str, reader: &mut Reader<'_>) -> Option<u64> {
     Some(value as u64)
 }
 
-fn size(section: &Section, key: &str, reader: &mut Reader<'_>) -> Option<usize> {
-    whole(section, key, reader).and_then(|n| usize::try_from(n).ok())
+fn size(value: Option<f64>, section: &Section, key: &str, reader: &mut Reader<'_>) -> Option<usize> {
+    whole(value, section, key, reader).and_then(|n| usize::try_from(n).ok())
 }
 
 fn build(root: &Section, reader: &mut Reader<'_>) -> Option<Layout> {
-    let order = if root.word("byte_order") == Some("big") { ByteOrder::Big } else { ByteOrder::Little };
-    let sync = sync(root, reader);
-    let header_bytes = whole(root, "header_bytes", reader).unwrap_or(0);
-    let declared = size(root, "record_bytes", reader);
+    let tables = LayoutTables::read(root);
+    let order = if tables.byte_order == "big" { ByteOrder::Big } else { ByteOrder::Little };
+    let sync = sync(tables.sync.as_deref(), root, reader);
+    let header_bytes = whole(tables.header_bytes, root, "header_bytes", reader).unwrap_or(0);
+    let declared = size(tables.record_bytes, root, "record_bytes", reader);
     let mut columns = Vec::new();
     let mut taken: Vec<Taken> = Vec::new();
     if !sync.is_empty() {
         taken.push(Taken { from: 0, to: sync.len(), bits: false, what: "sync".to_owned() });
     }
     let mut next = sync.len();
-    for section in root.tables("field") {
-        if let Some(end) = field(section, order, next, &mut columns, &mut taken, reader) {
+    for keys in &tables.fields {
+        if let Some(end) = field(keys, order, next, &mut columns, &mut taken, reader) {
             next = end;
         }
     }
-    names(root, &columns, reader);
+    names(&tables.fields, root, &columns, reader);
     if columns.len() > MAX_COLUMNS {
         let message = Note::new("layout.columns").with("most", MAX_COLUMNS);
         reader.error(&root.span_of("field"), message, None);
     }
     let mut end = taken.iter().map(|t| t.to).max().unwrap_or(0);
-    let checksum = root.table("checksum").and_then(|section| {
-        let checksum = checksum(section, order, declared.unwrap_or(end), declared.is_some(), reader)?;
+    let checksum = tables.checksum.as_ref().and_then(|keys| {
+        let checksum = checksum(keys, order, declared.unwrap_or(end), declared.is_some(), reader)?;
         let what = "checksum".to_owned();
         let place = Taken { from: checksum.at, to: checksum.at + checksum.sum.bytes(), bits: false, what };
-        overlap(&place, &taken, &section.span, reader);
+        overlap(&place, &taken, &keys.section.span, reader);
         end = end.max(place.to);
         Some(checksum)
     });
@@ -98,23 +100,22 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Option<Layout> {
     if let Some(c) = &checksum
         && c.to > record_bytes
     {
-        let section = root.table("checksum").map(|s| s.span_of("to")).unwrap_or_default();
-        reader.error(&section, Note::new("layout.to_beyond").with("bytes", record_bytes), None);
+        let at = tables.checksum.map(|keys| keys.section.span_of("to")).unwrap_or_default();
+        reader.error(&at, Note::new("layout.to_beyond").with("bytes", record_bytes), None);
     }
-    let sample_rate_hz = root.number("sample_rate");
     (record_bytes > 0).then_some(Layout {
         header_bytes,
         record_bytes,
         sync,
-        sample_rate_hz,
+        sample_rate_hz: tables.sample_rate_hz,
         checksum,
         columns,
     })
 }
 
 /// The bytes of the sync word.
-fn sync(root: &Section, reader: &mut Reader<'_>) -> Vec<u8> {
-    let Some(text) = root.text("sync") else { return Vec::new() };
+fn sync(text: Option<&str>, root: &Section, reader: &mut Reader<'_>) -> Vec<u8> {
+    let Some(text) = text else { return Vec::new() };
     let digits: String = text.chars().filter(|c| !c.is_whitespace()).collect();
     let plain = digits.strip_prefix("0x").unwrap_or(&digits);
     let byte = |pair: &[u8]| std::str::from_utf8(pair).ok().and_then(|p| u8::from_str_radix(p, 16).ok());
@@ -154,17 +155,18 @@ fn overlap(place: &Taken, taken: &[Taken], span: &Span, reader: &mut Reader<'_>)
 
 /// Reads a field; gives the byte behind it.
 fn field(
-    section: &Section,
+    keys: &FieldKeys,
     order: ByteOrder,
     next: usize,
     columns: &mut Vec<LayoutColumn>,
     taken: &mut Vec<Taken>,
     reader: &mut Reader<'_>,
 ) -> Option<usize> {
-    let name = section.text("name");
-    let (storage, kind) = section.word("type").and_then(number_type)?;
-    let from = if section.entry("offset").is_some() { size(section, "offset", reader)? } else { next };
-    let count = size(section, "count", reader)?;
+    let section = &keys.section;
+    let (storage, kind) = keys.number_type.and_then(number_type)?;
+    let given = section.entry("offset").is_some();
+    let from = if given { size(keys.offset, section, "offset", reader)? } else { next };
+    let count = size(keys.count, section, "count", reader)?;
     let to =
         count.checked_mul(kind.bytes()).and_then(|n| n.checked_add(from)).filter(|n| *n <= MAX_RECORD_BYTES);
     let Some(to) = to else {
@@ -172,24 +174,18 @@ fn field(
         reader.error(&section.span_of("offset"), message, None);
         return None;
     };
-    let name = name?;
-    let bits = bits(section, kind, reader);
-    let scale = section.number("scale").unwrap_or(1.0);
-    if scale == 0.0 {
+    let name = keys.name.clone()?;
+    let bits = bits(keys, kind, reader);
+    if keys.scale == Some(0.0) {
         reader.error(&section.span_of("scale"), "layout.scale", None);
     }
-    let unit = match section.entry("unit") {
-        Some(Entry::Unit(unit)) => Some(unit.clone()),
-        _ => None,
-    };
-    let rollover_s = section.number("rolls_over");
+    let (unit, rollover_s) = (keys.unit.clone(), keys.rolls_over_s);
     let is_time = |u: &Unit| Unit::parse("s").is_ok_and(|s| s.same_dimension(u));
     if rollover_s.is_some() && !unit.as_ref().is_some_and(is_time) {
         let help = Some("layout.unit_of_time".into());
         reader.error(&section.span_of("rolls_over"), "layout.no_rollover", help);
     }
-    let summand = section.number("offset_value").unwrap_or(0.0);
-    let conversion = Affine { factor: scale, offset: summand };
+    let conversion = Affine { factor: keys.scale.unwrap_or_default(), offset: keys.offset_value };
     let place = Taken { from, to, bits: bits.is_some(), what: name.clone() };
     overlap(&place, taken, &section.span, reader);
     taken.push(place);
@@ -207,7 +203,8 @@ fn field(
 }
 
 /// Mask and shift of a field.
-fn bits(section: &Section, kind: NumberType, reader: &mut Reader<'_>) -> Option<(u64, u32)> {
+fn bits(keys: &FieldKeys, kind: NumberType, reader: &mut Reader<'_>) -> Option<(u64, u32)> {
+    let section = &keys.section;
     let given = |key: &str| section.entry(key).is_some();
     let key = if given("mask") { "mask" } else { "shift" };
     if !given("mask") && !given("shift") {
@@ -220,8 +217,8 @@ fn bits(section: &Section, kind: NumberType, reader: &mut Reader<'_>) -> Option<
     }
     let width = 8 * kind.bytes() as u32;
     let all = u64::MAX >> (64 - width);
-    let mask = if given("mask") { whole(section, "mask", reader)? } else { all };
-    let shift = if given("shift") { whole(section, "shift", reader)? as u32 } else { 0 };
+    let mask = if given("mask") { whole(keys.mask, section, "mask", reader)? } else { all };
+    let shift = if given("shift") { whole(keys.shift, section, "shift", reader)? as u32 } else { 0 };
     if mask == 0 || mask & !all != 0 {
         let message = Note::new("layout.mask").with("width", u64::from(width));
         reader.error(&section.span_of("mask"), message, None);
@@ -255,38 +252,39 @@ fn number_type(word: &'static str) -> Option<(&'static str, NumberType)> {
     ))
 }
 
-fn names(root: &Section, columns: &[LayoutColumn], reader: &mut Reader<'_>) {
+fn names(fields: &[FieldKeys], root: &Section, columns: &[LayoutColumn], reader: &mut Reader<'_>) {
     let mut seen = BTreeSet::new();
-    for section in root.tables("field") {
-        let Some(name) = section.text("name") else { continue };
-        if !seen.insert(name.clone()) {
-            let message = Note::new("layout.field_twice").with("name", name.as_str());
-            reader.error(&section.span_of("name"), message, Some("layout.own_name".into()));
+    for keys in fields {
+        let Some(name) = keys.name.as_deref() else { continue };
+        if !seen.insert(name) {
+            let message = Note::new("layout.field_twice").with("name", name);
+            reader.error(&keys.section.span_of("name"), message, Some("layout.own_name".into()));
         }
     }
     let all: BTreeSet<&str> = columns.iter().map(|c| c.name.as_str()).collect();
-    if all.len() < columns.len() && seen.len() == root.tables("field").len() {
+    if all.len() < columns.len() && seen.len() == fields.len() {
         reader.error(&root.span_of("field"), "layout.columns_twice", None);
     }
 }
 
 fn checksum(
-    section: &Section,
+    keys: &ChecksumKeys,
     order: ByteOrder,
     end: usize,
     is_declared: bool,
     reader: &mut Reader<'_>,
 ) -> Option<Checksum> {
-    let word = section.word("type")?;
+    let section = &keys.section;
+    let word = keys.sum?;
     let sum = Sum::of(word)?;
     let given = |key: &str| section.entry(key).is_some();
     let at = match (given("offset"), is_declared) {
-        (true, _) => size(section, "offset", reader)?,
+        (true, _) => size(keys.offset, section, "offset", reader)?,
         (false, true) => end.saturating_sub(sum.bytes()),
         (false, false) => end,
     };
-    let from = size(section, "from", reader)?;
-    let to = if given("to") { size(section, "to", reader)? } else { at };
+    let from = size(keys.from, section, "from", reader)?;
+    let to = if given("to") { size(keys.to, section, "to", reader)? } else { at };
     if at > MAX_RECORD_BYTES {
         reader.error(&section.span_of("offset"), "layout.offset", None);
         return None;

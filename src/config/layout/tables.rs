@@ -1,6 +1,9 @@
 //! The tables of a layout file.
 
-use crate::config::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
+use crate::config::section::Section;
+use crate::config::spec::{Range, TableSpec, Word};
+use crate::config::table::Table;
+use crate::units::Unit;
 
 /// Whole numbers that a double holds exactly.
 const WHOLE: Range = Range::between(0.0, 9_007_199_254_740_992.0);
@@ -35,112 +38,91 @@ pub const CHECKSUMS: &[Word] = &[
 ];
 
 /// A layout file as a whole.
-pub static LAYOUT_FILE: TableSpec = TableSpec {
-    name: "",
-    doc: "Layout of the records of a raw binary recording. Every record has the same length and the same fields. \
-          Bytes are counted from 0.",
-    keys: &[
-        required("format", Kind::Format("layout/1"), "\"layout/1\"", "Version of the format."),
-        with_default(
-            "header_bytes",
-            Kind::Number(WHOLE),
-            "0",
-            "512",
-            "Bytes before the first record; skipped.",
-        ),
-        optional(
-            "record_bytes",
-            Kind::Number(Range::between(1.0, 262_144.0)),
-            "32",
-            "Length of a record. Default: up to the end of the last field or checksum.",
-        ),
-        with_default(
-            "byte_order",
-            Kind::Choice(BYTE_ORDERS),
-            "\"little\"",
-            "\"big\"",
-            "Byte order of every number.",
-        ),
-        optional(
-            "sync",
-            Kind::Text,
-            "\"AA 55\"",
-            "Bytes at the start of every record, hexadecimal. Where they are missing, the next record is \
-             searched for; skipped records become rows without values, which are counted and located.",
-        ),
-        optional(
-            "sample_rate",
-            quantity("Hz", Range::POSITIVE),
-            "\"2000 Hz\"",
-            "Sample rate, used if there are no timestamps.",
-        ),
-        optional("checksum", Kind::Table(&CHECKSUM), "", "Checksum of every record."),
-        required("field", Kind::Tables(&FIELD), "", "The fields of a record, one table each."),
-    ],
-};
+pub static LAYOUT_FILE: TableSpec = *LayoutTables::SPEC;
 
-static CHECKSUM: TableSpec = TableSpec {
-    name: "checksum",
-    doc: "Checksum of a record. A record whose checksum is wrong becomes a row without values, which is counted and \
-          located.",
-    keys: &[
-        required("type", Kind::Choice(CHECKSUMS), "\"crc16-ccitt\"", "Which checksum."),
-        optional(
-            "offset",
-            Kind::Number(WHOLE),
-            "30",
-            "First byte of the checksum in the record. Default: the last bytes of the record.",
-        ),
-        with_default("from", Kind::Number(WHOLE), "0", "2", "First byte covered by the checksum."),
-        optional(
-            "to",
-            Kind::Number(WHOLE),
-            "30",
-            "Byte after the last one covered. Default: the first byte of the checksum.",
-        ),
-    ],
-};
+/// Layout of the records of a raw binary recording. Every record has the same length and the same fields. Bytes are
+/// counted from 0.
+#[derive(Table)]
+#[table("", format = "layout/1")]
+pub(super) struct LayoutTables {
+    /// Bytes before the first record; skipped.
+    #[key(range = WHOLE, default = 0, example = 512)]
+    pub header_bytes: Option<f64>,
+    /// Length of a record. Default: up to the end of the last field or checksum.
+    #[key(min = 1, max = 262_144, example = 32)]
+    pub record_bytes: Option<f64>,
+    /// Byte order of every number.
+    #[key(choice = BYTE_ORDERS, default = "little", example = "big")]
+    pub byte_order: &'static str,
+    /// Bytes at the start of every record, hexadecimal. Where they are missing, the next record is searched for;
+    /// skipped records become rows without values, which are counted and located.
+    #[key(example = "AA 55")]
+    pub sync: Option<String>,
+    /// Sample rate, used if there are no timestamps.
+    #[key(quantity = "Hz", above = 0, example = "2000 Hz")]
+    pub sample_rate_hz: Option<f64>,
+    /// Checksum of every record.
+    pub checksum: Option<ChecksumKeys>,
+    /// The fields of a record, one table each.
+    #[key(name = "field", required)]
+    pub fields: Vec<FieldKeys>,
+}
 
-static FIELD: TableSpec = TableSpec {
-    name: "field",
-    doc: "A field of the record. Its value is `scale` times the number plus `offset_value`, in `unit`.",
-    keys: &[
-        required("name", Kind::Text, "\"rate_deg_h\"", "Name of the column."),
-        required("type", Kind::Choice(TYPES), "\"i32\"", "Type of the number."),
-        optional(
-            "offset",
-            Kind::Number(WHOLE),
-            "4",
-            "First byte in the record. Default: directly after the previous field, or after `sync`.",
-        ),
-        with_default(
-            "count",
-            Kind::Number(Range::between(1.0, 4096.0)),
-            "1",
-            "3",
-            "Numbers of this type one after another; the columns are `name[0]`, `name[1]` and so on.",
-        ),
-        with_default("scale", Kind::Number(Range::ANY), "1", "0.001", "Size of one count."),
-        with_default(
-            "offset_value",
-            Kind::Number(Range::ANY),
-            "0",
-            "25",
-            "Offset added after scaling, in `unit`.",
-        ),
-        optional("unit", Kind::UnitText, "\"deg/h\"", "Unit of the value."),
-        optional(
-            "mask",
-            Kind::Number(WHOLE),
-            "0x0F",
-            "Bits of an integer to keep, for flags packed into one number.",
-        ),
-        optional("shift", Kind::Number(Range::between(0.0, 63.0)), "4", "Right shift of the kept bits."),
-        optional(
-            "rolls_over",
-            quantity("s", Range::POSITIVE),
-            "\"4294.967296 s\"",
-            "Time after which a timestamp restarts from zero.",
-        ),
-    ],
-};
+/// Checksum of a record. A record whose checksum is wrong becomes a row without values, which is counted and
+/// located.
+#[derive(Table)]
+#[table("checksum")]
+pub(super) struct ChecksumKeys {
+    /// Which checksum.
+    #[key(name = "type", choice = CHECKSUMS, required, example = "crc16-ccitt")]
+    pub sum: Option<&'static str>,
+    /// First byte of the checksum in the record. Default: the last bytes of the record.
+    #[key(range = WHOLE, example = 30)]
+    pub offset: Option<f64>,
+    /// First byte covered by the checksum.
+    #[key(range = WHOLE, default = 0, example = 2)]
+    pub from: Option<f64>,
+    /// Byte after the last one covered. Default: the first byte of the checksum.
+    #[key(range = WHOLE, example = 30)]
+    pub to: Option<f64>,
+    #[key(section)]
+    pub section: Section,
+}
+
+/// A field of the record. Its value is `scale` times the number plus `offset_value`, in `unit`.
+#[derive(Table)]
+#[table("field")]
+pub(super) struct FieldKeys {
+    /// Name of the column.
+    #[key(required, example = "rate_deg_h")]
+    pub name: Option<String>,
+    /// Type of the number.
+    #[key(name = "type", choice = TYPES, required, example = "i32")]
+    pub number_type: Option<&'static str>,
+    /// First byte in the record. Default: directly after the previous field, or after `sync`.
+    #[key(range = WHOLE, example = 4)]
+    pub offset: Option<f64>,
+    /// Numbers of this type one after another; the columns are `name[0]`, `name[1]` and so on.
+    #[key(min = 1, max = 4096, default = 1, example = 3)]
+    pub count: Option<f64>,
+    /// Size of one count.
+    #[key(default = 1, example = 0.001)]
+    pub scale: Option<f64>,
+    /// Offset added after scaling, in `unit`.
+    #[key(default = 0, example = 25)]
+    pub offset_value: f64,
+    /// Unit of the value.
+    #[key(example = "deg/h")]
+    pub unit: Option<Unit>,
+    /// Bits of an integer to keep, for flags packed into one number.
+    #[key(range = WHOLE, example = 0x0F)]
+    pub mask: Option<f64>,
+    /// Right shift of the kept bits.
+    #[key(min = 0, max = 63, example = 4)]
+    pub shift: Option<f64>,
+    /// Time after which a timestamp restarts from zero.
+    #[key(quantity = "s", above = 0, example = "4294.967296 s")]
+    pub rolls_over_s: Option<f64>,
+    #[key(section)]
+    pub section: Section,
+}

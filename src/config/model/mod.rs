@@ -4,9 +4,9 @@ mod read;
 pub mod tables;
 mod write;
 
-pub(crate) use read::stated as read_effect;
 pub use read::{load, load_model, parse};
 pub use sagnac_core::claim::{Claim, ModelFile, Profile, SimulationPlan, Stated, Uncertainty};
+pub(crate) use tables::EffectKeys;
 pub(crate) use write::effect as write_effect;
 pub use write::write;
 

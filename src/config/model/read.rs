@@ -1,11 +1,12 @@
 //! A claim from a TOML file, with every problem at its place.
 
-use super::tables::MODEL_FILE;
+use super::tables::{DriverKeys, EffectKeys, MODEL_FILE, ModelTables, SimulationKeys};
 use super::{Claim, ModelFile, Profile, SimulationPlan, Stated, Uncertainty};
 use crate::config::diagnostics::Problems;
 use crate::config::read_tables::checked;
 use crate::config::reader::{Reader, shorten};
 use crate::config::section::{Given, Named, Section};
+use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
 use crate::effect::{
     self, ClaimedMean, Column, Drivers, EFFECTS, Earth, Effect, Param, Temperature, Value, Values,
@@ -47,97 +48,93 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<ModelFile, Problems> {
 }
 
 fn build(root: &Section, reader: &mut Reader<'_>) -> ModelFile {
-    let number = |table: &str, key: &str| root.table(table).and_then(|t| t.number(key));
-    let text = |key: &str| root.table("recording").and_then(|t| t.text(key)).unwrap_or_default();
-    let noise = |key: &str| number("noise", key).unwrap_or(0.0);
-    let known = |key: &str| number("uncertainty", key).unwrap_or(0.0);
-    let quantization_lsb_arcsec = noise("quantization_lsb_arcsec");
-    let columns = root.table("recording").and_then(|t| t.names("columns")).map(|names| {
+    let tables = ModelTables::read(root);
+    let (recording, noise, known) = (tables.recording, tables.noise, tables.uncertainty);
+    let columns = recording.columns.map(|names| {
         let beside = names.iter().filter(|n| !["time_s", "rate_deg_h"].contains(&n.as_str()));
         beside.map(|n| Column::of_name(n)).collect::<Vec<Column>>()
     });
-    let temperature = number("temperature", "coefficient_deg_h_per_degC").map(|coefficient| Temperature {
-        coefficient_deg_h_per_degc: coefficient,
-        reference_degc: number("temperature", "reference_degC").unwrap_or(20.0),
-    });
-    let earth = number("earth", "latitude_deg").map(|latitude_deg| Earth {
-        latitude_deg,
-        azimuth_deg: number("earth", "azimuth_deg").unwrap_or(0.0),
-    });
     let claim = Claim {
-        case: text("case"),
-        description: root.table("recording").and_then(|t| t.local_text("description")).unwrap_or_default(),
-        sample_rate_hz: number("recording", "sample_rate_hz").unwrap_or(1.0),
+        case: recording.case,
+        description: recording.description,
+        sample_rate_hz: recording.sample_rate_hz,
         columns,
         noise: NoiseModel {
-            n: noise("N_deg_rt_h"),
-            b: noise("B_deg_h"),
-            k: noise("K_deg_h_rt_h"),
+            n: noise.n_deg_rt_h,
+            b: noise.b_deg_h,
+            k: noise.k_deg_h_rt_h,
             r: 0.0,
-            q: quantization_lsb_arcsec / 12f64.sqrt(),
+            q: noise.quantization_lsb_arcsec / 12f64.sqrt(),
         },
-        quantization_lsb_arcsec,
+        quantization_lsb_arcsec: noise.quantization_lsb_arcsec,
         mean: ClaimedMean {
-            bias_deg_h: number("bias", "value_deg_h").unwrap_or(0.0),
-            temperature,
-            scale_factor_ppm: number("scale_factor", "error_ppm"),
-            earth,
+            bias_deg_h: tables.bias.value_deg_h,
+            temperature: tables.temperature.map(|t| Temperature {
+                coefficient_deg_h_per_degc: t.coefficient_deg_h_per_degc,
+                reference_degc: t.reference_degc,
+            }),
+            scale_factor_ppm: tables.scale_factor.map(|s| s.error_ppm),
+            earth: tables.earth.map(|e| Earth { latitude_deg: e.latitude_deg, azimuth_deg: e.azimuth_deg }),
         },
         uncertainty: Uncertainty {
-            n_rel: known("N_rel"),
-            b_rel: known("B_rel"),
-            k_rel: known("K_rel"),
-            n_deg_rt_h: known("N_deg_rt_h"),
-            b_deg_h: known("B_deg_h"),
-            k_deg_h_rt_h: known("K_deg_h_rt_h"),
-            n_at_most_deg_rt_h: known("N_at_most_deg_rt_h"),
-            b_at_most_deg_h: known("B_at_most_deg_h"),
-            k_at_most_deg_h_rt_h: known("K_at_most_deg_h_rt_h"),
-            bias_deg_h: known("bias_deg_h"),
-            temperature_coefficient_deg_h_per_degc: known("temperature_coefficient_deg_h_per_degC"),
-            scale_factor_ppm: known("scale_factor_ppm"),
-            skewness: known("skewness"),
+            n_rel: known.n_rel,
+            b_rel: known.b_rel,
+            k_rel: known.k_rel,
+            n_deg_rt_h: known.n_deg_rt_h,
+            b_deg_h: known.b_deg_h,
+            k_deg_h_rt_h: known.k_deg_h_rt_h,
+            n_at_most_deg_rt_h: known.n_at_most_deg_rt_h,
+            b_at_most_deg_h: known.b_at_most_deg_h,
+            k_at_most_deg_h_rt_h: known.k_at_most_deg_h_rt_h,
+            bias_deg_h: known.bias_deg_h,
+            temperature_coefficient_deg_h_per_degc: known.temperature_coefficient_deg_h_per_degc,
+            scale_factor_ppm: known.scale_factor_ppm,
+            skewness: known.skewness,
         },
-        effects: root.tables("effect").iter().filter_map(|s| stated(s, reader)).collect(),
+        effects: tables.effects.into_iter().filter_map(|keys| keys.stated(reader)).collect(),
     };
-    let simulation = root.table("simulation").map(|s| plan(s, reader));
-    ModelFile { claim, simulation: simulation.unwrap_or_default(), drivers: drivers(root, reader) }
+    let simulation = plan(tables.simulation, reader);
+    ModelFile { claim, simulation, drivers: drivers(tables.drivers, reader) }
 }
 
-/// An effect with its parameters, checked.
-pub(crate) fn stated(section: &Section, reader: &mut Reader<'_>) -> Option<Stated> {
-    let kind = section.text("kind")?;
-    let Some(effect) = effect::find(&kind) else {
-        let help = match nearest(&kind, EFFECTS.iter().map(|e| e.kind())) {
-            Some(near) => Note::new("keyed.help.did_you_mean_value").with("value", near),
-            None => Note::new("model_file.help.kinds"),
+impl EffectKeys {
+    /// An effect with its parameters, checked.
+    pub(crate) fn stated(self, reader: &mut Reader<'_>) -> Option<Stated> {
+        let kind = self.kind.as_deref()?;
+        let Some(effect) = effect::find(kind) else {
+            let help = match nearest(kind, EFFECTS.iter().map(|e| e.kind())) {
+                Some(near) => Note::new("keyed.help.did_you_mean_value").with("value", near),
+                None => Note::new("model_file.help.kinds"),
+            };
+            let at = reader.source.inside_quotes(&self.section.span_of("kind"));
+            reader.error(&at, Note::new("model_file.no_kind").with("kind", shorten(kind)), Some(help));
+            return None;
         };
-        let at = reader.source.inside_quotes(&section.span_of("kind"));
-        reader.error(&at, Note::new("model_file.no_kind").with("kind", shorten(&kind)), Some(help));
-        return None;
-    };
-    let mut values = Values::new();
-    for named in section.values("parameters") {
-        if let Some(value) = value(effect, named, reader) {
-            values.insert(named.name.clone(), value);
+        let mut values = Values::new();
+        for named in &self.parameters {
+            if let Some(value) = value(effect, named, reader) {
+                values.insert(named.name.clone(), value);
+            }
         }
+        if let effect::Model::Spectrum(spectrum) = effect.model()
+            && self.parameters.len() == values.len()
+            && spectrum.claimed_parameters(&values).is_none()
+            && effect
+                .claimed_course(&values, &Drivers { samples: 1, dt_s: 1.0, ..Drivers::default() })
+                .is_none()
+        {
+            let all = effect.params().iter().chain(effect.list_params());
+            let missing: Vec<&str> = all.map(|p| p.name).filter(|n| !values.contains_key(*n)).collect();
+            let message = Note::new("model_file.missing").with("kind", effect.kind());
+            let help = if missing.is_empty() {
+                Note::new("model_file.help.unfit")
+            } else {
+                Note::new("model_file.help.missing").with("names", missing.join(", "))
+            };
+            reader.error(&self.section.span_of("kind"), message, Some(help));
+        }
+        Some(Stated { effect, values })
     }
-    if let effect::Model::Spectrum(spectrum) = effect.model()
-        && section.values("parameters").len() == values.len()
-        && spectrum.claimed_parameters(&values).is_none()
-        && effect.claimed_course(&values, &Drivers { samples: 1, dt_s: 1.0, ..Drivers::default() }).is_none()
-    {
-        let all = effect.params().iter().chain(effect.list_params());
-        let missing: Vec<&str> = all.map(|p| p.name).filter(|n| !values.contains_key(*n)).collect();
-        let message = Note::new("model_file.missing").with("kind", effect.kind());
-        let help = if missing.is_empty() {
-            Note::new("model_file.help.unfit")
-        } else {
-            Note::new("model_file.help.missing").with("names", missing.join(", "))
-        };
-        reader.error(&section.span_of("kind"), message, Some(help));
-    }
-    Some(Stated { effect, values })
 }
 
 /// A parameter of an effect, checked.
@@ -204,30 +201,24 @@ fn unknown(effect: &'static dyn Effect, named: &Named, reader: &mut Reader<'_>) 
     reader.error(&named.at, message, Some(help));
 }
 
-fn plan(section: &Section, reader: &mut Reader<'_>) -> SimulationPlan {
-    let seed = section.number("seed");
-    if seed.is_some_and(|s| s.fract() != 0.0) {
-        reader.error(&section.span_of("seed"), Note::new("reading.whole").with("key", "seed"), None);
+fn plan(keys: SimulationKeys, reader: &mut Reader<'_>) -> SimulationPlan {
+    if keys.seed.is_some_and(|s| s.fract() != 0.0) {
+        let message = Note::new("reading.whole").with("key", "seed");
+        reader.error(&keys.section.span_of("seed"), message, None);
     }
-    SimulationPlan {
-        duration_s: section.number("duration_s"),
-        seed: seed.map(|s| s as u64),
-        start_s: section.number("start_s").unwrap_or(0.0),
-    }
+    let seed = keys.seed.map(|s| s as u64);
+    SimulationPlan { duration_s: keys.duration_s, seed, start_s: keys.start_s }
 }
 
-fn drivers(root: &Section, reader: &mut Reader<'_>) -> Vec<Profile> {
+fn drivers(tables: Vec<DriverKeys>, reader: &mut Reader<'_>) -> Vec<Profile> {
     let mut found: Vec<Profile> = vec![];
-    for section in root.tables("driver") {
-        let (Some(word), Some(time_s), Some(value)) =
-            (section.word("column"), section.numbers("time_s"), section.numbers("value"))
-        else {
+    for keys in tables {
+        let (Some(column), Some(time_s), Some(value)) = (keys.column, keys.time_s, keys.value) else {
             continue;
         };
-        let Some(column) = Column::KNOWN.into_iter().find(|c| c.name() == word) else { continue };
-        let place = |key: &str| section.span_of(key);
+        let place = |key: &str| keys.section.span_of(key);
         if found.iter().any(|p| p.column == column) {
-            let message = Note::new("model_file.driver_twice").with("column", word);
+            let message = Note::new("model_file.driver_twice").with("column", column.name());
             reader.error(&reader.source.inside_quotes(&place("column")), message, None);
         }
         if time_s.len() != value.len() {
@@ -238,8 +229,7 @@ fn drivers(root: &Section, reader: &mut Reader<'_>) -> Vec<Profile> {
         if time_s.windows(2).any(|w| w[1] < w[0]) {
             reader.error(&place("time_s"), "model_file.falling", None);
         }
-        let (amplitude, period) = (section.number("sine_amplitude"), section.number("sine_period_s"));
-        if amplitude.is_some_and(|a| a != 0.0) && period.is_none() && !section.flag("sine_period_s") {
+        if keys.sine_amplitude != 0.0 && keys.sine_period_s.is_none() {
             reader.error(
                 &place("sine_amplitude"),
                 "model_file.no_period",
@@ -248,12 +238,12 @@ fn drivers(root: &Section, reader: &mut Reader<'_>) -> Vec<Profile> {
         }
         found.push(Profile {
             column,
-            time_s: time_s.to_vec(),
-            value: value.to_vec(),
-            sine_amplitude: amplitude.unwrap_or(0.0),
-            sine_period_s: period.unwrap_or(0.0),
-            sine_phase_deg: section.number("sine_phase_deg").unwrap_or(0.0),
-            noise: section.number("noise").unwrap_or(0.0),
+            time_s,
+            value,
+            sine_amplitude: keys.sine_amplitude,
+            sine_period_s: keys.sine_period_s.unwrap_or_default(),
+            sine_phase_deg: keys.sine_phase_deg,
+            noise: keys.noise,
         });
     }
     found

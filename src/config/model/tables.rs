@@ -1,39 +1,45 @@
 //! The tables of a claim.
 
-use crate::config::spec::{Kind, Range, TableSpec, Word, optional, required, with_default};
+use crate::config::section::{Named, Section};
+use crate::config::spec::{Kind, Range, TableSpec, Word};
+use crate::config::table::{Table, words};
+use crate::effect::Column;
+use crate::i18n::LocalText;
 
 /// A claim as a whole.
-pub static MODEL_FILE: TableSpec = TableSpec {
-    name: "",
-    doc: "A claim: the expected content of a recording. An omitted table is taken as zero or not applicable.",
-    keys: &[
-        required("recording", Kind::Table(&RECORDING), "", "The recording that the claim is of."),
-        optional("noise", Kind::Table(&NOISE), "", "Coefficients of the noise."),
-        optional("bias", Kind::Table(&BIAS), "", "The constant part of the rate."),
-        optional(
-            "temperature",
-            Kind::Table(&TEMPERATURE),
-            "",
-            "Dependence of the bias on the recorded temperature.",
-        ),
-        optional(
-            "scale_factor",
-            Kind::Table(&SCALE_FACTOR),
-            "",
-            "The scale factor, where there is a rate table.",
-        ),
-        optional("earth", Kind::Table(&EARTH), "", "Where the input axis points, where the heading matters."),
-        optional("uncertainty", Kind::Table(&UNCERTAINTY), "", "How well the values are known."),
-        optional("effect", Kind::Tables(&EFFECT), "", "Effects that the claim states, one table each."),
-        optional(
-            "simulation",
-            Kind::Table(&SIMULATION),
-            "",
-            "What `simulate` makes when the command line does not say.",
-        ),
-        optional("driver", Kind::Tables(&DRIVER), "", "Column profiles for `simulate`, one table each."),
-    ],
-};
+pub static MODEL_FILE: TableSpec = *ModelTables::SPEC;
+
+/// A claim: the expected content of a recording. An omitted table is taken as zero or not applicable.
+#[derive(Table)]
+#[table("")]
+pub(super) struct ModelTables {
+    /// The recording that the claim is of.
+    pub recording: RecordingKeys,
+    /// Coefficients of the noise.
+    #[key(optional)]
+    pub noise: NoiseKeys,
+    /// The constant part of the rate.
+    #[key(optional)]
+    pub bias: BiasKeys,
+    /// Dependence of the bias on the recorded temperature.
+    pub temperature: Option<TemperatureKeys>,
+    /// The scale factor, where there is a rate table.
+    pub scale_factor: Option<ScaleFactorKeys>,
+    /// Where the input axis points, where the heading matters.
+    pub earth: Option<EarthKeys>,
+    /// How well the values are known.
+    #[key(optional)]
+    pub uncertainty: UncertaintyKeys,
+    /// Effects that the claim states, one table each.
+    #[key(name = "effect")]
+    pub effects: Vec<EffectKeys>,
+    /// What `simulate` makes when the command line does not say.
+    #[key(optional)]
+    pub simulation: SimulationKeys,
+    /// Column profiles for `simulate`, one table each.
+    #[key(name = "driver")]
+    pub drivers: Vec<DriverKeys>,
+}
 
 /// Columns of a recording beside time and rate.
 const COLUMNS: &[Word] = &[
@@ -55,257 +61,194 @@ const DRIVEN: &[Word] = &[
     ("supply_v", "Supply voltage, V"),
 ];
 
+/// Ranges: of a sample rate, Hz; of a coefficient of noise; of a value of either sign.
 const RATE: Range = Range::above_up_to(0.0, 1e9);
 const COEFFICIENT: Range = Range::between(0.0, 1e6);
 const SIGNED: Range = Range::between(-1e12, 1e12);
 
-static RECORDING: TableSpec = TableSpec {
-    name: "recording",
-    doc: "The recording that the claim is of.",
-    keys: &[
-        optional("case", Kind::Remark, "\"unit-0042\"", "Name of the case."),
-        optional("description", Kind::LocalRemark, "\"static, laboratory\"", "Free text."),
-        required("sample_rate_hz", Kind::Number(RATE), "10", "Nominal sample rate, Hz."),
-        optional(
-            "columns",
-            Kind::Columns(COLUMNS),
-            "[\"time_s\", \"rate_deg_h\"]",
-            "Columns that the recording has.",
-        ),
-    ],
-};
+words!(Column, DRIVEN, |word: &str| Column::KNOWN.into_iter().find(|column| column.name() == word));
 
-static NOISE: TableSpec = TableSpec {
-    name: "noise",
-    doc: "Coefficients of IEEE Std 952; the two-sided density is 3600 N² + B²/(2πf) + K²/(3600 (2πf)²), (deg/h)²/Hz.",
-    keys: &[
-        with_default(
-            "N_deg_rt_h",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.0023",
-            "Angle random walk N, deg/√h.",
-        ),
-        with_default(
-            "B_deg_h",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.0017",
-            "Flicker B, deg/h. The floor of the Allan deviation is 0.664 B.",
-        ),
-        with_default(
-            "K_deg_h_rt_h",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.0009",
-            "Rate random walk K, deg/h/√h.",
-        ),
-        with_default(
-            "quantization_lsb_arcsec",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.01",
-            "Angle increment of the output, arcsec; 0 for none.",
-        ),
-    ],
-};
+/// The recording that the claim is of.
+#[derive(Table)]
+#[table("recording")]
+pub(super) struct RecordingKeys {
+    /// Name of the case.
+    #[key(remark, optional, example = "unit-0042")]
+    pub case: String,
+    /// Free text.
+    #[key(remark, optional, example = "static, laboratory")]
+    pub description: LocalText,
+    /// Nominal sample rate, Hz.
+    #[key(range = RATE, example = 10)]
+    pub sample_rate_hz: f64,
+    /// Columns that the recording has.
+    #[key(kind = Kind::Columns(COLUMNS), example = ["time_s", "rate_deg_h"])]
+    pub columns: Option<Vec<String>>,
+}
 
-static BIAS: TableSpec = TableSpec {
-    name: "bias",
-    doc: "The constant part of the rate.",
-    keys: &[with_default("value_deg_h", Kind::Number(SIGNED), "0.0", "-3.1", "Bias, deg/h.")],
-};
+/// Coefficients of IEEE Std 952; the two-sided density is 3600 N² + B²/(2πf) + K²/(3600 (2πf)²), (deg/h)²/Hz.
+#[derive(Table)]
+#[table("noise")]
+pub(super) struct NoiseKeys {
+    /// Angle random walk N, deg/√h.
+    #[key(name = "N_deg_rt_h", range = COEFFICIENT, default = 0.0, example = 0.0023)]
+    pub n_deg_rt_h: f64,
+    /// Flicker B, deg/h. The floor of the Allan deviation is 0.664 B.
+    #[key(name = "B_deg_h", range = COEFFICIENT, default = 0.0, example = 0.0017)]
+    pub b_deg_h: f64,
+    /// Rate random walk K, deg/h/√h.
+    #[key(name = "K_deg_h_rt_h", range = COEFFICIENT, default = 0.0, example = 0.0009)]
+    pub k_deg_h_rt_h: f64,
+    /// Angle increment of the output, arcsec; 0 for none.
+    #[key(range = COEFFICIENT, default = 0.0, example = 0.01)]
+    pub quantization_lsb_arcsec: f64,
+}
 
-static TEMPERATURE: TableSpec = TableSpec {
-    name: "temperature",
-    doc: "Dependence of the bias on the recorded temperature: coefficient · (temp_degC − reference).",
-    keys: &[
-        required("coefficient_deg_h_per_degC", Kind::Number(SIGNED), "1.2e-4", "Coefficient, deg/h/°C."),
-        with_default(
-            "reference_degC",
-            Kind::Number(Range::between(-273.15, 1000.0)),
-            "20.0",
-            "20.0",
-            "Temperature at which the bias holds, °C.",
-        ),
-    ],
-};
+/// The constant part of the rate.
+#[derive(Table)]
+#[table("bias")]
+pub(super) struct BiasKeys {
+    /// Bias, deg/h.
+    #[key(range = SIGNED, default = 0.0, example = -3.1)]
+    pub value_deg_h: f64,
+}
 
-static SCALE_FACTOR: TableSpec = TableSpec {
-    name: "scale_factor",
-    doc: "The scale factor: 3600 (1 + 10⁻⁶ error) · table_rate_deg_s.",
-    keys: &[with_default(
-        "error_ppm",
-        Kind::Number(Range::between(-1e6, 1e6)),
-        "0.0",
-        "12.0",
-        "Known error, already part of the claim, ppm.",
-    )],
-};
+/// Dependence of the bias on the recorded temperature: coefficient · (temp_degC − reference).
+#[derive(Table)]
+#[table("temperature")]
+pub(super) struct TemperatureKeys {
+    /// Coefficient, deg/h/°C.
+    #[key(name = "coefficient_deg_h_per_degC", range = SIGNED, example = 1.2e-4)]
+    pub coefficient_deg_h_per_degc: f64,
+    /// Temperature at which the bias holds, °C.
+    #[key(name = "reference_degC", min = -273.15, max = 1000, default = 20.0, example = 20.0)]
+    pub reference_degc: f64,
+}
 
-static EARTH: TableSpec = TableSpec {
-    name: "earth",
-    doc: "Earth rate in the plane of the table: 15.041067 cos(latitude) cos(table_angle_deg + azimuth), deg/h.",
-    keys: &[
-        required(
-            "latitude_deg",
-            Kind::Number(Range::between(-90.0, 90.0)),
-            "55.98",
-            "Geographic latitude, deg.",
-        ),
-        with_default(
-            "azimuth_deg",
-            Kind::Number(Range::between(-360.0, 360.0)),
-            "0.0",
-            "12.3",
-            "Heading of the input axis at table angle 0, deg.",
-        ),
-    ],
-};
+/// The scale factor: 3600 (1 + 10⁻⁶ error) · table_rate_deg_s.
+#[derive(Table)]
+#[table("scale_factor")]
+pub(super) struct ScaleFactorKeys {
+    /// Known error, already part of the claim, ppm.
+    #[key(min = -1e6, max = 1e6, default = 0.0, example = 12.0)]
+    pub error_ppm: f64,
+}
 
-static UNCERTAINTY: TableSpec = TableSpec {
-    name: "uncertainty",
-    doc: "One standard deviation of the author's knowledge of each value; omitted values are exact. The bias \
-          is always free.",
-    keys: &[
-        with_default("N_rel", Kind::Number(COEFFICIENT), "0.0", "0.015", "Of N, relative."),
-        with_default("B_rel", Kind::Number(COEFFICIENT), "0.0", "0.12", "Of B, relative."),
-        with_default("K_rel", Kind::Number(COEFFICIENT), "0.0", "0.15", "Of K, relative."),
-        with_default(
-            "N_deg_rt_h",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.001",
-            "Of N where it is stated as 0, deg/√h: the value is positive and within about two of these.",
-        ),
-        with_default(
-            "B_deg_h",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.002",
-            "Of B where it is stated as 0, deg/h.",
-        ),
-        with_default(
-            "K_deg_h_rt_h",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.0005",
-            "Of K where it is stated as 0, deg/h/√h.",
-        ),
-        with_default(
-            "N_at_most_deg_rt_h",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.003",
-            "Upper limit (95 %) of N where it is stated as 0 because a record did not resolve it, deg/√h.",
-        ),
-        with_default(
-            "B_at_most_deg_h",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.004",
-            "Upper limit (95 %) of B where it is stated as 0 because a record did not resolve it, deg/h.",
-        ),
-        with_default(
-            "K_at_most_deg_h_rt_h",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.001",
-            "Upper limit (95 %) of K where it is stated as 0 because a record did not resolve it, deg/h/√h.",
-        ),
-        with_default("bias_deg_h", Kind::Number(COEFFICIENT), "0.0", "0.03", "Of the bias, deg/h."),
-        with_default(
-            "temperature_coefficient_deg_h_per_degC",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "1e-6",
-            "Of the temperature coefficient, deg/h/°C.",
-        ),
-        with_default(
-            "scale_factor_ppm",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "2.0",
-            "Of the scale factor, ppm.",
-        ),
-        with_default(
-            "skewness",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.02",
-            "Largest skewness of the noise of single samples, of either sign: the third central moment over the cube of \
-             the standard deviation. 0: the law is even.",
-        ),
-    ],
-};
+/// Earth rate in the plane of the table: 15.041067 cos(latitude) cos(table_angle_deg + azimuth), deg/h.
+#[derive(Table)]
+#[table("earth")]
+pub(super) struct EarthKeys {
+    /// Geographic latitude, deg.
+    #[key(min = -90, max = 90, example = 55.98)]
+    pub latitude_deg: f64,
+    /// Heading of the input axis at table angle 0, deg.
+    #[key(min = -360, max = 360, default = 0.0, example = 12.3)]
+    pub azimuth_deg: f64,
+}
 
-/// An effect with its parameters.
-pub(crate) static EFFECT: TableSpec = TableSpec {
-    name: "effect",
-    doc: "An effect that the claim states. `sagnac effects` lists the kinds, `sagnac effects KIND` the parameters of one.",
-    keys: &[
-        required("kind", Kind::Id, "\"line\"", "Kind of the effect."),
-        optional("parameters", Kind::Values, "", "Its parameters by name, in a table [effect.parameters]."),
-    ],
-};
+/// One standard deviation of the author's knowledge of each value; omitted values are exact. The bias is always
+/// free.
+#[derive(Table)]
+#[table("uncertainty")]
+pub(super) struct UncertaintyKeys {
+    /// Of N, relative.
+    #[key(name = "N_rel", range = COEFFICIENT, default = 0.0, example = 0.015)]
+    pub n_rel: f64,
+    /// Of B, relative.
+    #[key(name = "B_rel", range = COEFFICIENT, default = 0.0, example = 0.12)]
+    pub b_rel: f64,
+    /// Of K, relative.
+    #[key(name = "K_rel", range = COEFFICIENT, default = 0.0, example = 0.15)]
+    pub k_rel: f64,
+    /// Of N where it is stated as 0, deg/√h: the value is positive and within about two of these.
+    #[key(name = "N_deg_rt_h", range = COEFFICIENT, default = 0.0, example = 0.001)]
+    pub n_deg_rt_h: f64,
+    /// Of B where it is stated as 0, deg/h.
+    #[key(name = "B_deg_h", range = COEFFICIENT, default = 0.0, example = 0.002)]
+    pub b_deg_h: f64,
+    /// Of K where it is stated as 0, deg/h/√h.
+    #[key(name = "K_deg_h_rt_h", range = COEFFICIENT, default = 0.0, example = 0.0005)]
+    pub k_deg_h_rt_h: f64,
+    /// Upper limit (95 %) of N where it is stated as 0 because a record did not resolve it, deg/√h.
+    #[key(name = "N_at_most_deg_rt_h", range = COEFFICIENT, default = 0.0, example = 0.003)]
+    pub n_at_most_deg_rt_h: f64,
+    /// Upper limit (95 %) of B where it is stated as 0 because a record did not resolve it, deg/h.
+    #[key(name = "B_at_most_deg_h", range = COEFFICIENT, default = 0.0, example = 0.004)]
+    pub b_at_most_deg_h: f64,
+    /// Upper limit (95 %) of K where it is stated as 0 because a record did not resolve it, deg/h/√h.
+    #[key(name = "K_at_most_deg_h_rt_h", range = COEFFICIENT, default = 0.0, example = 0.001)]
+    pub k_at_most_deg_h_rt_h: f64,
+    /// Of the bias, deg/h.
+    #[key(range = COEFFICIENT, default = 0.0, example = 0.03)]
+    pub bias_deg_h: f64,
+    /// Of the temperature coefficient, deg/h/°C.
+    #[key(name = "temperature_coefficient_deg_h_per_degC", range = COEFFICIENT, default = 0.0, example = 1e-6)]
+    pub temperature_coefficient_deg_h_per_degc: f64,
+    /// Of the scale factor, ppm.
+    #[key(range = COEFFICIENT, default = 0.0, example = 2.0)]
+    pub scale_factor_ppm: f64,
+    /// Largest skewness of the noise of single samples, of either sign: the third central moment over the cube of
+    /// the standard deviation. 0: the law is even.
+    #[key(range = COEFFICIENT, default = 0.0, example = 0.02)]
+    pub skewness: f64,
+}
 
-static SIMULATION: TableSpec = TableSpec {
-    name: "simulation",
-    doc: "What `simulate` makes when the command line does not say. The claim itself does not depend on it.",
-    keys: &[
-        optional("duration_s", Kind::Number(Range::POSITIVE), "36000", "Length, s."),
-        optional(
-            "seed",
-            Kind::Number(Range::between(0.0, 9_007_199_254_740_992.0)),
-            "1",
-            "Seed, a whole number: equal seeds give equal recordings.",
-        ),
-        with_default("start_s", Kind::Number(SIGNED), "0.0", "0.0", "`time_s` of the first sample, s."),
-    ],
-};
+/// An effect that the claim states. `sagnac effects` lists the kinds, `sagnac effects KIND` the parameters of one.
+#[derive(Table)]
+#[table("effect")]
+pub(crate) struct EffectKeys {
+    /// Kind of the effect.
+    #[key(id, required, example = "line")]
+    pub kind: Option<String>,
+    /// Its parameters by name, in a table [effect.parameters].
+    pub parameters: Vec<Named>,
+    #[key(section)]
+    pub section: Section,
+}
 
-static DRIVER: TableSpec = TableSpec {
-    name: "driver",
-    doc: "The profile of a column: straight lines between points, the first and last value held outside, \
-          plus a sine.",
-    keys: &[
-        required("column", Kind::Choice(DRIVEN), "\"temp_degC\"", "The column."),
-        with_default(
-            "time_s",
-            Kind::Numbers(SIGNED),
-            "[0.0]",
-            "[0.0, 600.0, 7200.0]",
-            "Times of the points on `time_s`, increasing; two equal ones make a step.",
-        ),
-        with_default(
-            "value",
-            Kind::Numbers(SIGNED),
-            "[0.0]",
-            "[20.0, 20.0, 60.0]",
-            "Values there, in the unit of the column.",
-        ),
-        with_default(
-            "sine_amplitude",
-            Kind::Number(SIGNED),
-            "0.0",
-            "0.5",
-            "Amplitude of the sine, in the unit of the column.",
-        ),
-        optional("sine_period_s", Kind::Number(Range::POSITIVE), "1800.0", "Period of the sine, s."),
-        with_default(
-            "sine_phase_deg",
-            Kind::Number(SIGNED),
-            "0.0",
-            "90.0",
-            "Phase of the sine at `time_s` = 0, deg.",
-        ),
-        with_default(
-            "noise",
-            Kind::Number(COEFFICIENT),
-            "0.0",
-            "0.003",
-            "Standard deviation of the sensor's white noise, in the unit of the column: added to the column, \
-             not to what the gyro senses.",
-        ),
-    ],
-};
+/// What `simulate` makes when the command line does not say. The claim itself does not depend on it.
+#[derive(Table)]
+#[table("simulation")]
+pub(super) struct SimulationKeys {
+    /// Length, s.
+    #[key(above = 0, example = 36000)]
+    pub duration_s: Option<f64>,
+    /// Seed, a whole number: equal seeds give equal recordings.
+    #[key(min = 0, max = 9_007_199_254_740_992, example = 1)]
+    pub seed: Option<f64>,
+    /// `time_s` of the first sample, s.
+    #[key(range = SIGNED, default = 0.0, example = 0.0)]
+    pub start_s: f64,
+    #[key(section)]
+    pub section: Section,
+}
+
+/// The profile of a column: straight lines between points, the first and last value held outside, plus a sine.
+#[derive(Table)]
+#[table("driver")]
+pub(super) struct DriverKeys {
+    /// The column.
+    #[key(required, example = "temp_degC")]
+    pub column: Option<Column>,
+    /// Times of the points on `time_s`, increasing; two equal ones make a step.
+    #[key(range = SIGNED, default = [0.0], example = [0.0, 600.0, 7200.0])]
+    pub time_s: Option<Vec<f64>>,
+    /// Values there, in the unit of the column.
+    #[key(range = SIGNED, default = [0.0], example = [20.0, 20.0, 60.0])]
+    pub value: Option<Vec<f64>>,
+    /// Amplitude of the sine, in the unit of the column.
+    #[key(range = SIGNED, default = 0.0, example = 0.5)]
+    pub sine_amplitude: f64,
+    /// Period of the sine, s.
+    #[key(above = 0, example = 1800.0)]
+    pub sine_period_s: Option<f64>,
+    /// Phase of the sine at `time_s` = 0, deg.
+    #[key(range = SIGNED, default = 0.0, example = 90.0)]
+    pub sine_phase_deg: f64,
+    /// Standard deviation of the sensor's white noise, in the unit of the column: added to the column, not to what
+    /// the gyro senses.
+    #[key(range = COEFFICIENT, default = 0.0, example = 0.003)]
+    pub noise: f64,
+    #[key(section)]
+    pub section: Section,
+}

@@ -1,17 +1,15 @@
 //! A proof file, with every problem at its place.
 
-use super::tables::PROOF_FILE;
+use super::tables::{ClaimKeys, DecoyKeys, PROOF_FILE, ProofTables, RecordingKeys, ReferenceKeys, RuleKeys};
 use super::{ClaimSource, Decoy, Must, Part, ProofFile, Reference, Rule, Shown, Source};
 use crate::config::contained_files::{self, folder_of};
 use crate::config::diagnostics::Problems;
 use crate::config::procedure::channel;
-use crate::config::procedure::tables::ChannelKeys;
 use crate::config::read_tables::checked;
 use crate::config::reader::{Reader, for_example};
-use crate::config::section::{Entry, Section};
+use crate::config::section::Section;
 use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
-use crate::effect::Domain;
 use crate::i18n::Note;
 use std::path::{Path, PathBuf};
 
@@ -37,68 +35,74 @@ pub fn parse(name: &str, bytes: &[u8], folder: &Path) -> Result<ProofFile, Probl
 }
 
 fn build(root: &Section, folder: &Path, reader: &mut Reader<'_>) -> Option<ProofFile> {
-    let recording = root.table("recording")?;
-    let conceal = root.table("conceal");
-    let channels: Vec<_> = root
-        .tables("channel")
-        .iter()
-        .filter_map(|s| channel::read(&ChannelKeys::read(s), reader))
-        .map(|(c, _)| c)
-        .collect();
+    let tables = ProofTables::read(root);
+    let (recording, conceal) = (tables.recording?, tables.conceal);
+    let channels: Vec<_> =
+        tables.channels.iter().filter_map(|keys| channel::read(keys, reader)).map(|(c, _)| c).collect();
     let references: Vec<Reference> =
-        root.tables("reference").iter().filter_map(|s| reference(s, reader)).collect();
-    let hidden = conceal.and_then(|c| c.names("columns")).unwrap_or_default().to_vec();
-    let rules = root.tables("rule").iter().filter_map(|s| rule(s, &references, &hidden, reader)).collect();
+        tables.references.into_iter().filter_map(|keys| reference(keys, reader)).collect();
+    let hidden = conceal.columns;
+    let rules =
+        tables.rules.into_iter().filter_map(|keys| rule(keys, &references, &hidden, reader)).collect();
     Some(ProofFile {
-        title: root.local_text("title")?,
-        question: root.local_text("question")?,
-        source: source(recording, folder, reader)?,
-        seed: recording.number("seed").unwrap_or(1.0) as u64,
+        title: tables.title?,
+        question: tables.question?,
+        source: source(&recording, folder, reader)?,
+        seed: recording.seed,
         channels,
-        rate: recording.text("rate"),
-        unit: recording.text("unit"),
-        sample_rate_hz: recording.number("sample_rate"),
-        average: recording.number("average").unwrap_or(1.0) as usize,
-        part: part(recording, reader),
-        added: conceal.and_then(|c| model(c, "effects", folder, reader)),
+        part: part(recording.from_s, recording.to_s, &recording.section, reader),
+        rate: recording.rate,
+        unit: recording.unit,
+        sample_rate_hz: recording.sample_rate_hz,
+        average: recording.average,
+        added: conceal.effects.and_then(|text| model(&text, &conceal.section, "effects", folder, reader)),
         hidden_columns: hidden,
-        decoys: root.tables("decoy").iter().filter_map(decoy).collect(),
-        claim: claim(root.table("claim")?, folder, reader),
+        decoys: tables.decoys.into_iter().filter_map(decoy).collect(),
+        claim: claim(tables.claim?, folder, reader),
         references,
         rules,
     })
 }
 
-/// A file that a key names.
-fn model(section: &Section, key: &str, folder: &Path, reader: &mut Reader<'_>) -> Option<PathBuf> {
-    let text = section.text(key)?;
+/// A model that a key names.
+fn model(
+    text: &str,
+    section: &Section,
+    key: &str,
+    folder: &Path,
+    reader: &mut Reader<'_>,
+) -> Option<PathBuf> {
     let at = reader.source.inside_quotes(&section.span_of(key));
-    contained_files::file(&text, folder, &at, reader).map(|f| f.path)
+    contained_files::file(text, folder, &at, reader).map(|f| f.path)
 }
 
-fn source(recording: &Section, folder: &Path, reader: &mut Reader<'_>) -> Option<Source> {
-    let path = recording.text("path");
-    let simulated = recording.entry("simulated").is_some();
-    if path.is_some() == simulated {
-        reader.error(&recording.span, "proof_file.path_or_simulated", None);
+fn source(recording: &RecordingKeys, folder: &Path, reader: &mut Reader<'_>) -> Option<Source> {
+    let section = &recording.section;
+    let simulated = section.entry("simulated").is_some();
+    if recording.path.is_some() == simulated {
+        reader.error(&section.span, "proof_file.path_or_simulated", None);
         return None;
     }
-    let Some(path) = path else {
-        let Some(duration_s) = recording.number("duration") else {
-            missing(recording, "duration", reader);
+    let Some(path) = &recording.path else {
+        let Some(duration_s) = recording.duration_s else {
+            missing(section, "duration", reader);
             return None;
         };
-        return Some(Source::Simulated { model: model(recording, "simulated", folder, reader)?, duration_s });
+        let text = recording.simulated.as_deref()?;
+        return Some(Source::Simulated {
+            model: model(text, section, "simulated", folder, reader)?,
+            duration_s,
+        });
     };
-    let at = reader.source.inside_quotes(&recording.span_of("path"));
-    if !contained_files::stays(&path, &at, reader) {
+    let at = reader.source.inside_quotes(&section.span_of("path"));
+    if !contained_files::stays(path, &at, reader) {
         return None;
     }
-    let Some(sha256) = recording.text("sha256") else {
-        missing(recording, "sha256", reader);
+    let Some(sha256) = &recording.sha256 else {
+        missing(section, "sha256", reader);
         return None;
     };
-    Some(Source::File { path, sha256: sha256.to_lowercase() })
+    Some(Source::File { path: path.clone(), sha256: sha256.to_lowercase() })
 }
 
 /// Says that a table lacks a key that goes with what it says.
@@ -107,64 +111,54 @@ fn missing(section: &Section, key: &'static str, reader: &mut Reader<'_>) {
     reader.error(&section.span, Note::new("proof_file.lacks").with("key", key), spec.map(for_example));
 }
 
-fn part(section: &Section, reader: &mut Reader<'_>) -> Part {
-    let part = Part { from_s: section.number("from"), to_s: section.number("to") };
-    if let (Some(from), Some(to)) = (part.from_s, part.to_s)
-        && from >= to
-    {
+fn part(from_s: Option<f64>, to_s: Option<f64>, section: &Section, reader: &mut Reader<'_>) -> Part {
+    if from_s.zip(to_s).is_some_and(|(from, to)| from >= to) {
         reader.error(&section.span_of("to"), "proof_file.to_before_from", None);
     }
-    part
+    Part { from_s, to_s }
 }
 
-fn decoy(section: &Section) -> Option<Decoy> {
-    Some(Decoy { name: section.text("name")?, of: section.text("of")?, shift_s: section.number("shift")? })
+fn decoy(keys: DecoyKeys) -> Option<Decoy> {
+    Some(Decoy { name: keys.name?, of: keys.of?, shift_s: keys.shift_s? })
 }
 
-fn claim(section: &Section, folder: &Path, reader: &mut Reader<'_>) -> ClaimSource {
+fn claim(keys: ClaimKeys, folder: &Path, reader: &mut Reader<'_>) -> ClaimSource {
+    let section = &keys.section;
     if section.entry("model").is_none() {
-        return ClaimSource::Identified { part: part(section, reader), rate: section.text("rate") };
+        let part = part(keys.from_s, keys.to_s, section, reader);
+        return ClaimSource::Identified { part, rate: keys.rate };
     }
     if let Some(key) = ["from", "to", "rate"].into_iter().find(|k| section.entry(k).is_some()) {
         reader.error(&section.span_of(key), Note::new("proof_file.model_and").with("key", key), None);
     }
-    ClaimSource::Model(model(section, "model", folder, reader).unwrap_or_default())
+    let named = keys.model.and_then(|text| model(&text, section, "model", folder, reader));
+    ClaimSource::Model(named.unwrap_or_default())
 }
 
-fn reference(section: &Section, reader: &mut Reader<'_>) -> Option<Reference> {
-    let ends = [section.number("low"), section.number("high")];
-    let unit = match section.entry("unit") {
-        Some(Entry::Unit(unit)) => Some(unit.clone()),
-        _ => None,
-    };
-    let interval = match (ends, unit) {
-        ([Some(low), Some(high)], Some(unit)) if low <= high => Some(([low, high], unit)),
-        ([None, None], None) => None,
+fn reference(keys: ReferenceKeys, reader: &mut Reader<'_>) -> Option<Reference> {
+    let interval = match (keys.low, keys.high, keys.unit) {
+        (Some(low), Some(high), Some(unit)) if low <= high => Some(([low, high], unit)),
+        (None, None, None) => None,
         _ => {
-            reader.error(&section.span, "proof_file.interval", None);
+            reader.error(&keys.section.span, "proof_file.interval", None);
             return None;
         }
     };
-    Some(Reference {
-        id: section.text("id")?,
-        what: section.local_text("what")?,
-        interval,
-        source: section.local_text("source")?,
-    })
+    Some(Reference { id: keys.id?, what: keys.what?, interval, source: keys.source? })
 }
 
 fn rule(
-    section: &Section,
+    keys: RuleKeys,
     references: &[Reference],
     hidden: &[String],
     reader: &mut Reader<'_>,
 ) -> Option<Rule> {
-    let when =
-        if section.word("when") == Some(Shown::Unveiled.id()) { Shown::Unveiled } else { Shown::Concealed };
+    let section = &keys.section;
+    let when = if keys.when == Shown::Unveiled.id() { Shown::Unveiled } else { Shown::Concealed };
     if when == Shown::Unveiled && hidden.is_empty() {
         reader.error(&section.span_of("when"), "proof_file.nothing_unveiled", None);
     }
-    let must = section.word("must")?;
+    let must = keys.must?;
     let needs: &[&'static str] = match must {
         "verdict" => &["verdicts"],
         "name" | "not_name" => &["kinds"],
@@ -186,37 +180,31 @@ fn rule(
             reader.error(&section.span_of(key), note, None);
         }
     }
-    let names = |key: &str| section.names(key).unwrap_or_default().to_vec();
-    let at_least = section.number("at_least").unwrap_or(0.0);
+    let at_least = keys.at_least.unwrap_or(0.0);
     let must = match must {
-        "verdict" => match section.entry("verdicts") {
-            Some(Entry::Words(words)) => Must::Verdict(words.clone()),
-            _ => return None,
-        },
-        "name" => Must::Name(names("kinds")),
-        "not_name" => Must::NotName(names("kinds")),
-        "follow" => Must::Follow(names("columns")),
-        "not_follow" => Must::NotFollow(names("columns")),
+        "verdict" => Must::Verdict(keys.verdicts?),
+        "name" => Must::Name(keys.kinds),
+        "not_name" => Must::NotName(keys.kinds),
+        "follow" => Must::Follow(keys.columns),
+        "not_follow" => Must::NotFollow(keys.columns),
         "parameter" => {
-            let id = section.text("reference")?;
+            let id = keys.reference?;
             let place = references.iter().position(|r| r.id == id && r.interval.is_some());
             let Some(reference) = place else {
                 let at = reader.source.inside_quotes(&section.span_of("reference"));
                 reader.error(&at, Note::new("proof_file.no_reference").with("id", id), None);
                 return None;
             };
-            Must::Parameter { kinds: names("kinds"), parameter: section.text("parameter")?, reference }
+            Must::Parameter { kinds: keys.kinds, parameter: keys.parameter?, reference }
         }
         "locate" => {
-            let word = section.word("domain")?;
-            let domain = Domain::ALL.iter().copied().find(|d| d.id() == word)?;
-            let (low, high) = (section.number("low")?, section.number("high")?);
+            let (domain, low, high) = (keys.domain?, keys.low?, keys.high?);
             if low > high {
                 reader.error(&section.span_of("high"), "proof_file.interval", None);
             }
             Must::Locate { domain, low, high }
         }
-        "course" => Must::Course { columns: names("columns"), at_least },
+        "course" => Must::Course { columns: keys.columns, at_least },
         "improve" => Must::Improve(at_least),
         _ => Must::Recover(at_least),
     };
@@ -227,6 +215,7 @@ fn rule(
 mod tests {
     use super::*;
     use crate::config::proof::tables::{ASKS, DOMAINS};
+    use crate::effect::Domain;
 
     const TEXT: &str = r#"format = "proof/1"
 title = "Ramp"

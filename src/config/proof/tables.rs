@@ -1,171 +1,166 @@
 //! The tables of a proof file.
 
 use crate::config::procedure::tables::ChannelKeys;
-use crate::config::spec::{Kind, Range, TableSpec, Word, optional, quantity, required, with_default};
-use crate::config::table::Table;
-
-/// Version of the format.
-pub const PROOF_FORMAT: &str = "proof/1";
+use crate::config::section::Section;
+use crate::config::spec::{Kind, TableSpec, Word};
+use crate::config::table::{Table, words};
+use crate::effect::Domain;
+use crate::i18n::LocalText;
+use crate::units::Unit;
 
 /// A proof file as a whole.
-pub static PROOF_FILE: TableSpec = TableSpec {
-    name: "",
-    doc: "A proof: what is concealed of a recording, what is known of it from elsewhere, and the rules by which the answer is \
-          judged. The file is written before the first run.",
-    keys: &[
-        required("format", Kind::Format(PROOF_FORMAT), "\"proof/1\"", "Version of the format."),
-        required("title", Kind::LocalText, "\"Loop ramp of a closed-loop FOG\"", "Title of the page."),
-        required(
-            "question",
-            Kind::LocalText,
-            "\"Is the reset of the ramp found?\"",
-            "What is asked, in a sentence or two.",
-        ),
-        required("recording", Kind::Table(&RECORDING), "", "The recording."),
-        optional(
-            "channel",
-            Kind::Tables(ChannelKeys::SPEC),
-            "",
-            "The columns that are used, as in a procedure. Default: as they are found by their names.",
-        ),
-        optional("conceal", Kind::Table(&CONCEAL), "", "What is concealed. Default: nothing."),
-        optional(
-            "decoy",
-            Kind::Tables(&DECOY),
-            "",
-            "Columns that drive nothing, shown together with what was concealed.",
-        ),
-        required("claim", Kind::Table(&CLAIM), "", "The claim that the recording is held against."),
-        optional("reference", Kind::Tables(&REFERENCE), "", "What is known from elsewhere, one table each."),
-        required(
-            "rule",
-            Kind::Tables(&RULE),
-            "",
-            "The rules by which the answer is judged, one table each. All must hold.",
-        ),
-    ],
-};
+pub static PROOF_FILE: TableSpec = *ProofTables::SPEC;
 
-const LENGTH: Kind = quantity("s", Range::NOT_NEGATIVE);
+/// A proof: what is concealed of a recording, what is known of it from elsewhere, and the rules by which the answer
+/// is judged. The file is written before the first run.
+#[derive(Table)]
+#[table("", format = "proof/1")]
+pub(super) struct ProofTables {
+    /// Title of the page.
+    #[key(required, example = "Loop ramp of a closed-loop FOG")]
+    pub title: Option<LocalText>,
+    /// What is asked, in a sentence or two.
+    #[key(required, example = "Is the reset of the ramp found?")]
+    pub question: Option<LocalText>,
+    /// The recording.
+    #[key(required)]
+    pub recording: Option<RecordingKeys>,
+    /// The columns that are used, as in a procedure. Default: as they are found by their names.
+    #[key(name = "channel")]
+    pub channels: Vec<ChannelKeys>,
+    /// What is concealed. Default: nothing.
+    #[key(optional)]
+    pub conceal: ConcealKeys,
+    /// Columns that drive nothing, shown together with what was concealed.
+    #[key(name = "decoy")]
+    pub decoys: Vec<DecoyKeys>,
+    /// The claim that the recording is held against.
+    #[key(required)]
+    pub claim: Option<ClaimKeys>,
+    /// What is known from elsewhere, one table each.
+    #[key(name = "reference")]
+    pub references: Vec<ReferenceKeys>,
+    /// The rules by which the answer is judged, one table each. All must hold.
+    #[key(name = "rule", required)]
+    pub rules: Vec<RuleKeys>,
+}
 
-static RECORDING: TableSpec = TableSpec {
-    name: "recording",
-    doc: "The recording: a file, or a simulation of what is true.",
-    keys: &[
-        optional("path", Kind::Text, "\"fog/static.csv\"", "File, relative to the folder of data."),
-        optional(
-            "sha256",
-            Kind::Text,
-            "\"e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855\"",
-            "SHA-256 of the file, required with `path`.",
-        ),
-        optional(
-            "simulated",
-            Kind::Text,
-            "\"truth.toml\"",
-            "In place of `path`: model of what is true, relative to the proof file. Its effects are what is concealed.",
-        ),
-        optional(
-            "duration",
-            quantity("s", Range::POSITIVE),
-            "\"10 h\"",
-            "Length of the simulation, required with `simulated`.",
-        ),
-        with_default(
-            "seed",
-            Kind::Number(Range::between(0.0, 9e15)),
-            "1",
-            "7",
-            "Seed of the simulation, and of effects that are added.",
-        ),
-        optional(
-            "rate",
-            Kind::Text,
-            "\"rate_x\"",
-            "Gyro output: id of a channel, or column where no channels are declared.",
-        ),
-        optional("unit", Kind::Text, "\"nrad/s\"", "Unit of that column where no channels are declared."),
-        optional(
-            "sample_rate",
-            quantity("Hz", Range::POSITIVE),
-            "\"100 Hz\"",
-            "Sample rate, required without timestamps.",
-        ),
-        with_default(
-            "average",
-            Kind::Number(Range::between(1.0, 1e6)),
-            "1",
-            "10",
-            "Consecutive rows of which the mean is taken before anything else; rows around a gap are left out.",
-        ),
-        optional("from", LENGTH, "\"600 s\"", "Beginning of the part that is used, after the first row."),
-        optional("to", LENGTH, "\"3600 s\"", "End of that part."),
-    ],
-};
+/// The recording: a file, or a simulation of what is true.
+#[derive(Table)]
+#[table("recording")]
+pub(super) struct RecordingKeys {
+    /// File, relative to the folder of data.
+    #[key(example = "fog/static.csv")]
+    pub path: Option<String>,
+    /// SHA-256 of the file, required with `path`.
+    #[key(example = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855")]
+    pub sha256: Option<String>,
+    /// In place of `path`: model of what is true, relative to the proof file. Its effects are what is concealed.
+    #[key(example = "truth.toml")]
+    pub simulated: Option<String>,
+    /// Length of the simulation, required with `simulated`.
+    #[key(quantity = "s", above = 0, example = "10 h")]
+    pub duration_s: Option<f64>,
+    /// Seed of the simulation, and of effects that are added.
+    #[key(min = 0, max = 9e15, default = 1, example = 7)]
+    pub seed: u64,
+    /// Gyro output: id of a channel, or column where no channels are declared.
+    #[key(example = "rate_x")]
+    pub rate: Option<String>,
+    /// Unit of that column where no channels are declared.
+    #[key(example = "nrad/s")]
+    pub unit: Option<String>,
+    /// Sample rate, required without timestamps.
+    #[key(quantity = "Hz", above = 0, example = "100 Hz")]
+    pub sample_rate_hz: Option<f64>,
+    /// Consecutive rows of which the mean is taken before anything else; rows around a gap are left out.
+    #[key(min = 1, max = 1e6, default = 1, example = 10)]
+    pub average: usize,
+    /// Beginning of the part that is used, after the first row.
+    #[key(quantity = "s", min = 0, example = "600 s")]
+    pub from_s: Option<f64>,
+    /// End of that part.
+    #[key(quantity = "s", min = 0, example = "3600 s")]
+    pub to_s: Option<f64>,
+    #[key(section)]
+    pub section: Section,
+}
 
-static CONCEAL: TableSpec = TableSpec {
-    name: "conceal",
-    doc: "What is concealed.",
-    keys: &[
-        optional(
-            "columns",
-            Kind::Columns(&[]),
-            "[\"ramp_counts\"]",
-            "Columns that are taken out of the recording, by their names in explanations: `temp_degC` for a temperature, \
-             otherwise the id of the channel, or its name if no channels are declared.",
-        ),
-        optional(
-            "effects",
-            Kind::Text,
-            "\"injected.toml\"",
-            "Model whose effects are added to the rate, relative to the proof file; nothing else of it is used.",
-        ),
-    ],
-};
+/// What is concealed.
+#[derive(Table)]
+#[table("conceal")]
+pub(super) struct ConcealKeys {
+    /// Columns that are taken out of the recording, by their names in explanations: `temp_degC` for a temperature,
+    /// otherwise the id of the channel, or its name if no channels are declared.
+    #[key(example = ["ramp_counts"])]
+    pub columns: Vec<String>,
+    /// Model whose effects are added to the rate, relative to the proof file; nothing else of it is used.
+    #[key(example = "injected.toml")]
+    pub effects: Option<String>,
+    #[key(section)]
+    pub section: Section,
+}
 
-static DECOY: TableSpec = TableSpec {
-    name: "decoy",
-    doc: "A column that drives nothing: one of the recording, shifted in time and continued from its other end.",
-    keys: &[
-        required("name", Kind::Text, "\"decoy_1\"", "Name under which it is shown."),
-        required("of", Kind::Text, "\"ramp_counts\"", "Column that it is made from."),
-        required("shift", quantity("s", Range::POSITIVE), "\"120 s\"", "Shift."),
-    ],
-};
+/// A column that drives nothing: one of the recording, shifted in time and continued from its other end.
+#[derive(Table)]
+#[table("decoy")]
+pub(super) struct DecoyKeys {
+    /// Name under which it is shown.
+    #[key(required, example = "decoy_1")]
+    pub name: Option<String>,
+    /// Column that it is made from.
+    #[key(required, example = "ramp_counts")]
+    pub of: Option<String>,
+    /// Shift.
+    #[key(quantity = "s", above = 0, required, example = "120 s")]
+    pub shift_s: Option<f64>,
+}
 
-static CLAIM: TableSpec = TableSpec {
-    name: "claim",
-    doc: "The claim: a model, or what the program itself identifies from a part of what is shown or from another output.",
-    keys: &[
-        optional(
-            "model",
-            Kind::Text,
-            "\"claim.toml\"",
-            "Model, relative to the proof file. Default: identified.",
-        ),
-        optional(
-            "from",
-            LENGTH,
-            "\"0 s\"",
-            "Beginning of the part from which it is identified, after the first row of the recording.",
-        ),
-        optional("to", LENGTH, "\"600 s\"", "End of that part."),
-        optional("rate", Kind::Text, "\"rate_y\"", "Another output that it is identified from."),
-    ],
-};
+/// The claim: a model, or what the program itself identifies from a part of what is shown or from another output.
+#[derive(Table)]
+#[table("claim")]
+pub(super) struct ClaimKeys {
+    /// Model, relative to the proof file. Default: identified.
+    #[key(example = "claim.toml")]
+    pub model: Option<String>,
+    /// Beginning of the part from which it is identified, after the first row of the recording.
+    #[key(quantity = "s", min = 0, example = "0 s")]
+    pub from_s: Option<f64>,
+    /// End of that part.
+    #[key(quantity = "s", min = 0, example = "600 s")]
+    pub to_s: Option<f64>,
+    /// Another output that it is identified from.
+    #[key(example = "rate_y")]
+    pub rate: Option<String>,
+    #[key(section)]
+    pub section: Section,
+}
 
-static REFERENCE: TableSpec = TableSpec {
-    name: "reference",
-    doc: "What is known from elsewhere.",
-    keys: &[
-        required("id", Kind::Id, "\"reset_frequency\"", "Id by which rules name it."),
-        required("what", Kind::LocalText, "\"Frequency of the resets\"", "What it is."),
-        optional("low", Kind::Number(Range::ANY), "4.166", "Low end of the interval."),
-        optional("high", Kind::Number(Range::ANY), "4.176", "High end of the interval."),
-        optional("unit", Kind::UnitText, "\"Hz\"", "Unit of the interval."),
-        required("source", Kind::LocalText, "\"README of the recording\"", "Where it comes from."),
-    ],
-};
+/// What is known from elsewhere.
+#[derive(Table)]
+#[table("reference")]
+pub(super) struct ReferenceKeys {
+    /// Id by which rules name it.
+    #[key(id, required, example = "reset_frequency")]
+    pub id: Option<String>,
+    /// What it is.
+    #[key(required, example = "Frequency of the resets")]
+    pub what: Option<LocalText>,
+    /// Low end of the interval.
+    #[key(example = 4.166)]
+    pub low: Option<f64>,
+    /// High end of the interval.
+    #[key(example = 4.176)]
+    pub high: Option<f64>,
+    /// Unit of the interval.
+    #[key(example = "Hz")]
+    pub unit: Option<Unit>,
+    /// Where it comes from.
+    #[key(required, example = "README of the recording")]
+    pub source: Option<LocalText>,
+    #[key(section)]
+    pub section: Section,
+}
 
 /// Explanations that a rule can speak of.
 pub const SHOWN: &[Word] = &[
@@ -210,41 +205,45 @@ pub const VERDICTS: &[Word] = &[
     ("unknown-mismatch", "some of it has no name"),
 ];
 
-static RULE: TableSpec = TableSpec {
-    name: "rule",
-    doc: "A rule.",
-    keys: &[
-        with_default(
-            "when",
-            Kind::Choice(SHOWN),
-            "\"concealed\"",
-            "\"unveiled\"",
-            "Which explanation it speaks of.",
-        ),
-        required("must", Kind::Choice(ASKS), "\"name\"", "What must hold."),
-        optional("verdicts", Kind::Choices(VERDICTS), "[\"mismatch\"]", "Verdicts."),
-        optional(
-            "kinds",
-            Kind::Effects,
-            "[\"comb\"]",
-            "Effects by their ids (`sagnac effects`), or `unknown`.",
-        ),
-        optional(
-            "columns",
-            Kind::Columns(&[]),
-            "[\"ramp_counts\"]",
-            "Columns by their names as they are shown.",
-        ),
-        optional("parameter", Kind::Text, "\"frequency_hz\"", "Parameter of an effect."),
-        optional("reference", Kind::Text, "\"reset_frequency\"", "Id of a reference."),
-        optional(
-            "domain",
-            Kind::Choice(DOMAINS),
-            "\"frequency\"",
-            "Domain of a location, as in explain.json.",
-        ),
-        optional("low", Kind::Number(Range::ANY), "600", "Low end of a location."),
-        optional("high", Kind::Number(Range::ANY), "900", "High end of a location."),
-        optional("at_least", Kind::Number(Range::SHARE), "0.9", "Share or correlation."),
-    ],
-};
+words!(Domain, DOMAINS, |word: &str| Domain::ALL.iter().copied().find(|domain| domain.id() == word));
+
+/// A rule.
+#[derive(Table)]
+#[table("rule")]
+pub(super) struct RuleKeys {
+    /// Which explanation it speaks of.
+    #[key(choice = SHOWN, default = "concealed", example = "unveiled")]
+    pub when: &'static str,
+    /// What must hold.
+    #[key(choice = ASKS, required, example = "name")]
+    pub must: Option<&'static str>,
+    /// Verdicts.
+    #[key(choice = VERDICTS, example = ["mismatch"])]
+    pub verdicts: Option<Vec<&'static str>>,
+    /// Effects by their ids (`sagnac effects`), or `unknown`.
+    #[key(kind = Kind::Effects, example = ["comb"])]
+    pub kinds: Vec<String>,
+    /// Columns by their names as they are shown.
+    #[key(example = ["ramp_counts"])]
+    pub columns: Vec<String>,
+    /// Parameter of an effect.
+    #[key(example = "frequency_hz")]
+    pub parameter: Option<String>,
+    /// Id of a reference.
+    #[key(example = "reset_frequency")]
+    pub reference: Option<String>,
+    /// Domain of a location, as in explain.json.
+    #[key(example = "frequency")]
+    pub domain: Option<Domain>,
+    /// Low end of a location.
+    #[key(example = 600)]
+    pub low: Option<f64>,
+    /// High end of a location.
+    #[key(example = 900)]
+    pub high: Option<f64>,
+    /// Share or correlation.
+    #[key(min = 0, max = 1, example = 0.9)]
+    pub at_least: Option<f64>,
+    #[key(section)]
+    pub section: Section,
+}

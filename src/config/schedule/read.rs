@@ -1,11 +1,12 @@
 //! A schedule from a TOML file, with every problem at its place.
 
-use super::tables::SCHEDULE_FILE;
+use super::tables::{SCHEDULE_FILE, ScheduleTables, StepKeys};
 use super::{Schedule, Start, Step};
 use crate::config::diagnostics::Problems;
 use crate::config::read_tables::checked;
 use crate::config::reader::Reader;
 use crate::config::section::Section;
+use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
 use crate::i18n::Note;
 use std::path::Path;
@@ -31,18 +32,17 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<Schedule, Problems> {
 }
 
 fn build(root: &Section, reader: &mut Reader<'_>) -> Schedule {
-    let of = |key: &str| root.table("start").and_then(|s| s.number(key));
+    let ScheduleTables { start, steps } = ScheduleTables::read(root);
     let start = Start {
-        temp_degc: of("temp_degC"),
-        table_rate_deg_s: of("table_rate_deg_s"),
-        table_angle_deg: of("table_angle_deg"),
+        temp_degc: start.temp_degc,
+        table_rate_deg_s: start.table_rate_deg_s,
+        table_angle_deg: start.table_angle_deg,
     };
-    let steps = root.tables("step").iter().filter_map(|section| step(section, reader)).collect();
-    Schedule { start, steps }
+    Schedule { start, steps: steps.into_iter().filter_map(|keys| step(keys, reader)).collect() }
 }
 
-fn step(section: &Section, reader: &mut Reader<'_>) -> Option<Step> {
-    let does = section.word("do")?;
+fn step(keys: StepKeys, reader: &mut Reader<'_>) -> Option<Step> {
+    let (does, section) = (keys.does?, &keys.section);
     let (needed, possible): (&[&str], &[&str]) = match does {
         "hold" => (&["duration_h"], &[]),
         "ramp" => (&["to_degC", "rate_degC_per_h"], &[]),
@@ -65,34 +65,38 @@ fn step(section: &Section, reader: &mut Reader<'_>) -> Option<Step> {
         let help = Note::new("keyed.help.known").with("keys", keys);
         reader.error(&section.span_of(key), message, Some(help));
     }
-    let number = |key: &str| section.number(key).unwrap_or(0.0);
-    let list = |key: &str| section.numbers(key).map(<[f64]>::to_vec).unwrap_or_default();
-    let count = count(section, reader);
-    for key in ["rates_deg_s", "angles_deg"].into_iter().filter(|key| there(key) && list(key).is_empty()) {
-        reader.error(&section.span_of(key), Note::new("schedule_file.empty").with("key", key), None);
-    }
-    Some(match does {
-        "hold" => Step::Hold { duration_h: number("duration_h") },
-        "ramp" => Step::Ramp { to_degc: number("to_degC"), rate_degc_per_h: number("rate_degC_per_h") },
-        "cycle" => Step::Cycle {
-            low_degc: number("low_degC"),
-            high_degc: number("high_degC"),
-            rate_degc_per_h: number("rate_degC_per_h"),
-            soak_h: number("soak_h"),
-            count,
-        },
-        "table_rates" => {
-            Step::TableRates { rates_deg_s: list("rates_deg_s"), dwell_s: number("dwell_s"), count }
+    let count = count(&keys, reader);
+    for (key, list) in [("rates_deg_s", &keys.rates_deg_s), ("angles_deg", &keys.angles_deg)] {
+        if there(key) && list.is_empty() {
+            reader.error(&section.span_of(key), Note::new("schedule_file.empty").with("key", key), None);
         }
-        _ => Step::Headings { angles_deg: list("angles_deg"), dwell_s: number("dwell_s"), count },
+    }
+    // Which of the numbers must be there is checked above.
+    let [duration_h, to_degc, low_degc, high_degc, rate_degc_per_h, soak_h, dwell_s] = [
+        keys.duration_h,
+        keys.to_degc,
+        keys.low_degc,
+        keys.high_degc,
+        keys.rate_degc_per_h,
+        keys.soak_h,
+        keys.dwell_s,
+    ]
+    .map(Option::unwrap_or_default);
+    Some(match does {
+        "hold" => Step::Hold { duration_h },
+        "ramp" => Step::Ramp { to_degc, rate_degc_per_h },
+        "cycle" => Step::Cycle { low_degc, high_degc, rate_degc_per_h, soak_h, count },
+        "table_rates" => Step::TableRates { rates_deg_s: keys.rates_deg_s, dwell_s, count },
+        _ => Step::Headings { angles_deg: keys.angles_deg, dwell_s, count },
     })
 }
 
 /// How many times a step is done.
-fn count(section: &Section, reader: &mut Reader<'_>) -> u32 {
-    let count = section.number("count").unwrap_or(1.0);
+fn count(keys: &StepKeys, reader: &mut Reader<'_>) -> u32 {
+    let count = keys.count.unwrap_or(1.0);
     if count.fract() != 0.0 {
-        reader.error(&section.span_of("count"), Note::new("reading.whole").with("key", "count"), None);
+        let message = Note::new("reading.whole").with("key", "count");
+        reader.error(&keys.section.span_of("count"), message, None);
     }
     count as u32
 }

@@ -1,12 +1,13 @@
 //! A schedule as a TOML file. Reading it gives the same schedule to the bit.
 
-use super::tables::SCHEDULE_FORMAT;
+use super::tables::ScheduleTables;
 use super::{Schedule, Step};
+use crate::config::table::Table;
 use std::fmt::Write as _;
 
 /// The text of a schedule.
 pub fn write(schedule: &Schedule) -> String {
-    let mut out = format!("format = \"{SCHEDULE_FORMAT}\"\n");
+    let mut out = format!("format = \"{}\"\n", ScheduleTables::FORMAT);
     let start = &schedule.start;
     let keys = [
         ("temp_degC", start.temp_degc),

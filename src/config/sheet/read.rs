@@ -1,11 +1,12 @@
 //! A sheet file, with every problem at its place.
 
-use super::tables::SHEET_FILE;
+use super::tables::{RowKeys, SHEET_FILE, SheetTables};
 use super::{SheetFile, SheetRow};
 use crate::config::diagnostics::Problems;
 use crate::config::read_tables::checked;
 use crate::config::reader::Reader;
-use crate::config::section::{Entry, Section};
+use crate::config::section::Section;
+use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
 use crate::i18n::Note;
 use crate::units::Unit;
@@ -32,32 +33,23 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<SheetFile, Problems> {
 }
 
 fn build(root: &Section, reader: &mut Reader<'_>) -> SheetFile {
-    let rows = root.tables("row").iter().filter_map(|section| row(section, reader)).collect();
-    SheetFile { title: root.local_text("title"), rows }
+    let tables = SheetTables::read(root);
+    let rows = tables.rows.into_iter().filter_map(|keys| row(keys, reader)).collect();
+    SheetFile { title: tables.title, rows }
 }
 
-fn row(section: &Section, reader: &mut Reader<'_>) -> Option<SheetRow> {
-    let measurand = section.measurand("measurand")?;
-    let unit = match section.entry("unit") {
-        Some(Entry::Unit(unit)) => Some(unit.clone()),
-        _ => None,
-    };
+fn row(keys: RowKeys, reader: &mut Reader<'_>) -> Option<SheetRow> {
+    let measurand = keys.measurand?;
     let own = Unit::parse(measurand.unit).ok();
-    if let (Some(unit), Some(own)) = (&unit, &own)
+    if let (Some(unit), Some(own)) = (&keys.unit, &own)
         && !unit.same_dimension(own)
     {
         let message = Note::new("sheet_file.dimension").with("unit", unit.text()).with("id", measurand.id);
         let help = Note::new("sheet_file.help.dimension").with("unit", own.text());
-        reader.error(&section.span_of("unit"), message, Some(help));
+        reader.error(&keys.section.span_of("unit"), message, Some(help));
     }
-    Some(SheetRow {
-        measurand,
-        channel: section.text("channel"),
-        phase: section.text("phase"),
-        name: section.local_text("name"),
-        unit,
-        footnote: section.local_text("footnote"),
-    })
+    let RowKeys { channel, phase, name, unit, footnote, .. } = keys;
+    Some(SheetRow { measurand, channel, phase, name, unit, footnote })
 }
 
 #[cfg(test)]

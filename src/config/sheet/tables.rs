@@ -1,35 +1,49 @@
 //! The tables of a sheet file.
 
-use crate::config::spec::{Kind, TableSpec, optional, required};
-
-/// Version of the format.
-pub const SHEET_FORMAT: &str = "sheet/1";
+use crate::config::section::Section;
+use crate::config::spec::TableSpec;
+use crate::config::table::Table;
+use crate::i18n::LocalText;
+use crate::measurand::Measurand;
+use crate::units::Unit;
 
 /// A sheet file as a whole.
-pub static SHEET_FILE: TableSpec = TableSpec {
-    name: "",
-    doc: "Which rows a data sheet has. Without such a file it has every quantity of the results.",
-    keys: &[
-        required("format", Kind::Format(SHEET_FORMAT), "\"sheet/1\"", "Version of the format."),
-        optional("title", Kind::LocalText, "\"OIUS-501\"", "Title of the sheet. Default: the model."),
-        required("row", Kind::Tables(&ROW), "", "The rows in their order, one table each."),
-    ],
-};
+pub static SHEET_FILE: TableSpec = *SheetTables::SPEC;
 
-static ROW: TableSpec = TableSpec {
-    name: "row",
-    doc: "One row. A quantity of which there is no row is left out.",
-    keys: &[
-        required("measurand", Kind::Measurand, "\"angle_random_walk\"", "The quantity."),
-        optional("channel", Kind::Text, "\"rate\"", "Channel. Default: every channel."),
-        optional("phase", Kind::Text, "\"warm\"", "Phase of a test of several. Default: every phase."),
-        optional("name", Kind::LocalText, "\"ARW\"", "Name on the sheet. Default: that of the quantity."),
-        optional(
-            "unit",
-            Kind::UnitText,
-            "\"deg/h/sqrt(Hz)\"",
-            "Unit on the sheet, of the same dimension. Default: that of the results.",
-        ),
-        optional("footnote", Kind::LocalText, "\"At 20 °C.\"", "Footnote of the row."),
-    ],
-};
+/// Which rows a data sheet has. Without such a file it has every quantity of the results.
+#[derive(Table)]
+#[table("", format = "sheet/1")]
+pub(super) struct SheetTables {
+    /// Title of the sheet. Default: the model.
+    #[key(example = "OIUS-501")]
+    pub title: Option<LocalText>,
+    /// The rows in their order, one table each.
+    #[key(name = "row", required)]
+    pub rows: Vec<RowKeys>,
+}
+
+/// One row. A quantity of which there is no row is left out.
+#[derive(Table)]
+#[table("row")]
+pub(super) struct RowKeys {
+    /// The quantity.
+    #[key(required, example = "angle_random_walk")]
+    pub measurand: Option<&'static Measurand>,
+    /// Channel. Default: every channel.
+    #[key(example = "rate")]
+    pub channel: Option<String>,
+    /// Phase of a test of several. Default: every phase.
+    #[key(example = "warm")]
+    pub phase: Option<String>,
+    /// Name on the sheet. Default: that of the quantity.
+    #[key(example = "ARW")]
+    pub name: Option<LocalText>,
+    /// Unit on the sheet, of the same dimension. Default: that of the results.
+    #[key(example = "deg/h/sqrt(Hz)")]
+    pub unit: Option<Unit>,
+    /// Footnote of the row.
+    #[key(example = "At 20 °C.")]
+    pub footnote: Option<LocalText>,
+    #[key(section)]
+    pub section: Section,
+}
