@@ -13,12 +13,13 @@ const SPLINTER_LINES: usize = 60;
 /// Commits from here on count for the files that a change touches, where no date is given.
 pub const COMMITS_SINCE: &str = "2026-11-24";
 /// The package of the program, and those that its `run` leads to.
-const PACKAGES: [&str; 5] = [
+const PACKAGES: [&str; 6] = [
     "src",
     "crates/sagnac-core/src",
     "crates/sagnac-ingest/src",
     "crates/sagnac-fft/src",
     "crates/sagnac-pdf/src",
+    "crates/sagnac-table-derive/src",
 ];
 
 /// A tracked file with its lines of code, apart by what they are for.

@@ -1,23 +1,20 @@
 //! No sentence that a user can see stands in the sources: all come from the tables of words.
 //!
 //! A text literal counts as a sentence when it holds three words or more beside each other. Left out are tests,
-//! comments, attributes, and the descriptions of keys, which schema and guide show in English.
+//! comments, attributes, and the meanings of the words of keys, which schema and guide show in English.
 
 use std::path::{Path, PathBuf};
 
 /// Files whose literals are English by design: file, why.
 const ENGLISH: &[(&str, &str)] = &[
-    ("src/config/procedure/tables/mod.rs", "descriptions of keys for the schema and the guide"),
-    ("src/config/procedure/tables/conditions.rs", "descriptions of keys for the schema and the guide"),
-    ("src/config/procedure/tables/influence.rs", "descriptions of keys for the schema and the guide"),
-    ("src/config/procedure/tables/phases.rs", "descriptions of keys for the schema and the guide"),
-    ("src/config/procedure/tables/limits.rs", "descriptions of keys for the schema and the guide"),
-    ("src/config/procedure/tables/rate_table.rs", "descriptions of keys for the schema and the guide"),
-    ("src/config/procedure/tables/site.rs", "descriptions of keys for the schema and the guide"),
-    ("src/config/procedure/tables/temperature.rs", "descriptions of keys for the schema and the guide"),
-    ("src/config/procedure/unit_facts.rs", "descriptions of keys for the schema and the guide"),
-    ("src/config/user.rs", "the key tables of settings: documentation, as of procedures"),
-    ("src/config/laboratory.rs", "the key tables of laboratory files: documentation, as of procedures"),
+    ("src/config/procedure/model.rs", "meanings of words of keys for the schema and the guide"),
+    ("src/config/procedure/tables/mod.rs", "meanings of words of keys for the schema and the guide"),
+    ("src/config/procedure/tables/influence.rs", "meanings of words of keys for the schema and the guide"),
+    ("src/config/procedure/tables/limits.rs", "meanings of words of keys for the schema and the guide"),
+    ("src/config/procedure/tables/rate_table.rs", "meanings of words of keys for the schema and the guide"),
+    ("src/config/procedure/tables/temperature.rs", "meanings of words of keys for the schema and the guide"),
+    ("src/config/procedure/unit_facts.rs", "meanings of words of keys for the schema and the guide"),
+    ("src/config/laboratory.rs", "meanings of words of keys: documentation, as of procedures"),
     ("src/store/index/", "statements of SQL"),
     ("src/config/procedure/guide.rs", "the guide is an English document"),
     ("src/config/procedure/schema.rs", "the schema is English"),
@@ -29,14 +26,11 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/report/methods.rs", "formulas and names of sources"),
     ("src/cli/mod.rs", "the help in English; a test holds it against the tables"),
     ("src/lib.rs", "documentation"),
-    ("src/config/manifest/tables.rs", "the key tables of manifests: documentation, as of procedures"),
-    ("src/config/recording_keys.rs", "keys of procedures and manifests: documentation, as of procedures"),
-    ("src/config/layout/tables.rs", "the key tables of layouts: documentation, as of procedures"),
-    ("src/config/proof/tables.rs", "the key tables of proofs: documentation, as of procedures"),
-    ("src/config/model/tables.rs", "the key tables of claims: documentation, as of procedures"),
-    ("src/config/alternatives/tables.rs", "the key tables of alternatives: documentation, as of procedures"),
-    ("src/config/sheet/tables.rs", "the key tables of sheet files: documentation, as of procedures"),
-    ("src/config/schedule/tables.rs", "the key tables of schedules: documentation, as of procedures"),
+    ("src/config/recording_keys.rs", "meanings of words of keys: documentation, as of procedures"),
+    ("src/config/layout/tables.rs", "meanings of words of keys of layouts: documentation, as of procedures"),
+    ("src/config/proof/tables.rs", "meanings of words of keys of proofs: documentation, as of procedures"),
+    ("src/config/model/tables.rs", "meanings of words of keys of claims: documentation, as of procedures"),
+    ("src/config/schedule/tables.rs", "meanings of words of keys of schedules: documentation, as of procedures"),
     (
         "crates/sagnac-ingest/src/formats/matlab/element_reader.rs",
         "faults of the decoder, quoted as it says them",
