@@ -11,8 +11,8 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::Note;
 use crate::record::{
-    ClauseRecord, ColumnRecord, ConditionRecord, FigureRecord, Integrity, MeasurandRecord, OptionRecord,
-    Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
+    ClauseRecord, ColumnRecord, ConditionRecord, FaultText, FigureRecord, Integrity, MeasurandRecord,
+    OptionRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
 };
 use std::path::Path;
 
@@ -38,7 +38,7 @@ pub(super) fn build_record(
         recording: recording(reading),
         conditions,
         checks: if request.is_run() { reading.checks.records(own_checks) } else { vec![] },
-        integrity: reading.report.integrity.clone().into(),
+        integrity: reading.report.integrity.clone().with_texts(FaultText::from),
         window: reading.window.clone(),
         measurands: rows,
         options: options.into_iter().chain([use_stamps]).map(option).collect(),

@@ -114,7 +114,7 @@ impl Overview {
                     file: None,
                     row,
                     count: r.count,
-                    message: note,
+                    seen: note,
                 })
             })
             .collect()

@@ -49,7 +49,7 @@ pub use history::{
     HistoryControlPoint, HistoryCounts, HistoryDrift, HistoryLimit, HistoryMonth, HistoryPoint,
     HistoryQuantity, HistoryReason, HistoryRecord, HistoryResult, HistoryShare, HistoryStation, HistoryYield,
 };
-pub use integrity::{FaultRecord, Integrity};
+pub use integrity::{FaultRecord, FaultText, Integrity};
 pub use interval_mean::IntervalMeanRecord;
 pub use lot::{LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, SerialSource, VerdictCounts};
 pub use message::Message;

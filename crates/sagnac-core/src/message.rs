@@ -153,7 +153,7 @@ impl From<String> for Arg {
 }
 
 /// A message: its key in the locale tables, and its arguments.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct Note {
     /// Key in the locale tables, for example `note.russian_too_short`.
     pub id: Cow<'static, str>,

@@ -45,7 +45,7 @@ impl FaultLog {
                 file: None,
                 row,
                 count,
-                message: note(),
+                seen: note(),
             });
         }
     }

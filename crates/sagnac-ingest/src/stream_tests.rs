@@ -151,7 +151,7 @@ fn a_clock_set_back_makes_a_new_stretch_in_time() {
     assert_eq!(report.rows_used, 19_000);
     assert!(keep.0.windows(2).all(|w| w[0].2 < w[1].2), "time goes on");
     assert!((report.duration_s - 19_001.0).abs() < 1e-6, "{}", report.duration_s);
-    assert!(i.faults.iter().any(|f| f.kind == "backward_timestamp" && f.message.id == "fault_note.set_back"));
+    assert!(i.faults.iter().any(|f| f.kind == "backward_timestamp" && f.seen.id == "fault_note.set_back"));
 }
 
 #[test]

@@ -50,7 +50,7 @@ fn never_allowed(id: &str, count: u64, facts: &Facts<'_>) -> Option<ConditionRec
     let first = facts.integrity.faults.iter().find(|f| f.kind == id);
     let note = Note::new("plausible.condition").with("count", count);
     let note = match first {
-        Some(first) => note.with("first", first.message.clone()),
+        Some(first) => note.with("first", first.seen.clone()),
         None => note.with("first", ""),
     };
     let required = Note::new("note.required.at_most_count").with("count", 0u64);

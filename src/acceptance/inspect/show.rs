@@ -325,8 +325,8 @@ fn list(page: &mut Page, found: &Inspection, kinds: &[&str]) {
             Some(t) => Note::new("inspect.fault_at_time").with("row", fault.row).with("time", decimals(t, 6)),
             None => Note::new("inspect.fault_at").with("row", fault.row),
         };
-        let channel = fault.channel.as_deref().filter(|c| !fault.message.say(Lang::En).contains(c));
-        let what = Arg::from(fault.message.clone());
+        let channel = fault.channel.as_deref().filter(|c| !fault.seen.say(Lang::En).contains(c));
+        let what = Arg::from(fault.seen.clone());
         let row = match channel {
             Some(channel) => Note::new("inspect.fault_of").with("channel", channel),
             None => Note::new("inspect.fault_row"),

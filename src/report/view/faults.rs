@@ -198,7 +198,7 @@ fn first_of_each_kind(faults: &[FaultRecord]) -> Vec<&FaultRecord> {
 }
 
 fn fault(f: &FaultRecord, words: Translator) -> Fault {
-    let note = f.message.as_ref().map_or_else(|| f.note.clone(), |m| words.say(m));
+    let note = f.seen.message.as_ref().map_or_else(|| f.seen.note.clone(), |m| words.say(m));
     Fault {
         kind: words.name("fault", &f.kind),
         channel: f.channel.clone().unwrap_or_default(),

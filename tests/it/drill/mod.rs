@@ -76,10 +76,10 @@ fn judge(expect: Expect, sound: &RunRecord, result: &Result) -> std::result::Res
         Expect::Fault(kind, fragment) => {
             let record = result.as_ref().map_err(|e| format!("refused: {e}"))?;
             let faults = || record.integrity.faults.iter();
-            let caught = faults().find(|f| f.kind == kind && f.note.contains(fragment));
+            let caught = faults().find(|f| f.kind == kind && f.seen.note.contains(fragment));
             let seen =
-                || faults().take(5).map(|f| format!("\n    {}: {}", f.kind, f.note)).collect::<String>();
-            caught.map(|f| format!("{}, row {}: {}", f.kind, f.row, f.note)).ok_or_else(seen)
+                || faults().take(5).map(|f| format!("\n    {}: {}", f.kind, f.seen.note)).collect::<String>();
+            caught.map(|f| format!("{}, row {}: {}", f.kind, f.row, f.seen.note)).ok_or_else(seen)
         }
         Expect::Fails(id) => {
             let record = result.as_ref().map_err(|e| format!("refused: {e}"))?;

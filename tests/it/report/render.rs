@@ -110,7 +110,7 @@ fn nothing_breaks_out_of_the_report() {
     record.session.operator = Some(evil.into());
     record.recording[0].path = evil.into();
     record.measurands[0].channel = evil.into();
-    record.integrity.faults[0].note = evil.into();
+    record.integrity.faults[0].seen.note = evil.into();
     let mut figures = fixture::figures::all();
     figures[1].id = evil.into();
     figures[1].channel = evil.into();

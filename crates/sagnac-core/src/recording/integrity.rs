@@ -1,6 +1,9 @@
-//! What was wrong with a recording.
+//! Faults of a recording.
+//!
+//! What a fault says of itself is a note where faults are found; a result has its words beside the note.
 
 use crate::message::Note;
+use serde::{Deserialize, Serialize};
 
 /// Ids of the faults that can be examined wherever rows are read.
 pub const OF_ROWS: &[&str] = &["non_finite", "unparsable", "implausible", "cut_off"];
@@ -10,8 +13,10 @@ pub const OF_STAMPS: &[&str] = &["gaps", "missing_samples", "duplicate_timestamp
 pub const OF_VALUES: &[&str] = &["outliers", "saturated", "stuck", "repeated"];
 
 /// Faults of the recording, counted; the first of each kind listed with row and time.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Integrity {
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, bound(deserialize = "Text: Default + Deserialize<'de>"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "Integrity", !default))]
+pub struct Integrity<Text = Note> {
     /// Places where samples are missing.
     pub gaps: u64,
     /// Samples missing in them.
@@ -49,10 +54,44 @@ pub struct Integrity {
     /// Counts above that were examined, by their names; a count that is not among them says nothing.
     pub examined: Vec<String>,
     /// The faults one by one, at most 100 of a kind.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<Fault<Text>>,
 }
 
-impl Integrity {
+impl<Text> Integrity<Text> {
+    /// The same with what each fault says in another form.
+    pub fn with_texts<Other>(self, of: impl Fn(Text) -> Other) -> Integrity<Other> {
+        let fault = |f: Fault<Text>| Fault {
+            kind: f.kind,
+            channel: f.channel,
+            time_s: f.time_s,
+            file: f.file,
+            row: f.row,
+            count: f.count,
+            seen: of(f.seen),
+        };
+        Integrity {
+            gaps: self.gaps,
+            missing_samples: self.missing_samples,
+            duplicate_timestamps: self.duplicate_timestamps,
+            backward_timestamps: self.backward_timestamps,
+            rollovers: self.rollovers,
+            timestamp_disagreements: self.timestamp_disagreements,
+            non_finite: self.non_finite,
+            unparsable: self.unparsable,
+            outliers: self.outliers,
+            saturated: self.saturated,
+            stuck: self.stuck,
+            repeated: self.repeated,
+            implausible: self.implausible,
+            cut_off: self.cut_off,
+            timestamp_jitter_s: self.timestamp_jitter_s,
+            quantization_step_deg_h: self.quantization_step_deg_h,
+            outlier_threshold: self.outlier_threshold,
+            examined: self.examined,
+            faults: self.faults.into_iter().map(fault).collect(),
+        }
+    }
+
     /// True where the recording was examined for this kind of fault.
     pub fn has_examined(&self, id: &str) -> bool {
         self.examined.iter().any(|e| e == id)
@@ -64,9 +103,11 @@ impl Integrity {
     }
 }
 
-/// One fault with its place in the recording.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Fault {
+/// One fault.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default, bound(deserialize = "Text: Default + Deserialize<'de>"))]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "FaultRecord", !default))]
+pub struct Fault<Text = Note> {
     /// `gap`, `duplicate_timestamp`, `backward_timestamp`, `rollover`, `timestamp_disagreement`, `non_finite`,
     /// `unparsable`, `outlier`, `saturated`, `stuck`, `repeated`, `interpolated`, `implausible`, `cut_off`.
     pub kind: String,
@@ -81,5 +122,6 @@ pub struct Fault {
     /// Samples concerned.
     pub count: u64,
     /// What was seen.
-    pub message: Note,
+    #[serde(flatten)]
+    pub seen: Text,
 }

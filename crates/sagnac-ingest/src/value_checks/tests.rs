@@ -157,7 +157,7 @@ fn a_held_output_is_remarked_on_and_not_called_stuck() {
     let values: Vec<f64> = gauss(20_000, 1.0, &mut rng(11)).iter().flat_map(|v| [*v; 10]).collect();
     let (_, faults, list) = check(&values, Role::Rate);
     assert_eq!(faults.stuck, 0);
-    assert!(list.len() == 1 && list[0].message.id == "fault_note.held", "{list:?}");
+    assert!(list.len() == 1 && list[0].seen.id == "fault_note.held", "{list:?}");
 }
 
 #[test]
