@@ -11,8 +11,8 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::Note;
 use crate::record::{
-    ClauseRecord, ColumnRecord, ConditionRecord, FaultText, FigureRecord, Integrity, MeasurandRecord,
-    OptionRecord, Program, RESULT_FORMAT, RecordingFile, RunRecord, Window,
+    ClauseRecord, ColumnRecord, ConditionRecord, FaultText, FigureRecord, MeasurandRecord, OptionRecord,
+    Program, RESULT_FORMAT, RecordingFile, RunRecord,
 };
 use std::path::Path;
 
@@ -92,33 +92,11 @@ fn blank(request: &Request<'_>) -> RunRecord {
         procedure: request.procedure_record.clone(),
         unit_under_test: request.unit.clone(),
         session: session(request),
-        attempt: None,
-        siblings: None,
-        recording: vec![],
-        verdict: Verdict::None,
-        summary: vec![],
-        conditions: vec![],
-        checks: vec![],
-        integrity: Integrity::default(),
-        window: Window::default(),
-        measurands: vec![],
-        lines: vec![],
-        noise_models: vec![],
-        goodness_of_fit: vec![],
-        deviations: vec![],
-        table_steps: vec![],
-        interval_means: vec![],
-        phases: vec![],
-        comparison: vec![],
-        explained: None,
-        power: vec![],
         instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
         waivers: procedure.waivers_for(serial),
         exclusions: procedure.exclusions.clone(),
         clauses: procedure.clauses.clone(),
-        options: vec![],
-        figures: vec![],
-        errors: vec![],
+        ..RunRecord::default()
     }
 }
 
@@ -128,14 +106,7 @@ fn unread(path: &Path) -> RecordingFile {
         path: path.display().to_string(),
         sha256: crate::ingest::byte_stream::digest(path).map(|d| d.sha256).unwrap_or_default(),
         bytes: std::fs::metadata(path).map_or(0, |m| m.len()),
-        samples: 0,
-        sample_interval_s: 0.0,
-        sample_interval_uncertainty_s: None,
-        clock_drift_ppm: None,
-        phase: None,
-        start: None,
-        duration_s: 0.0,
-        columns: vec![],
+        ..RecordingFile::default()
     }
 }
 

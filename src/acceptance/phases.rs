@@ -65,8 +65,6 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         procedure: Some(phased.identity.clone()),
         unit_under_test: unit,
         session,
-        attempt: None,
-        siblings: None,
         recording: phases.iter().flat_map(|p| p.recording.clone()).collect(),
         verdict: if errors.is_empty() { worst } else { Verdict::Error },
         summary,
@@ -79,24 +77,14 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
             usable_s: records.iter().map(|r| r.window.usable_s).sum(),
             excluded: vec![],
         },
-        exclusions: vec![],
         measurands: phases.iter().flat_map(|p| p.measurands.clone()).collect(),
-        lines: vec![],
-        noise_models: vec![],
-        goodness_of_fit: vec![],
-        deviations: vec![],
-        table_steps: vec![],
-        interval_means: vec![],
-        comparison: vec![],
-        explained: None,
-        power: vec![],
         instruments,
         waivers: records.iter().flat_map(|r| r.waivers.clone()).collect(),
         clauses,
-        options: vec![],
         figures: phases.iter().flat_map(|p| p.figures.clone()).collect(),
         phases,
         errors: errors.into_iter().map(Into::into).collect(),
+        ..RunRecord::default()
     }
 }
 
@@ -122,15 +110,10 @@ fn of(done: &Done<'_>) -> PhaseRecord {
         return PhaseRecord {
             id: phase.id.clone(),
             title: phase.title.clone(),
-            folder: None,
             procedure: Some(phase.procedure.record(phase.limits.as_ref())),
-            recording: vec![],
             verdict: Verdict::Error,
             summary: vec![Note::new("phases.not_recorded").with("id", phase.id.as_str()).into()],
-            conditions: vec![],
-            integrity: Integrity::default(),
-            measurands: vec![],
-            figures: vec![],
+            ..PhaseRecord::default()
         };
     };
     let r = &outcome.record;

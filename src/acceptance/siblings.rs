@@ -4,7 +4,7 @@ use super::datasheet::TestedUnit;
 use crate::i18n::{Arg, Note};
 use crate::lot::siblings::{SIBLINGS_A_QUANTITY, Unlike, are_independent, unlike};
 use crate::measurand;
-use crate::record::{Message, SheetInput, SiblingQuantity, SiblingsRecord};
+use crate::record::{Message, RunRecord, SiblingQuantity, SiblingsRecord};
 
 /// Other units that are looked at, at most: the latest.
 pub const MOST_SIBLINGS: usize = 100;
@@ -43,16 +43,18 @@ struct Quantity {
 
 impl Quantity {
     /// Its value for a unit on the scale on which units scatter: the logarithm of what is never negative.
-    fn of(&self, input: &SheetInput) -> Option<f64> {
+    fn of(&self, result: &RunRecord) -> Option<f64> {
         let value = match self.tau_s {
             Some(tau_s) => {
                 let same = |t: f64| (t - tau_s).abs() <= 0.01 * tau_s;
-                let curve =
-                    input.deviations.iter().filter(|d| d.channel == self.channel && d.estimator == ESTIMATOR);
+                let curve = result
+                    .deviations
+                    .iter()
+                    .filter(|d| d.channel == self.channel && d.estimator == ESTIMATOR);
                 curve.clone().find(|d| same(d.tau_s)).map(|d| d.deviation_deg_h)
             }
             None => {
-                let mut all = input.measurands.iter();
+                let mut all = result.measurands.iter();
                 all.find(|m| m.id == self.id && m.channel == self.channel && m.phase.is_none())?.value
             }
         }?;
@@ -64,9 +66,9 @@ impl Quantity {
 }
 
 /// Every quantity that the unit has, in the order in which they count.
-fn quantities(input: &SheetInput) -> Vec<Quantity> {
+fn quantities(result: &RunRecord) -> Vec<Quantity> {
     let mut channels: Vec<&str> = vec![];
-    for m in &input.measurands {
+    for m in &result.measurands {
         if !channels.contains(&m.channel.as_str()) {
             channels.push(&m.channel);
         }
@@ -77,7 +79,7 @@ fn quantities(input: &SheetInput) -> Vec<Quantity> {
         all.extend(MEASURANDS.map(of));
     }
     for channel in channels {
-        let curve = || input.deviations.iter().filter(|d| d.channel == channel && d.estimator == ESTIMATOR);
+        let curve = || result.deviations.iter().filter(|d| d.channel == channel && d.estimator == ESTIMATOR);
         for wanted in TIMES_S {
             let near = |t: f64| (t / wanted).ln().abs();
             let nearest = curve().map(|d| d.tau_s).min_by(|a, b| near(*a).total_cmp(&near(*b)));
@@ -85,21 +87,21 @@ fn quantities(input: &SheetInput) -> Vec<Quantity> {
             all.extend(tau_s.map(|t| Quantity { id: CURVE, channel: channel.to_owned(), tau_s: Some(t) }));
         }
     }
-    all.retain(|q| q.of(input).is_some());
+    all.retain(|q| q.of(result).is_some());
     all
 }
 
 /// The unit beside the other units of its lot; `None` where they are too few, or nothing of them can be compared.
-pub fn siblings(unit: &SheetInput, model: &str, lot: &str, others: &[TestedUnit]) -> Option<SiblingsRecord> {
+pub fn siblings(unit: &RunRecord, model: &str, lot: &str, others: &[TestedUnit]) -> Option<SiblingsRecord> {
     let shared = |q: &Quantity| {
-        let having = others.iter().filter(|o| q.of(&o.input).is_some()).count();
+        let having = others.iter().filter(|o| q.of(&o.result).is_some()).count();
         having as f64 >= SHARED * others.len() as f64
     };
-    let of = |chosen: &[Quantity], input: &SheetInput| -> Option<Vec<f64>> {
-        chosen.iter().map(|q| q.of(input)).collect()
+    let of = |chosen: &[Quantity], result: &RunRecord| -> Option<Vec<f64>> {
+        chosen.iter().map(|q| q.of(result)).collect()
     };
     let values = |chosen: &[Quantity]| -> Vec<Vec<f64>> {
-        others.iter().filter_map(|o| of(chosen, &o.input)).collect()
+        others.iter().filter_map(|o| of(chosen, &o.result)).collect()
     };
     let mut chosen: Vec<Quantity> = vec![];
     for quantity in quantities(unit).into_iter().filter(shared) {
@@ -177,9 +179,10 @@ fn notes(lot: &str, units: usize, p_value: f64, quantities: &[SiblingQuantity]) 
 mod tests {
     use super::*;
     use crate::i18n::{Lang, Localize};
+    use crate::record::read;
 
     /// A unit with a coefficient of random walk, a bias instability and two points of its curve.
-    fn input(arw: f64, bias_instability: f64, more: &str) -> SheetInput {
+    fn input(arw: f64, bias_instability: f64, more: &str) -> RunRecord {
         let measurand = |id: &str, value: f64| {
             format!(r#"{{"id": "{id}", "channel": "x", "unit": "deg/h", "value": {value}}}"#)
         };
@@ -197,7 +200,8 @@ mod tests {
             point(1.024, 60.0 * arw),
             point(98.3, 2.0 * bias_instability),
         );
-        serde_json::from_str(&text).unwrap()
+        let members = ["verdict", "measurands", "deviations"];
+        read::with_members(serde_json::from_str(&text).unwrap(), &members).unwrap()
     }
 
     /// Units whose coefficients scatter by a tenth, each by itself.
@@ -207,7 +211,7 @@ mod tests {
             serial: i.to_string(),
             path: String::new(),
             sha256: String::new(),
-            input: input(0.002 * scatter(i, 3), 0.01 * scatter(i, 7), ""),
+            result: input(0.002 * scatter(i, 3), 0.01 * scatter(i, 7), ""),
             tables: vec![],
         };
         (1..=count).map(one).collect()

@@ -174,38 +174,17 @@ mod tests {
         MeasurandRecord {
             id: "static_bias".into(),
             channel: "rate".into(),
-            phase: None,
             value: Some(1.0),
             unit: "deg/h".into(),
-            interval: None,
-            common_standard_uncertainty: None,
             identifiable: true,
-            upper_limit: None,
-            most_likely: None,
-            lower_limit: None,
             method: "mean".into(),
-            limit: None,
-            reference: None,
             verdict,
-            margin: None,
-            specific_risk: None,
-            notes: vec![],
-            objections: vec![],
+            ..MeasurandRecord::default()
         }
     }
 
     fn condition(status: ConditionStatus) -> ConditionRecord {
-        ConditionRecord {
-            id: "temperature".into(),
-            phase: None,
-            status,
-            evidence: None,
-            observed: Default::default(),
-            required: String::new(),
-            requirement: None,
-            note: String::new(),
-            message: None,
-        }
+        ConditionRecord { id: "temperature".into(), status, ..ConditionRecord::default() }
     }
 
     #[test]

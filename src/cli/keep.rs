@@ -6,10 +6,10 @@ use crate::acceptance::datasheet::{TestedUnit, select};
 use crate::acceptance::siblings::{MOST_SIBLINGS, siblings};
 use crate::config::user;
 use crate::estimate::Verdict;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, LocalText, Localize, Note};
 use crate::ingest::serial;
 use crate::output::Kind;
-use crate::record::{RunRecord, SheetInput, SiblingsRecord};
+use crate::record::{RunRecord, SiblingsRecord};
 use crate::store::{Filter, Reservation, Store, StoreError, attempt_of};
 use clap::Args;
 use std::path::{Path, PathBuf};
@@ -112,16 +112,16 @@ impl Keeper {
 
     /// The unit of a record beside the other units of its lot that were tested by the same procedure.
     fn siblings(&self, store: &Store, record: &RunRecord) -> Result<Option<SiblingsRecord>, String> {
-        let own = serde_json::to_value(record).and_then(serde_json::from_value::<SheetInput>);
-        let Some(own) = own.ok().filter(|own| own.verdict != Verdict::Error) else { return Ok(None) };
-        let unit = &own.unit_under_test;
-        let (Some(model), Some(lot), Some(procedure)) =
-            (unit.model.as_ref().or(unit.family.as_ref()), &unit.lot, &own.procedure)
-        else {
+        if record.verdict == Verdict::Error {
+            return Ok(None);
+        }
+        let unit = &record.unit_under_test;
+        let model = unit.model.as_deref().or(unit.family.as_ref().map(LocalText::text));
+        let (Some(model), Some(lot), Some(procedure)) = (model, &unit.lot, &record.procedure) else {
             return Ok(None);
         };
         let filter = Filter {
-            model: Some(model.clone()),
+            model: Some(model.to_owned()),
             lots: vec![lot.clone()],
             procedure: Some(procedure.id.clone()),
             ..Filter::default()
@@ -137,7 +137,7 @@ impl Keeper {
         others.retain(|u| serial::plain(&u.serial) != key);
         let surplus = others.len().saturating_sub(MOST_SIBLINGS);
         others.drain(..surplus);
-        Ok(siblings(&own, model, lot, &others))
+        Ok(siblings(record, model, lot, &others))
     }
 
     /// Keeps a result folder that is in its place, and says where.

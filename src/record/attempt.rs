@@ -5,8 +5,9 @@ use crate::estimate::Verdict;
 use serde::{Deserialize, Serialize};
 
 /// Which test of the unit by the procedure this is, as the store knew when it was made.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(!default))]
 pub struct AttemptRecord {
     /// Number of the attempt, from 1.
     pub number: u64,
@@ -17,8 +18,9 @@ pub struct AttemptRecord {
 }
 
 /// An earlier test of the unit by the procedure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(!default))]
 pub struct EarlierAttempt {
     /// Number of the attempt.
     pub number: u64,

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 /// A text that is always there, or one that may be absent.
 pub(crate) trait Written: Sized {
     /// Its string in JSON.
-    type Plain: Serialize + DeserializeOwned;
+    type Plain: Serialize + DeserializeOwned + Default;
 
     /// The string, and the text by language.
     fn parts(&self) -> (Self::Plain, BTreeMap<String, String>);
@@ -55,7 +55,8 @@ macro_rules! field {
             #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
             pub(crate) struct Members<T> {
                 $(#[$doc])*
-                #[serde(rename = $plain)]
+                #[serde(rename = $plain, default)]
+                #[cfg_attr(feature = "schema", schemars(!default))]
                 plain: T,
                 /// The same by language code, where it was written in several languages.
                 #[serde(rename = $by_language, default, skip_serializing_if = "BTreeMap::is_empty")]
@@ -192,8 +193,9 @@ mod tests {
     }
 
     #[test]
-    fn a_text_that_must_be_there_and_is_not_is_refused() {
-        let refused = serde_json::from_str::<Clause>(r#"{"id":"a","note":null,"factor":null}"#);
-        assert!(refused.unwrap_err().to_string().contains("title"));
+    fn a_text_that_is_not_there_is_empty() {
+        let read: Clause = serde_json::from_str(r#"{"id":"a","note":null,"factor":null}"#).unwrap();
+        assert!(read.title.is_empty() && read.note.is_none());
+        assert!(serde_json::from_str::<Clause>(r#"{"id":"a","title":1,"factor":null}"#).is_err());
     }
 }

@@ -44,10 +44,10 @@ impl std::ops::Deref for Message {
 }
 
 /// How a [`Message`] appears in JSON.
-#[derive(Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Default, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "NoteSchema", !default))]
 #[allow(dead_code)]
-#[cfg_attr(feature = "schema", schemars(rename = "NoteSchema"))]
 struct MessageSchema {
     /// The sentence in English.
     text: String,

@@ -35,10 +35,10 @@ pub use comparison::{
 };
 pub use context::{ClauseRecord, ExclusionRecord, InstrumentRecord, OptionRecord, WaiverRecord};
 pub use datasheet::{
-    DATASHEET_FORMAT, DataSheet, InputLimit, InputMeasurand, InputUnit, SheetBound, SheetCondition,
-    SheetCurve, SheetInput, SheetLargest, SheetLimit, SheetOf, SheetOutlook, SheetPair, SheetPoint,
-    SheetProcedure, SheetQuantity, SheetResult, SheetRisk, SheetScale, SheetShare, SheetSide, SheetSpread,
-    SheetTemperatureCurve, SheetTemperaturePoint, SheetTypical, SheetUnitCurve, SheetValue,
+    DATASHEET_FORMAT, DataSheet, SheetBound, SheetCondition, SheetCurve, SheetLargest, SheetLimit, SheetOf,
+    SheetOutlook, SheetPair, SheetPoint, SheetProcedure, SheetQuantity, SheetResult, SheetRisk, SheetScale,
+    SheetShare, SheetSide, SheetSpread, SheetTemperatureCurve, SheetTemperaturePoint, SheetTypical,
+    SheetUnitCurve, SheetValue,
 };
 pub use deviation::DeviationRecord;
 pub use evidence::Evidence;
@@ -73,18 +73,19 @@ use serde::{Deserialize, Serialize};
 pub const RESULT_FORMAT: &str = "result/1";
 
 /// What made a record: an acceptance test by a procedure, or an analysis without one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum RunKind {
     /// An acceptance test: conditions, checks and limits of a procedure apply.
+    #[default]
     Run,
     /// An analysis: quantities are measured, and no verdict is formed.
     Analyze,
 }
 
 /// A whole run.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct RunRecord {
     /// Always `result/1`.
@@ -162,11 +163,12 @@ pub struct RunRecord {
 }
 
 /// State of a condition.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum ConditionStatus {
     /// Shown to be met.
+    #[default]
     Ok,
     /// Met with a remark, or not decidable without harm.
     Remark,
@@ -175,8 +177,9 @@ pub enum ConditionStatus {
 }
 
 /// One condition with its evidence.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(!default))]
 pub struct ConditionRecord {
     /// Id, for example `temperature`.
     pub id: String,
@@ -200,8 +203,9 @@ pub struct ConditionRecord {
 }
 
 /// One measurand row.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(!default))]
 pub struct MeasurandRecord {
     /// Id, see the contract.
     pub id: String,
@@ -221,6 +225,8 @@ pub struct MeasurandRecord {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub common_standard_uncertainty: Option<f64>,
     /// Whether the record can show the quantity.
+    #[serde(default = "is_shown")]
+    #[cfg_attr(feature = "schema", schemars(!default))]
     pub identifiable: bool,
     /// Bound where it cannot.
     pub upper_limit: Option<UpperLimit>,
@@ -249,6 +255,23 @@ pub struct MeasurandRecord {
     pub objections: Vec<ObjectionRecord>,
 }
 
+/// True for a row that does not say whether the record can show its quantity.
+fn is_shown() -> bool {
+    true
+}
+
+impl MeasurandRecord {
+    /// Lower limit of the row.
+    pub fn lowest_allowed(&self) -> Option<f64> {
+        self.limit.as_ref()?.min
+    }
+
+    /// Upper limit of the row.
+    pub fn highest_allowed(&self) -> Option<f64> {
+        self.limit.as_ref()?.max
+    }
+}
+
 /// A check that contradicts what was fitted.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -269,8 +292,9 @@ impl From<&Objection> for ObjectionRecord {
 }
 
 /// A limit as applied.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(!default))]
 pub struct LimitRecord {
     /// Lower limit.
     pub min: Option<f64>,

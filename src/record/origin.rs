@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// The program that wrote a result.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct Program {
     /// `sagnac`.
@@ -16,8 +16,9 @@ pub struct Program {
 }
 
 /// Identity of the procedure.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(!default))]
 pub struct ProcedureRecord {
     /// Id, for example `static-bias`.
     pub id: String,
@@ -51,8 +52,9 @@ pub struct ProcedureRecord {
 }
 
 /// Identity of a limits file.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(!default))]
 pub struct LimitsFile {
     /// Id of the limits.
     pub id: String,
@@ -128,7 +130,8 @@ fn is_false(flag: &bool) -> bool {
 
 /// Who tested, where, when.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(!default))]
 pub struct Session {
     /// Operator.
     pub operator: Option<String>,
@@ -139,8 +142,9 @@ pub struct Session {
 }
 
 /// One file of the recording.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(!default))]
 pub struct RecordingFile {
     /// Path as given.
     pub path: String,

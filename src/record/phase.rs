@@ -7,7 +7,7 @@ use crate::i18n::LocalText;
 use serde::{Deserialize, Serialize};
 
 /// One phase: what its own `result.json` says, in short.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct PhaseRecord {
     /// Id.

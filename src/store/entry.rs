@@ -5,13 +5,54 @@
 
 use super::address::sha256;
 use super::error::StoreError;
-use crate::estimate::{Interval, UpperLimit, Verdict};
+use crate::estimate::Verdict;
+use crate::i18n::LocalText;
 use crate::ingest::serial;
 use crate::record::read::{self, ReadError};
-use crate::record::{ConditionStatus, RESULT_FORMAT, RunKind};
-use serde::Deserialize;
+use crate::record::{ConditionStatus, MeasurandRecord, RunKind, RunRecord};
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+
+/// Members of a result that the index reads.
+const MEMBERS: &[&str] = &[
+    "kind",
+    "procedure.id",
+    "procedure.revision",
+    "procedure.sha256",
+    "procedure.limits.id",
+    "procedure.limits.revision",
+    "procedure.limits.sha256",
+    "unit_under_test.serial",
+    "unit_under_test.family",
+    "unit_under_test.model",
+    "unit_under_test.lot",
+    "unit_under_test.build_date",
+    "unit_under_test.reference",
+    "unit_under_test.attributes",
+    "session.operator",
+    "session.station",
+    "session.evaluated_at",
+    "verdict",
+    "attempt.number",
+    "attempt.earlier.result",
+    "measurands.id",
+    "measurands.channel",
+    "measurands.phase",
+    "measurands.unit",
+    "measurands.value",
+    "measurands.interval",
+    "measurands.upper_limit",
+    "measurands.limit.min",
+    "measurands.limit.max",
+    "measurands.verdict",
+    "conditions.id",
+    "conditions.status",
+    "integrity.faults.kind",
+    "recording.path",
+    "recording.sha256",
+    "recording.bytes",
+    "errors.id",
+];
 
 /// What the index has of a result.
 #[derive(Debug, Clone, PartialEq)]
@@ -24,8 +65,8 @@ pub struct Entry {
     pub verdict: Verdict,
     /// SHA-256 of `result.json`.
     pub result_sha256: String,
-    /// What was measured, in the order of the result.
-    pub measurands: Vec<EntryMeasurand>,
+    /// What was measured, in the order of the result: of each row the members that the index has.
+    pub measurands: Vec<MeasurandRecord>,
     /// What kept the unit from passing.
     pub reasons: Vec<Reason>,
     /// The files that were evaluated.
@@ -81,31 +122,6 @@ pub struct EntryTest {
     pub earlier: Vec<String>,
 }
 
-/// A measurand of a result.
-#[derive(Debug, Clone, PartialEq)]
-pub struct EntryMeasurand {
-    /// Id.
-    pub id: String,
-    /// Channel.
-    pub channel: String,
-    /// Phase, in a test of several.
-    pub phase: Option<String>,
-    /// Unit of the numbers.
-    pub unit: String,
-    /// Value.
-    pub value: Option<f64>,
-    /// Its interval.
-    pub interval: Option<Interval>,
-    /// Bound where there is no value.
-    pub upper_limit: Option<UpperLimit>,
-    /// Lower limit.
-    pub min: Option<f64>,
-    /// Upper limit.
-    pub max: Option<f64>,
-    /// Verdict of the row.
-    pub verdict: Verdict,
-}
-
 /// What a reason is of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ReasonKind {
@@ -145,16 +161,13 @@ pub struct Reason {
 }
 
 /// A file that was evaluated.
-#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct EntryRecording {
     /// Path as given to the run.
-    #[serde(default)]
     pub path: String,
     /// SHA-256 of its bytes.
-    #[serde(default)]
     pub sha256: String,
-    /// Its size.
-    #[serde(default)]
+    /// Its size, bytes.
     pub bytes: u64,
 }
 
@@ -165,212 +178,82 @@ impl Entry {
     /// [`StoreError::Result`] where the bytes are no result, [`StoreError::NoTest`] for one without a procedure.
     pub fn of_json(bytes: &[u8], path: &Path) -> Result<Entry, StoreError> {
         let refused = |source: ReadError| StoreError::Result { path: path.to_owned(), source };
-        let given: Given = read::of_format(bytes, RESULT_FORMAT).map_err(refused)?;
-        if given.kind == Some(RunKind::Analyze) {
+        let result = read::of_any_program(bytes, MEMBERS).map_err(refused)?;
+        if result.kind == RunKind::Analyze {
             return Err(StoreError::NoTest(path.to_owned()));
         }
-        Ok(given.entry(sha256(bytes)))
+        Ok(entry(result, sha256(bytes)))
     }
 }
 
-/// The part of a `result.json` that is read.
-#[derive(Deserialize)]
-struct Given {
-    #[serde(default)]
-    kind: Option<RunKind>,
-    #[serde(default)]
-    procedure: Option<GivenProcedure>,
-    unit_under_test: GivenUnit,
-    #[serde(default)]
-    session: GivenSession,
-    verdict: Verdict,
-    #[serde(default)]
-    attempt: Option<GivenAttempt>,
-    measurands: Vec<GivenMeasurand>,
-    #[serde(default)]
-    conditions: Vec<GivenCondition>,
-    #[serde(default)]
-    integrity: GivenIntegrity,
-    #[serde(default)]
-    recording: Vec<EntryRecording>,
-    #[serde(default)]
-    errors: Vec<GivenMessage>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct GivenProcedure {
-    id: String,
-    revision: String,
-    sha256: String,
-    limits: Option<GivenLimits>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct GivenLimits {
-    id: String,
-    revision: String,
-    sha256: String,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct GivenUnit {
-    serial: Option<String>,
-    family: Option<String>,
-    model: Option<String>,
-    lot: Option<String>,
-    build_date: Option<String>,
-    reference: bool,
-    attributes: BTreeMap<String, String>,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct GivenSession {
-    operator: Option<String>,
-    station: Option<String>,
-    evaluated_at: Option<String>,
-}
-
-#[derive(Deserialize)]
-struct GivenAttempt {
-    number: u64,
-    #[serde(default)]
-    earlier: Vec<GivenEarlier>,
-}
-
-#[derive(Deserialize)]
-struct GivenEarlier {
-    #[serde(default)]
-    result: String,
-}
-
-#[derive(Deserialize)]
-struct GivenMeasurand {
-    id: String,
-    #[serde(default)]
-    channel: String,
-    #[serde(default)]
-    phase: Option<String>,
-    #[serde(default)]
-    unit: String,
-    #[serde(default)]
-    value: Option<f64>,
-    #[serde(default)]
-    interval: Option<Interval>,
-    #[serde(default)]
-    upper_limit: Option<UpperLimit>,
-    #[serde(default)]
-    limit: Option<GivenLimit>,
-    #[serde(default)]
-    verdict: Option<Verdict>,
-}
-
-#[derive(Deserialize)]
-struct GivenLimit {
-    #[serde(default)]
-    min: Option<f64>,
-    #[serde(default)]
-    max: Option<f64>,
-}
-
-#[derive(Deserialize)]
-struct GivenCondition {
-    id: String,
-    status: ConditionStatus,
-}
-
-#[derive(Default, Deserialize)]
-#[serde(default)]
-struct GivenIntegrity {
-    faults: Vec<GivenFault>,
-}
-
-#[derive(Deserialize)]
-struct GivenFault {
-    kind: String,
-}
-
-#[derive(Deserialize)]
-struct GivenMessage {
-    #[serde(default)]
-    id: String,
-}
-
-impl Given {
-    fn entry(self, result_sha256: String) -> Entry {
-        let reasons = self.reasons();
-        let procedure = self.procedure.unwrap_or_default();
-        let limits = procedure.limits.unwrap_or_default();
-        let text = |given: Option<String>| given.map(|t| t.trim().to_owned()).unwrap_or_default();
-        let unit = self.unit_under_test;
-        Entry {
-            unit: EntryUnit {
-                serial: text(unit.serial),
-                model: text(unit.model.filter(|m| !m.trim().is_empty()).or(unit.family)),
-                lot: text(unit.lot),
-                build_date: unit.build_date,
-                reference: unit.reference,
-                attributes: unit.attributes,
-            },
-            test: EntryTest {
-                procedure: procedure.id,
-                revision: procedure.revision,
-                procedure_sha256: procedure.sha256,
-                limits: [limits.id, limits.revision].join(" ").trim().to_owned(),
-                limits_sha256: limits.sha256,
-                station: text(self.session.station),
-                operator: text(self.session.operator),
-                evaluated_at: text(self.session.evaluated_at),
-                attempt: self.attempt.as_ref().map_or(0, |a| a.number),
-                earlier: self.attempt.into_iter().flat_map(|a| a.earlier).map(|e| e.result).collect(),
-            },
-            verdict: self.verdict,
-            result_sha256,
-            measurands: self.measurands.into_iter().map(GivenMeasurand::entry).collect(),
-            reasons,
-            recordings: self.recording,
-        }
-    }
-
-    /// Each reason once, in the order of the kinds and names. A unit that passes has none, whatever faults there were.
-    fn reasons(&self) -> Vec<Reason> {
-        if matches!(self.verdict, Verdict::Pass | Verdict::None) {
-            return vec![];
-        }
-        let failed = |m: &&GivenMeasurand| {
-            matches!(m.verdict, Some(Verdict::Fail | Verdict::Indeterminate | Verdict::Error))
-        };
-        let measurands = self.measurands.iter().filter(failed);
-        let conditions = self.conditions.iter().filter(|c| c.status == ConditionStatus::Invalid);
-        let named = |kind: ReasonKind, name: &str| Reason { kind, name: name.to_owned() };
-        let all = measurands
-            .map(|m| named(ReasonKind::Measurand, &m.id))
-            .chain(conditions.map(|c| named(ReasonKind::Condition, &c.id)))
-            .chain(self.integrity.faults.iter().map(|f| named(ReasonKind::Fault, &f.kind)))
-            .chain(self.errors.iter().map(|e| named(ReasonKind::Error, &e.id)));
-        all.collect::<BTreeSet<Reason>>().into_iter().collect()
+/// What the index has of a result.
+fn entry(result: RunRecord, result_sha256: String) -> Entry {
+    let reasons = reasons(&result);
+    let text = |given: Option<&str>| given.unwrap_or_default().trim().to_owned();
+    let (unit, session) = (result.unit_under_test, result.session);
+    let procedure = result.procedure.unwrap_or_default();
+    let limits = procedure.limits.unwrap_or_default();
+    let model = unit.model.as_deref().filter(|m| !m.trim().is_empty());
+    Entry {
+        unit: EntryUnit {
+            serial: text(unit.serial.as_deref()),
+            model: text(model.or(unit.family.as_ref().map(LocalText::text))),
+            lot: text(unit.lot.as_deref()),
+            build_date: unit.build_date,
+            reference: unit.reference,
+            attributes: unit.attributes,
+        },
+        test: EntryTest {
+            procedure: procedure.id,
+            revision: procedure.revision,
+            procedure_sha256: procedure.sha256,
+            limits: [limits.id, limits.revision].join(" ").trim().to_owned(),
+            limits_sha256: limits.sha256,
+            station: text(session.station.as_deref()),
+            operator: text(session.operator.as_deref()),
+            evaluated_at: text(Some(&session.evaluated_at)),
+            attempt: result.attempt.as_ref().map_or(0, |a| a.number),
+            earlier: result.attempt.into_iter().flat_map(|a| a.earlier).map(|e| e.result).collect(),
+        },
+        verdict: result.verdict,
+        result_sha256,
+        measurands: result.measurands.into_iter().map(indexed).collect(),
+        reasons,
+        recordings: result
+            .recording
+            .into_iter()
+            .map(|f| EntryRecording { path: f.path, sha256: f.sha256, bytes: f.bytes })
+            .collect(),
     }
 }
 
-impl GivenMeasurand {
-    fn entry(self) -> EntryMeasurand {
-        let limit = self.limit.unwrap_or(GivenLimit { min: None, max: None });
-        EntryMeasurand {
-            id: self.id,
-            channel: self.channel,
-            phase: self.phase,
-            unit: self.unit,
-            value: self.value.filter(|v| v.is_finite()),
-            interval: self.interval.filter(|i| i.low.is_finite() && i.high.is_finite()),
-            upper_limit: self.upper_limit.filter(|u| u.value.is_finite()),
-            min: limit.min,
-            max: limit.max,
-            verdict: self.verdict.unwrap_or(Verdict::None),
-        }
+/// A row as the index holds it: numbers that are none are absent.
+pub(super) fn indexed(row: MeasurandRecord) -> MeasurandRecord {
+    MeasurandRecord {
+        identifiable: row.value.is_some(),
+        value: row.value.filter(|v| v.is_finite()),
+        interval: row.interval.filter(|i| i.low.is_finite() && i.high.is_finite()),
+        upper_limit: row.upper_limit.filter(|u| u.value.is_finite()),
+        limit: row.limit.filter(|l| l.min.is_some() || l.max.is_some()),
+        ..row
     }
+}
+
+/// Each reason once, in the order of the kinds and names. A unit that passes has none, whatever faults there were.
+fn reasons(result: &RunRecord) -> Vec<Reason> {
+    if matches!(result.verdict, Verdict::Pass | Verdict::None) {
+        return vec![];
+    }
+    let failed = |m: &&MeasurandRecord| !matches!(m.verdict, Verdict::Pass | Verdict::None);
+    let measurands = result.measurands.iter().filter(failed);
+    let conditions = result.conditions.iter().filter(|c| c.status == ConditionStatus::Invalid);
+    let named = |kind: ReasonKind, name: &str| Reason { kind, name: name.to_owned() };
+    let all = measurands
+        .map(|m| named(ReasonKind::Measurand, &m.id))
+        .chain(conditions.map(|c| named(ReasonKind::Condition, &c.id)))
+        .chain(result.integrity.faults.iter().map(|f| named(ReasonKind::Fault, &f.kind)))
+        .chain(result.errors.iter().map(|e| named(ReasonKind::Error, &e.id)));
+    all.collect::<BTreeSet<Reason>>().into_iter().collect()
 }
 
 #[cfg(test)]

@@ -1,17 +1,17 @@
 //! The measurands of all results as a table in Parquet: one row a measurand.
 
-use super::entry::EntryMeasurand;
 use super::error::StoreError;
 use super::index::{Attempt, Filter};
 use super::opened::Store;
 use crate::output::{Column, OutputError, StagedFile, write_table};
+use crate::record::MeasurandRecord;
 use parquet::errors::ParquetError;
 use std::path::Path;
 
 /// One row of the table.
 struct Measured<'a> {
     of: &'a Attempt,
-    what: &'a EntryMeasurand,
+    what: &'a MeasurandRecord,
 }
 
 /// The columns, in their order.
@@ -42,8 +42,8 @@ fn columns<'a>() -> Vec<(&'static str, Column<Measured<'a>>)> {
         ("high", Column::Number(|r| r.what.interval.map(|i| i.high))),
         ("coverage", Column::Number(|r| r.what.interval.map(|i| i.coverage))),
         ("upper_limit", Column::Number(|r| r.what.upper_limit.map(|u| u.value))),
-        ("limit_min", Column::Number(|r| r.what.min)),
-        ("limit_max", Column::Number(|r| r.what.max)),
+        ("limit_min", Column::Number(|r| r.what.lowest_allowed())),
+        ("limit_max", Column::Number(|r| r.what.highest_allowed())),
         ("measurand_verdict", Column::Text(|r| r.what.verdict.id().to_owned())),
         ("address", Column::Text(|r| r.of.address.clone())),
         ("result_sha256", Column::Text(|r| r.of.entry.result_sha256.clone())),

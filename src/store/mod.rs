@@ -27,7 +27,7 @@ mod verify;
 
 pub use add::Added;
 pub use attempt::attempt_of;
-pub use entry::{Entry, EntryMeasurand, EntryRecording, EntryTest, EntryUnit, Reason, ReasonKind};
+pub use entry::{Entry, EntryRecording, EntryTest, EntryUnit, Reason, ReasonKind};
 pub use error::StoreError;
 pub use export::export;
 pub use finding::{Finding, Part};

@@ -95,36 +95,23 @@ mod tests {
     #[test]
     fn a_value_is_judged_by_the_region_of_acceptance() {
         let limit = |rule| LimitRecord {
-            min: None,
             max: Some(10.0),
             unit: "deg/h".into(),
             rule,
             risk: 0.05,
-            acceptance_min: None,
             acceptance_max: Some(if rule == Rule::Simple { 10.0 } else { 8.0 }),
-            source: String::new(),
+            ..LimitRecord::default()
         };
         let verdicts = |value: f64, rule| {
             let row = MeasurandRecord {
                 id: "static_bias".into(),
                 channel: "rate".into(),
-                phase: None,
                 value: Some(value),
                 unit: "deg/h".into(),
-                interval: None,
-                common_standard_uncertainty: None,
                 identifiable: true,
-                upper_limit: None,
-                most_likely: None,
-                lower_limit: None,
                 method: "mean".into(),
-                limit: None,
-                reference: None,
                 verdict: Verdict::Pass,
-                margin: None,
-                specific_risk: None,
-                notes: vec![],
-                objections: vec![],
+                ..MeasurandRecord::default()
             };
             allowed(&row, &limit(rule))
         };

@@ -176,13 +176,12 @@ pub(super) fn record(
         observed.iter().map(|(name, value)| ((*name).to_owned(), Value::from(*value))).collect();
     ConditionRecord {
         id: id.into(),
-        phase: None,
         status,
-        evidence: None,
         observed,
         required: requirement.as_ref().map_or_else(String::new, |r| r.say(Lang::En)),
         requirement: requirement.map(Into::into),
         note: note.say(Lang::En),
         message: Some(note.into()),
+        ..ConditionRecord::default()
     }
 }

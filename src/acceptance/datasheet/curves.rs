@@ -15,7 +15,7 @@ const SAME: f64 = 0.01;
 /// The curves of every channel that at least two units have.
 pub(super) fn curves(units: &[TestedUnit], promise: Promise) -> Vec<SheetCurve> {
     let mut channels: Vec<&str> = vec![];
-    for d in units.iter().flat_map(|u| &u.input.deviations) {
+    for d in units.iter().flat_map(|u| &u.result.deviations) {
         if !channels.contains(&d.channel.as_str()) {
             channels.push(&d.channel);
         }
@@ -29,7 +29,7 @@ fn curve(channel: &str, units: &[TestedUnit], promise: Promise) -> Option<SheetC
         .map(|u| SheetUnitCurve {
             serial: u.serial.clone(),
             points: u
-                .input
+                .result
                 .deviations
                 .iter()
                 .filter(|d| d.channel == channel && d.estimator == ESTIMATOR)

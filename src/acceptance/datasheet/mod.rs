@@ -18,6 +18,7 @@ use crate::i18n::Note;
 use crate::lot::free::units_for_largest;
 use crate::lot::tolerance::Promise;
 use crate::record::{DATASHEET_FORMAT, DataSheet, Message, Program, SheetCondition, SheetResult};
+use crate::recording::window::Window;
 use std::collections::BTreeSet;
 use units::Selected;
 
@@ -54,8 +55,8 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
             .iter()
             .map(|u| SheetResult {
                 serial: u.serial.clone(),
-                lot: u.input.unit_under_test.lot.clone(),
-                verdict: u.input.verdict,
+                lot: u.result.unit_under_test.lot.clone(),
+                verdict: u.result.verdict,
                 path: u.path.clone(),
                 sha256: u.sha256.clone(),
             })
@@ -65,7 +66,7 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
 
 /// What the results tell of the conditions: temperature, how much was evaluated, what of the start was left out, sample rate.
 fn conditions(units: &[TestedUnit]) -> Vec<SheetCondition> {
-    let windows = || units.iter().filter_map(|u| u.input.window.as_ref()).map(|w| vec![w]);
+    let windows = || units.iter().map(|u| Some(&u.result.window).filter(|w| **w != Window::default()));
     // The values of each unit that tells any.
     let of = |id: &str, values: Vec<Vec<f64>>| {
         let told = values.iter().filter(|v| !v.is_empty()).count();
@@ -79,14 +80,14 @@ fn conditions(units: &[TestedUnit]) -> Vec<SheetCondition> {
         })
     };
     let temperatures = |u: &TestedUnit| -> Vec<f64> {
-        let met = u.input.conditions.iter().filter(|c| c.id == "temperature");
+        let met = u.result.conditions.iter().filter(|c| c.id == "temperature");
         met.flat_map(|c| ["min", "max"].map(|end| c.observed.get(end)?.as_f64())).flatten().collect()
     };
     let rates = |u: &TestedUnit| -> Vec<f64> {
-        let intervals = u.input.recording.iter().filter_map(|r| r.sample_interval_s);
+        let intervals = u.result.recording.iter().map(|r| r.sample_interval_s);
         intervals.filter(|i| *i > 0.0).map(|i| 1.0 / i).collect()
     };
-    let warm_up = |w: &crate::recording::window::Window| {
+    let warm_up = |w: &Window| {
         w.excluded.iter().filter(|e| e.reason == "warm_up").map(|e| e.to_s - e.from_s).sum::<f64>()
     };
     [

@@ -10,7 +10,7 @@ use crate::lot::population::{
 use crate::lot::tolerance::Promise;
 use crate::measurand;
 use crate::record::{
-    InputMeasurand, Message, SheetBound, SheetLargest, SheetLimit, SheetOf, SheetOutlook, SheetQuantity,
+    MeasurandRecord, Message, SheetBound, SheetLargest, SheetLimit, SheetOf, SheetOutlook, SheetQuantity,
     SheetScale, SheetShare, SheetSide, SheetSpread, SheetTypical, SheetValue,
 };
 use rayon::prelude::*;
@@ -21,14 +21,14 @@ const COVERAGE: f64 = 0.95;
 /// What tells one quantity from another.
 type Key<'a> = (Option<&'a str>, &'a str, &'a str);
 
-fn key(m: &InputMeasurand) -> Key<'_> {
+fn key(m: &MeasurandRecord) -> Key<'_> {
     (m.phase.as_deref(), m.channel.as_str(), m.id.as_str())
 }
 
 /// The quantities, in the order in which they first appear.
 pub(super) fn quantities(units: &[TestedUnit], promise: Promise) -> Vec<SheetQuantity> {
     let mut keys: Vec<Key<'_>> = vec![];
-    for m in units.iter().flat_map(|u| &u.input.measurands) {
+    for m in units.iter().flat_map(|u| &u.result.measurands) {
         // The Earth rate is one of the site, not of the units.
         if m.id != measurand::EARTH_RATE_COMPONENT.id && !keys.contains(&key(m)) {
             keys.push(key(m));
@@ -43,13 +43,12 @@ pub(super) fn quantities(units: &[TestedUnit], promise: Promise) -> Vec<SheetQua
 /// What one unit tells of a quantity.
 struct Row<'a> {
     unit: &'a TestedUnit,
-    told: &'a InputMeasurand,
+    told: &'a MeasurandRecord,
 }
 
 impl Row<'_> {
     fn value(&self) -> Option<f64> {
-        let shown = self.told.identifiable != Some(false);
-        self.told.value.filter(|v| shown && v.is_finite())
+        self.told.value.filter(|v| self.told.identifiable && v.is_finite())
     }
 
     /// The bound, where there is no value.
@@ -104,7 +103,7 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
     let rows: Vec<Row<'_>> = units
         .iter()
         .flat_map(|unit| {
-            let own = unit.input.measurands.iter().filter(|m| key(m) == of);
+            let own = unit.result.measurands.iter().filter(|m| key(m) == of);
             own.take(1).map(move |told| Row { unit, told })
         })
         .filter(|r| r.value().is_some() || r.bound().is_some())
@@ -186,8 +185,8 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
 
 /// How the quantity was read, where all results say the same.
 fn reading(rows: &[Row<'_>]) -> Option<String> {
-    let first = rows.first()?.told.method.as_ref()?;
-    rows.iter().all(|r| r.told.method.as_ref() == Some(first)).then(|| first.clone())
+    let first = &rows.first()?.told.method;
+    (!first.is_empty() && rows.iter().all(|r| r.told.method == *first)).then(|| first.clone())
 }
 
 /// The scale on which the units scatter: the logarithm of what is never negative.
@@ -320,14 +319,15 @@ fn largest(rows: &[Row<'_>]) -> Option<SheetLargest> {
 
 /// The limit that all rows have, and how many units are beyond it.
 fn limit(rows: &[Row<'_>], population: Option<&Population>, scale: SheetScale) -> Option<SheetLimit> {
-    let first = rows.first()?.told.limit?;
-    if !rows.iter().all(|r| r.told.limit == Some(first)) {
+    let of = |row: &Row<'_>| row.told.limit.as_ref().map(|l| (l.min, l.max));
+    let (min, max) = of(rows.first()?)?;
+    if !rows.iter().all(|r| of(r) == Some((min, max))) {
         return None;
     }
     let share_above = population
-        .zip(first.max.filter(|m| scale == SheetScale::Linear || *m > 0.0))
+        .zip(max.filter(|m| scale == SheetScale::Linear || *m > 0.0))
         .map(|(p, max)| share_above(p, if scale == SheetScale::Log { max.ln() } else { max }));
-    Some(SheetLimit { min: first.min, max: first.max, share_above })
+    Some(SheetLimit { min, max, share_above })
 }
 
 /// The share of true values above a value on the scale of the population.
@@ -339,7 +339,7 @@ fn share_above(population: &Population, at: f64) -> SheetShare {
 fn value(row: &Row<'_>) -> SheetValue {
     SheetValue {
         serial: row.unit.serial.clone(),
-        lot: row.unit.input.unit_under_test.lot.clone(),
+        lot: row.unit.result.unit_under_test.lot.clone(),
         value: row.value(),
         interval: row.told.interval.filter(|_| row.value().is_some()),
         upper_limit: row.told.upper_limit.filter(|_| row.value().is_none()),

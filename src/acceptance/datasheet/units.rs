@@ -2,14 +2,44 @@
 
 use super::compensation_table::Table;
 use crate::estimate::Verdict;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, LocalText, Note};
 use crate::output::sha256;
-use crate::record::{RESULT_FORMAT, SheetInput, SheetProcedure, read};
+use crate::record::{ProcedureRecord, RunRecord, SheetProcedure, read};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Serial numbers that a note names.
-const NAMED: usize = 5;
+/// Serial numbers that a note names at most.
+const MAX_NAMED_SERIALS: usize = 5;
+
+/// Members of a result that a data sheet reads.
+const MEMBERS: &[&str] = &[
+    "procedure.id",
+    "procedure.revision",
+    "unit_under_test.serial",
+    "unit_under_test.family",
+    "unit_under_test.model",
+    "unit_under_test.lot",
+    "verdict",
+    "session.evaluated_at",
+    "window",
+    "deviations",
+    "conditions.id",
+    "conditions.observed",
+    "recording.sample_interval_s",
+    "measurands.id",
+    "measurands.channel",
+    "measurands.phase",
+    "measurands.unit",
+    "measurands.value",
+    "measurands.interval",
+    "measurands.common_standard_uncertainty",
+    "measurands.identifiable",
+    "measurands.upper_limit",
+    "measurands.most_likely",
+    "measurands.method",
+    "measurands.limit.min",
+    "measurands.limit.max",
+];
 
 /// A unit with its result.
 #[derive(Debug, Clone)]
@@ -20,8 +50,8 @@ pub struct TestedUnit {
     pub path: String,
     /// SHA-256 of the file.
     pub sha256: String,
-    /// What the file has.
-    pub input: SheetInput,
+    /// Its result, as far as a data sheet reads it.
+    pub result: RunRecord,
     /// The compensation tables beside it.
     pub tables: Vec<Table>,
 }
@@ -45,31 +75,36 @@ impl TestedUnit {
     }
 
     fn of_record(bytes: &[u8], file: &Path, tables: Vec<Table>) -> Result<TestedUnit, Note> {
-        let input: SheetInput = read::of_format(bytes, RESULT_FORMAT).map_err(|e| e.note(file))?;
+        let result = read::of_any_program(bytes, MEMBERS).map_err(|e| e.note(file))?;
         let path = file.display().to_string();
-        let serial = input.unit_under_test.serial.as_deref().map(str::trim).unwrap_or_default().to_owned();
+        let serial = result.unit_under_test.serial.as_deref().map(str::trim).unwrap_or_default().to_owned();
         if serial.is_empty() {
             return Err(Note::new("datasheet.refused.no_serial").with("path", path));
         }
-        Ok(TestedUnit { serial, path, sha256: sha256(bytes), input, tables })
+        Ok(TestedUnit { serial, path, sha256: sha256(bytes), result, tables })
     }
 
     /// Name of the lot; empty where none is named.
     pub fn lot_name(&self) -> &str {
-        self.input.unit_under_test.lot.as_deref().unwrap_or_default()
+        self.result.unit_under_test.lot.as_deref().unwrap_or_default()
     }
 
     fn model(&self) -> Option<&str> {
-        let unit = &self.input.unit_under_test;
-        unit.model.as_deref().or(unit.family.as_deref()).map(str::trim).filter(|m| !m.is_empty())
+        let unit = &self.result.unit_under_test;
+        unit.model
+            .as_deref()
+            .or(unit.family.as_ref().map(LocalText::text))
+            .map(str::trim)
+            .filter(|m| !m.is_empty())
     }
 
     fn procedure(&self) -> SheetProcedure {
-        self.input.procedure.clone().unwrap_or_default()
+        let of = |p: &ProcedureRecord| SheetProcedure { id: p.id.clone(), revision: p.revision.clone() };
+        self.result.procedure.as_ref().map(of).unwrap_or_default()
     }
 
     fn evaluated_at(&self) -> Option<&str> {
-        self.input.session.as_ref()?.evaluated_at.as_deref()
+        Some(self.result.session.evaluated_at.as_str()).filter(|moment| !moment.is_empty())
     }
 }
 
@@ -101,7 +136,7 @@ pub enum Refusal {
 pub fn select(results: Vec<TestedUnit>) -> Result<Selected, Refusal> {
     let mut notes = vec![];
     let (tested, untested): (Vec<_>, Vec<_>) =
-        results.into_iter().partition(|u| u.input.verdict != Verdict::Error);
+        results.into_iter().partition(|u| u.result.verdict != Verdict::Error);
     if !untested.is_empty() {
         notes.push(named("datasheet.note.untested", untested.iter().map(|u| u.serial.as_str())));
     }
@@ -124,9 +159,9 @@ pub fn select(results: Vec<TestedUnit>) -> Result<Selected, Refusal> {
         n => Note::new("datasheet.note.lots").with("n", n),
     });
     let judged = |u: &TestedUnit| {
-        u.input.measurands.iter().any(|m| m.limit.is_some()) || u.input.verdict == Verdict::Pass
+        u.result.measurands.iter().any(|m| m.limit.is_some()) || u.result.verdict == Verdict::Pass
     };
-    if judged(first) && units.iter().all(|u| u.input.verdict == Verdict::Pass) {
+    if judged(first) && units.iter().all(|u| u.result.verdict == Verdict::Pass) {
         notes.push("datasheet.note.all_pass".into());
     }
     let procedure = joined(&id, &revisions);
@@ -182,8 +217,8 @@ fn last_of_each(results: Vec<TestedUnit>) -> (Vec<TestedUnit>, Vec<String>) {
 /// A note that names some serial numbers.
 fn named<'a>(key: &'static str, serials: impl Iterator<Item = &'a str>) -> Note {
     let all: Vec<&str> = serials.collect();
-    let mut shown = all.iter().take(NAMED).copied().collect::<Vec<_>>().join(", ");
-    if all.len() > NAMED {
+    let mut shown = all.iter().take(MAX_NAMED_SERIALS).copied().collect::<Vec<_>>().join(", ");
+    if all.len() > MAX_NAMED_SERIALS {
         shown.push_str(", …");
     }
     Note::new(key).with("n", all.len()).with("serials", Arg::from(shown))
@@ -197,12 +232,12 @@ mod tests {
 
     fn unit(serial: &str, more: &str) -> TestedUnit {
         let text = format!(r#"{{"unit_under_test": {{"serial": "{serial}"}}, "measurands": [] {more}}}"#);
-        let input = serde_json::from_str(&text).unwrap();
+        let result = read::with_members(serde_json::from_str(&text).unwrap(), MEMBERS).unwrap();
         TestedUnit {
             serial: serial.to_owned(),
             path: more.to_owned(),
             sha256: String::new(),
-            input,
+            result,
             tables: vec![],
         }
     }
@@ -220,14 +255,14 @@ mod tests {
         assert!(found.notes.iter().any(|n| n.id == "datasheet.note.retested"));
         let plain =
             select(vec![unit("1", PASS), unit("1", r#", "verdict": "fail""#)]).unwrap_or_else(|_| panic!());
-        assert_eq!(plain.units[0].input.verdict, Verdict::Fail);
+        assert_eq!(plain.units[0].result.verdict, Verdict::Fail);
     }
 
     #[test]
     fn mixed_models_are_refused_by_name() {
         let of = |serial: &str, model: &str| {
             let mut unit = unit(serial, PASS);
-            unit.input.unit_under_test.model = Some(model.to_owned());
+            unit.result.unit_under_test.model = Some(model.to_owned());
             unit
         };
         let Err(Refusal::Mixed(note)) = select(vec![of("1", "A-1"), of("2", "B-2")]) else {

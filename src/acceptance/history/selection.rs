@@ -1,8 +1,8 @@
 //! Which results count for what.
 
 use crate::estimate::Verdict;
-use crate::record::{HistoryLimit, HistoryPoint, HistoryQuantity};
-use crate::store::{Attempt, EntryMeasurand, ReasonKind};
+use crate::record::{HistoryLimit, HistoryPoint, HistoryQuantity, MeasurandRecord};
+use crate::store::{Attempt, ReasonKind};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// A result with what it counts for.
@@ -45,7 +45,7 @@ impl Tested<'_> {
 #[derive(Debug, Clone, Copy)]
 struct Row<'a> {
     of: Tested<'a>,
-    measurand: &'a EntryMeasurand,
+    measurand: &'a MeasurandRecord,
 }
 
 /// Results in the order of time, and the rows of each quantity in them: a result may have many.
@@ -110,7 +110,8 @@ impl<'a> Selection<'a> {
     pub fn limit(&self, of: &HistoryQuantity, group: &Group) -> Result<Option<HistoryLimit>, ()> {
         let mut found: Option<HistoryLimit> = None;
         for (row, _) in self.rows(of, group) {
-            let limit = HistoryLimit { min: row.measurand.min, max: row.measurand.max };
+            let limit =
+                HistoryLimit { min: row.measurand.lowest_allowed(), max: row.measurand.highest_allowed() };
             match found {
                 Some(other) if other != limit => return Err(()),
                 _ => found = Some(limit),
@@ -148,7 +149,7 @@ impl<'a> Selection<'a> {
 
     /// The quantities of results that count: the one that is asked for, or those with a limit, or else all.
     pub fn quantities(&self, asked: Option<&str>) -> Vec<HistoryQuantity> {
-        let of = |keep: &dyn Fn(&EntryMeasurand) -> bool| -> Vec<HistoryQuantity> {
+        let of = |keep: &dyn Fn(&MeasurandRecord) -> bool| -> Vec<HistoryQuantity> {
             let (mut found, mut seen) = (vec![], BTreeSet::new());
             for t in self.all().filter(Tested::counts) {
                 for m in t.attempt.entry.measurands.iter().filter(|m| m.value.is_some() && keep(m)) {
@@ -163,7 +164,7 @@ impl<'a> Selection<'a> {
         match asked {
             Some(id) => of(&|m| m.id == id),
             None => {
-                let limited = of(&|m| m.min.is_some() || m.max.is_some());
+                let limited = of(&|m| m.limit.is_some());
                 if limited.is_empty() { of(&|_| true) } else { limited }
             }
         }
@@ -171,7 +172,7 @@ impl<'a> Selection<'a> {
 }
 
 /// The quantity of a row.
-fn quantity(attempt: &Attempt, m: &EntryMeasurand) -> HistoryQuantity {
+fn quantity(attempt: &Attempt, m: &MeasurandRecord) -> HistoryQuantity {
     HistoryQuantity {
         procedure: attempt.entry.test.procedure.clone(),
         measurand: m.id.clone(),

@@ -3,7 +3,8 @@
 
 use super::Index;
 use crate::estimate::{Interval, UpperLimit, Verdict};
-use crate::store::entry::{Entry, EntryMeasurand, EntryRecording, EntryTest, EntryUnit, Reason, ReasonKind};
+use crate::record::{LimitRecord, MeasurandRecord};
+use crate::store::entry::{Entry, EntryRecording, EntryTest, EntryUnit, Reason, ReasonKind, indexed};
 use crate::store::error::StoreError;
 use rusqlite::types::Value;
 use rusqlite::{Row, params, params_from_iter};
@@ -342,7 +343,7 @@ fn result(row: &Row<'_>) -> rusqlite::Result<(i64, Attempt)> {
     Ok((row.get(0)?, Attempt { address: row.get(1)?, entry, number, superseded: None, missing: vec![] }))
 }
 
-fn measurand(row: &Row<'_>) -> rusqlite::Result<EntryMeasurand> {
+fn measurand(row: &Row<'_>) -> rusqlite::Result<MeasurandRecord> {
     let number = |at: usize| row.get::<_, Option<f64>>(at);
     let interval = match (number(5)?, number(6)?, number(7)?) {
         (Some(low), Some(high), Some(coverage)) => Some(Interval { low, high, coverage }),
@@ -352,7 +353,8 @@ fn measurand(row: &Row<'_>) -> rusqlite::Result<EntryMeasurand> {
         (Some(value), Some(coverage)) => Some(UpperLimit { value, coverage }),
         _ => None,
     };
-    Ok(EntryMeasurand {
+    let limit = LimitRecord { min: number(10)?, max: number(11)?, ..LimitRecord::default() };
+    Ok(indexed(MeasurandRecord {
         id: row.get(0)?,
         channel: row.get(1)?,
         phase: row.get(2)?,
@@ -360,10 +362,10 @@ fn measurand(row: &Row<'_>) -> rusqlite::Result<EntryMeasurand> {
         value: number(4)?,
         interval,
         upper_limit,
-        min: number(10)?,
-        max: number(11)?,
+        limit: Some(limit),
         verdict: verdict(&row.get::<_, String>(12)?),
-    })
+        ..MeasurandRecord::default()
+    }))
 }
 
 /// The verdict of an id; the index holds no other.

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 pub enum Rule {
     /// The value itself is compared; the risk of a wrong decision is shared (ILAC-G8). Up to 50 % at the limit.
+    #[default]
     Simple,
     /// The one-sided bound at the stated risk is compared (JCGM 106, ISO 14253-1).
     #[default]
@@ -41,11 +42,12 @@ impl Limit {
 }
 
 /// The verdict of a row or of a whole run. Worst wins, in this order.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Nothing was to be decided.
+    #[default]
     None,
     /// The requirement is shown to be met.
     Pass,
