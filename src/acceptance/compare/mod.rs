@@ -16,7 +16,7 @@ mod unit;
 
 pub use of_result::{mark_repeated, name_apart, not_compared, units_of};
 pub use parts::{part_key, part_name};
-pub use unit::{Origin, Quantity, ReadOutRule, RuleRow, Unit};
+pub use unit::{Origin, ReadOutRule, RuleRow, Unit};
 
 use crate::record::Program;
 use serde::{Deserialize, Serialize};

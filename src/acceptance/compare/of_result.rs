@@ -1,12 +1,12 @@
 //! The units of a result.
 
 use super::rules::rules;
-use super::unit::{Origin, Quantity, Unit};
+use super::unit::{Origin, Unit};
 use super::{faults, summary};
 use crate::acceptance::verdict::contradicted;
 use crate::i18n::{Arg, Note};
 use crate::measurand;
-use crate::record::RunRecord;
+use crate::record::{MeasurandRecord, RunRecord};
 
 /// The quantities that a comparison takes from a result.
 const COMPARED: &[&str] = &[
@@ -30,7 +30,7 @@ const COMPARED: &[&str] = &[
 /// A note on a result that has none, such as one whose run failed.
 pub fn units_of(result: &RunRecord, path: &str, stem: &str, origin: Origin) -> Result<Vec<Unit>, Note> {
     let rows = result.measurands.iter().filter(|r| COMPARED.contains(&r.id.as_str()));
-    let quantities: Vec<Quantity> = rows.map(Quantity::from).collect();
+    let quantities: Vec<&MeasurandRecord> = rows.collect();
     if quantities.is_empty() {
         return Err(Note::new("compare.error.nothing").with("path", path));
     }
@@ -50,7 +50,7 @@ pub fn units_of(result: &RunRecord, path: &str, stem: &str, origin: Origin) -> R
             origin,
             recording_sha256: result.recording.iter().map(|f| f.sha256.clone()).collect(),
             length_s: Some(result.window.usable_s).filter(|t| *t > 0.0),
-            quantities: quantities.iter().filter(|q| q.channel == *channel).cloned().collect(),
+            quantities: quantities.iter().filter(|q| q.channel == *channel).map(|q| (*q).clone()).collect(),
             rules: vec![],
             deviations: result
                 .deviations

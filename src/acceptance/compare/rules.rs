@@ -1,8 +1,9 @@
 //! Allan bias instability under each read-out rule, with the ratio of the Russian drift to it.
 
-use super::unit::{Quantity, ReadOutRule, RuleRow, Unit};
+use super::unit::{ReadOutRule, RuleRow, Unit};
 use crate::estimate::{Interval, UpperLimit};
 use crate::measurand;
+use crate::record::MeasurandRecord;
 
 /// √(2 ln 2/π): the Allan floor of flicker noise is this times B.
 const FLOOR: f64 = 0.664_282_470_3;
@@ -50,7 +51,7 @@ pub(super) fn rules(unit: &Unit) -> Vec<RuleRow> {
 }
 
 /// The interval of a quotient of two positive quantities: half-widths in the logarithm add as squares.
-fn quotient(above: &Quantity, below: &Quantity, factor: f64) -> Option<Interval> {
+fn quotient(above: &MeasurandRecord, below: &MeasurandRecord, factor: f64) -> Option<Interval> {
     let (a, b) = (above.value?, below.value?);
     let (ia, ib) = (above.interval?, below.interval?);
     if [a, b, ia.low, ib.low].iter().any(|v| *v <= 0.0) {

@@ -1,8 +1,8 @@
 //! One channel of one unit: what is compared.
 
-use crate::estimate::{Interval, UpperLimit, Verdict};
+use crate::estimate::{Interval, UpperLimit};
 use crate::i18n::Note;
-use crate::record::{ComparisonRecord, DeviationRecord, LimitRecord, MeasurandRecord, Message};
+use crate::record::{ComparisonRecord, DeviationRecord, MeasurandRecord};
 use serde::{Deserialize, Serialize};
 
 /// Where a unit's values come from.
@@ -13,46 +13,6 @@ pub enum Origin {
     Recording,
     /// A `result.json` that was there.
     Result,
-}
-
-/// One measured quantity as it stands in a result.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Quantity {
-    /// Id of the measurand.
-    pub id: String,
-    /// Channel.
-    pub channel: String,
-    /// Value; absent where the record cannot show it.
-    pub value: Option<f64>,
-    /// Unit.
-    pub unit: String,
-    /// 95 % interval.
-    pub interval: Option<Interval>,
-    /// Bound where there is no value.
-    pub upper_limit: Option<UpperLimit>,
-    /// The limit this very quantity was judged by.
-    pub limit: Option<Limit>,
-    /// What was decided.
-    pub verdict: Verdict,
-    /// What must be known with the value.
-    #[serde(skip)]
-    pub notes: Vec<Message>,
-}
-
-impl From<&MeasurandRecord> for Quantity {
-    fn from(row: &MeasurandRecord) -> Quantity {
-        Quantity {
-            id: row.id.clone(),
-            channel: row.channel.clone(),
-            value: row.value,
-            unit: row.unit.clone(),
-            interval: row.interval,
-            upper_limit: row.upper_limit,
-            limit: row.limit.as_ref().map(Limit::from),
-            verdict: row.verdict,
-            notes: row.notes.clone(),
-        }
-    }
 }
 
 /// How bias instability is read off.
@@ -103,25 +63,6 @@ pub struct RuleRow {
     pub inverse: Option<f64>,
 }
 
-/// A limit as a result holds it.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Limit {
-    /// Lowest value allowed.
-    pub min: Option<f64>,
-    /// Highest value allowed.
-    pub max: Option<f64>,
-    /// Unit of both.
-    pub unit: String,
-    /// File it stands in.
-    pub source: String,
-}
-
-impl From<&LimitRecord> for Limit {
-    fn from(limit: &LimitRecord) -> Limit {
-        Limit { min: limit.min, max: limit.max, unit: limit.unit.clone(), source: limit.source.clone() }
-    }
-}
-
 /// One channel of one unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Unit {
@@ -139,8 +80,8 @@ pub struct Unit {
     pub recording_sha256: Vec<String>,
     /// Usable time of the record, s.
     pub length_s: Option<f64>,
-    /// The quantities of the comparison that the result holds.
-    pub quantities: Vec<Quantity>,
+    /// The rows of the result that are compared.
+    pub quantities: Vec<MeasurandRecord>,
     /// Allan bias instability under each read-out rule, with the ratios.
     pub rules: Vec<RuleRow>,
     /// The overlapping Allan deviation at octaves, for the figure; empty where the result lacks it.
@@ -159,8 +100,8 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// A quantity by id.
-    pub fn quantity(&self, id: &str) -> Option<&Quantity> {
+    /// The row of a measurand.
+    pub fn quantity(&self, id: &str) -> Option<&MeasurandRecord> {
         self.quantities.iter().find(|q| q.id == id)
     }
 

@@ -1,9 +1,9 @@
 //! One unit of a comparison, printed.
 
-use crate::acceptance::compare::{Origin, Quantity, RuleRow, Unit, part_name};
+use crate::acceptance::compare::{Origin, RuleRow, Unit, part_name};
 use crate::estimate::{Interval, UpperLimit, Verdict};
 use crate::measurand;
-use crate::record::{Agreement, ModelRecord, ShareRecord, WindowRecord};
+use crate::record::{Agreement, MeasurandRecord, ModelRecord, ShareRecord, WindowRecord};
 use crate::report::number::{Rounding, bound, digits, duration, limit, limit_digits, percent};
 use crate::report::translator::Translator;
 use crate::report::view::FigureView;
@@ -147,7 +147,7 @@ fn cell(
     }
 }
 
-fn quantity(q: Option<&Quantity>, words: Translator) -> Cell {
+fn quantity(q: Option<&MeasurandRecord>, words: Translator) -> Cell {
     q.map_or_else(Cell::default, |q| cell(q.value, q.interval, q.upper_limit, words))
 }
 
