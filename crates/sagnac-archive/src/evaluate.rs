@@ -2,10 +2,10 @@
 //!
 //! This is the only file that calls the analysis.
 
-use crate::outcome::{Failure, FailureKind, Fault, Measurand, Outcome};
+use crate::outcome::{Failure, FailureKind, Outcome};
 use crate::stores::{Fetched, fetch};
 use chrono::{DateTime, SecondsFormat, Utc};
-use sagnac::record::{MeasurandRecord, RunRecord, explanation::Explanation};
+use sagnac::record::{RunRecord, explanation::Explanation};
 use sagnac::{Analysis, Model, Procedure, Recording, UnitUnderTest};
 use serde::Serialize;
 use sha2::{Digest, Sha256};
@@ -185,36 +185,14 @@ fn of_record(record: &RunRecord) -> Result<Outcome, Failure> {
         verdict: Some(record.verdict.id().to_owned()),
         evaluated_at: Some(record.session.evaluated_at.clone()),
         recorded_at: record.recording.iter().find_map(|f| f.start.clone()),
-        measurands: record.measurands.iter().map(Measurand::from).collect(),
-        faults: record
-            .integrity
-            .faults
-            .iter()
-            .map(|f| Fault { kind: f.kind.clone(), channel: f.channel.clone(), row: f.row, count: f.count })
-            .collect(),
+        measurands: record.measurands.clone(),
+        faults: record.integrity.faults.clone(),
         effects: vec![],
         hash: hash_of_record(record),
         samples: Some(record.recording.iter().map(|f| f.samples).sum()),
         result_json: Some(json(record)?),
         error: None,
     })
-}
-
-impl From<&MeasurandRecord> for Measurand {
-    fn from(m: &MeasurandRecord) -> Measurand {
-        Measurand {
-            id: m.id.clone(),
-            channel: m.channel.clone(),
-            value: m.value,
-            low: m.interval.map(|i| i.low),
-            high: m.interval.map(|i| i.high),
-            at_most: m.upper_limit.map(|u| u.value),
-            unit: m.unit.clone(),
-            verdict: m.verdict.id().to_owned(),
-            limit_min: m.limit.as_ref().and_then(|l| l.min),
-            limit_max: m.limit.as_ref().and_then(|l| l.max),
-        }
-    }
 }
 
 /// The hash of one file as it is; of several, the hash of their hashes in sequence.

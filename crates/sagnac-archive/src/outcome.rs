@@ -5,6 +5,7 @@ use datafusion::arrow::array::{
     StructBuilder, UInt64Builder,
 };
 use datafusion::arrow::datatypes::{DataType, Field, Fields};
+use sagnac::record::{FaultRecord, MeasurandRecord};
 use std::sync::Arc;
 
 /// What one recording gave: a result, or the reason why there is none.
@@ -23,10 +24,10 @@ pub struct Outcome {
     pub evaluated_at: Option<String>,
     /// Start of the recording, RFC 3339, where its stamps are absolute.
     pub recorded_at: Option<String>,
-    /// Measured quantities.
-    pub measurands: Vec<Measurand>,
+    /// Measured quantities, as in `result.json`.
+    pub measurands: Vec<MeasurandRecord>,
     /// Faults of the recording, at most 100 of a kind.
-    pub faults: Vec<Fault>,
+    pub faults: Vec<FaultRecord>,
     /// Effects that an explanation found, the principal one first.
     pub effects: Vec<String>,
     /// SHA-256 of the bytes of the recording, hexadecimal; of several files, of their hashes in sequence.
@@ -37,44 +38,6 @@ pub struct Outcome {
     pub result_json: Option<String>,
     /// Why there is no result.
     pub error: Option<Failure>,
-}
-
-/// One measured quantity.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Measurand {
-    /// Id, for example `static_bias`.
-    pub id: String,
-    /// Channel.
-    pub channel: String,
-    /// Value in `unit`, absent where the recording cannot show it.
-    pub value: Option<f64>,
-    /// Lower end of the 95 % interval.
-    pub low: Option<f64>,
-    /// Upper end of the 95 % interval.
-    pub high: Option<f64>,
-    /// Bound where there is no value: the quantity is at most this much.
-    pub at_most: Option<f64>,
-    /// Unit.
-    pub unit: String,
-    /// Verdict by its id.
-    pub verdict: String,
-    /// Smallest value that the limit allows.
-    pub limit_min: Option<f64>,
-    /// Largest value that the limit allows.
-    pub limit_max: Option<f64>,
-}
-
-/// One fault of a recording.
-#[derive(Debug, Clone, Default, PartialEq)]
-pub struct Fault {
-    /// Kind, for example `gap`.
-    pub kind: String,
-    /// Channel, where it is of one.
-    pub channel: Option<String>,
-    /// First row concerned, counted from 1.
-    pub row: u64,
-    /// Samples concerned.
-    pub count: u64,
 }
 
 /// Why a recording has no result.
@@ -145,7 +108,7 @@ fn count(name: &str) -> Field {
     Field::new(name, DataType::UInt64, true)
 }
 
-/// Fields of a measured quantity, in the order of [`Measurand`].
+/// Fields of a measured quantity, in the order of [`append_measurand`].
 pub fn measurand_fields() -> Fields {
     Fields::from(vec![
         text("id"),
@@ -223,28 +186,24 @@ impl Row<'_> {
     }
 }
 
-impl Measurand {
-    fn append(&self, row: &mut Row<'_>) {
-        row.text(0, Some(&self.id));
-        row.text(1, Some(&self.channel));
-        row.number(2, self.value);
-        row.number(3, self.low);
-        row.number(4, self.high);
-        row.number(5, self.at_most);
-        row.text(6, Some(&self.unit));
-        row.text(7, Some(&self.verdict));
-        row.number(8, self.limit_min);
-        row.number(9, self.limit_max);
-    }
+fn append_measurand(m: &MeasurandRecord, row: &mut Row<'_>) {
+    row.text(0, Some(&m.id));
+    row.text(1, Some(&m.channel));
+    row.number(2, m.value);
+    row.number(3, m.interval.map(|i| i.low));
+    row.number(4, m.interval.map(|i| i.high));
+    row.number(5, m.upper_limit.map(|u| u.value));
+    row.text(6, Some(&m.unit));
+    row.text(7, Some(m.verdict.id()));
+    row.number(8, m.lowest_allowed());
+    row.number(9, m.highest_allowed());
 }
 
-impl Fault {
-    fn append(&self, row: &mut Row<'_>) {
-        row.text(0, Some(&self.kind));
-        row.text(1, self.channel.as_deref());
-        row.count(2, self.row);
-        row.count(3, self.count);
-    }
+fn append_fault(f: &FaultRecord, row: &mut Row<'_>) {
+    row.text(0, Some(&f.kind));
+    row.text(1, f.channel.as_deref());
+    row.count(2, f.row);
+    row.count(3, f.count);
 }
 
 fn builder(fields: Fields) -> StructBuilder {
@@ -296,8 +255,8 @@ pub fn array(all: &[Outcome]) -> StructArray {
         texts(all, |o| o.verdict.as_deref()),
         texts(all, |o| o.evaluated_at.as_deref()),
         texts(all, |o| o.recorded_at.as_deref()),
-        lists(all, measurand_fields(), |o| &o.measurands, Measurand::append),
-        lists(all, fault_fields(), |o| &o.faults, Fault::append),
+        lists(all, measurand_fields(), |o| &o.measurands, append_measurand),
+        lists(all, fault_fields(), |o| &o.faults, append_fault),
         Arc::new(effects.finish()),
         texts(all, |o| o.hash.as_deref()),
         Arc::new(samples.finish()),
@@ -315,11 +274,12 @@ mod tests {
 
     #[test]
     fn outcomes_keep_their_rows_apart() {
-        let measurand = Measurand { id: "static_bias".into(), value: Some(1.5), ..Measurand::default() };
+        let measurand =
+            MeasurandRecord { id: "static_bias".into(), value: Some(1.5), ..MeasurandRecord::default() };
         let good = Outcome {
             serial: Some("A".into()),
-            measurands: vec![measurand.clone(), Measurand { value: None, ..measurand }],
-            faults: vec![Fault { kind: "gap".into(), row: 7, count: 2, ..Fault::default() }],
+            measurands: vec![measurand.clone(), MeasurandRecord { value: None, ..measurand }],
+            faults: vec![FaultRecord { kind: "gap".into(), row: 7, count: 2, ..FaultRecord::default() }],
             result_json: Some("{}".into()),
             ..Outcome::default()
         };

@@ -4,8 +4,10 @@ mod support;
 
 use datafusion::arrow::array::{ArrayRef, RecordBatch, StringArray};
 use datafusion::arrow::datatypes::{DataType, Field, Schema};
+use sagnac::estimate::{Interval, Verdict};
+use sagnac::record::MeasurandRecord;
 use sagnac_archive::functions::Function;
-use sagnac_archive::outcome::{self, Measurand, Outcome};
+use sagnac_archive::outcome::{self, Outcome};
 use sagnac_archive::results::{Counts, Writer};
 use sagnac_archive::stores;
 use std::path::Path;
@@ -31,15 +33,14 @@ const SHEET: &str = "SELECT lot, count(*) AS units, avg(b['value']) AS mean, \
 fn result(number: usize) -> Outcome {
     let noise =
         ((number as u64).wrapping_mul(6_364_136_223_846_793_005) >> 40) as f64 / f64::from(1_u32 << 24);
-    let measurand = |(i, id): (usize, &&str)| Measurand {
+    let measurand = |(i, id): (usize, &&str)| MeasurandRecord {
         id: (*id).to_owned(),
         channel: "rate".to_owned(),
         value: Some(10.0 + noise + i as f64),
-        low: Some(9.9 + noise),
-        high: Some(10.1 + noise),
+        interval: Some(Interval { low: 9.9 + noise, high: 10.1 + noise, coverage: 0.95 }),
         unit: "deg/h".to_owned(),
-        verdict: "pass".to_owned(),
-        ..Measurand::default()
+        verdict: Verdict::Pass,
+        ..MeasurandRecord::default()
     };
     Outcome {
         serial: Some(format!("SN-{number}")),
