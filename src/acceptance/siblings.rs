@@ -12,14 +12,14 @@ pub const MOST_SIBLINGS: usize = 100;
 /// Rate of false alarms.
 const FALSE_ALARM_RATE: f64 = 0.01;
 /// Quantities at most.
-const MOST_QUANTITIES: usize = 6;
+const MAX_QUANTITIES: usize = 6;
 /// Share of the other units that must have a quantity for it to count. Those that lack one that counts are left out.
-const SHARED: f64 = 0.8;
-/// Quantities that a sentence names, and the deviation from which.
-const NAMED: usize = 3;
-const FAR: f64 = 1.5;
+const MIN_SHARE_OF_UNITS: f64 = 0.8;
+/// Quantities that a sentence names at most, and the deviation, in standard deviations, from which it names them.
+const MAX_NAMED_QUANTITIES: usize = 3;
+const MIN_NAMED_DEVIATION: f64 = 1.5;
 /// Measurands that units are compared in, the first ones first.
-const MEASURANDS: [&str; 6] = [
+const COMPARED_MEASURANDS: [&str; 6] = [
     "angle_random_walk",
     "bias_instability",
     "rate_random_walk",
@@ -28,11 +28,11 @@ const MEASURANDS: [&str; 6] = [
     "scale_factor_temperature_sensitivity",
 ];
 /// The curve that is compared, and its averaging times, s.
-const CURVE: &str = "allan_deviation";
-const ESTIMATOR: &str = "oadev";
-const TIMES_S: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
+const CURVE_ID: &str = "allan_deviation";
+const CURVE_ESTIMATOR: &str = "oadev";
+const CURVE_TIMES_S: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 /// Ratio to the nearest of these within which a point of a curve is taken for it.
-const NEAR: f64 = 1.5;
+const MAX_TIME_RATIO: f64 = 1.5;
 
 /// A quantity that units can be compared in.
 struct Quantity {
@@ -50,7 +50,7 @@ impl Quantity {
                 let curve = result
                     .deviations
                     .iter()
-                    .filter(|d| d.channel == self.channel && d.estimator == ESTIMATOR);
+                    .filter(|d| d.channel == self.channel && d.estimator == CURVE_ESTIMATOR);
                 curve.clone().find(|d| same(d.tau_s)).map(|d| d.deviation_deg_h)
             }
             None => {
@@ -76,15 +76,16 @@ fn quantities(result: &RunRecord) -> Vec<Quantity> {
     let mut all = vec![];
     for channel in &channels {
         let of = |id| Quantity { id, channel: (*channel).to_owned(), tau_s: None };
-        all.extend(MEASURANDS.map(of));
+        all.extend(COMPARED_MEASURANDS.map(of));
     }
     for channel in channels {
-        let curve = || result.deviations.iter().filter(|d| d.channel == channel && d.estimator == ESTIMATOR);
-        for wanted in TIMES_S {
+        let curve =
+            || result.deviations.iter().filter(|d| d.channel == channel && d.estimator == CURVE_ESTIMATOR);
+        for wanted in CURVE_TIMES_S {
             let near = |t: f64| (t / wanted).ln().abs();
             let nearest = curve().map(|d| d.tau_s).min_by(|a, b| near(*a).total_cmp(&near(*b)));
-            let tau_s = nearest.filter(|t| near(*t) <= NEAR.ln());
-            all.extend(tau_s.map(|t| Quantity { id: CURVE, channel: channel.to_owned(), tau_s: Some(t) }));
+            let tau_s = nearest.filter(|t| near(*t) <= MAX_TIME_RATIO.ln());
+            all.extend(tau_s.map(|t| Quantity { id: CURVE_ID, channel: channel.to_owned(), tau_s: Some(t) }));
         }
     }
     all.retain(|q| q.of(result).is_some());
@@ -95,7 +96,7 @@ fn quantities(result: &RunRecord) -> Vec<Quantity> {
 pub fn siblings(unit: &RunRecord, model: &str, lot: &str, others: &[TestedUnit]) -> Option<SiblingsRecord> {
     let shared = |q: &Quantity| {
         let having = others.iter().filter(|o| q.of(&o.result).is_some()).count();
-        having as f64 >= SHARED * others.len() as f64
+        having as f64 >= MIN_SHARE_OF_UNITS * others.len() as f64
     };
     let of = |chosen: &[Quantity], result: &RunRecord| -> Option<Vec<f64>> {
         chosen.iter().map(|q| q.of(result)).collect()
@@ -111,7 +112,7 @@ pub fn siblings(unit: &RunRecord, model: &str, lot: &str, others: &[TestedUnit])
         if !enough || !are_independent(&values) {
             chosen.pop();
         }
-        if chosen.len() == MOST_QUANTITIES {
+        if chosen.len() == MAX_QUANTITIES {
             break;
         }
     }
@@ -152,7 +153,8 @@ fn notes(lot: &str, units: usize, p_value: f64, quantities: &[SiblingQuantity]) 
         .with("units", units as u64)
         .with("p", format!("{:.2}", 100.0 * p_value))
         .with("rate", 100.0 * FALSE_ALARM_RATE);
-    let mut order: Vec<&SiblingQuantity> = quantities.iter().filter(|q| q.deviation.abs() >= FAR).collect();
+    let mut order: Vec<&SiblingQuantity> =
+        quantities.iter().filter(|q| q.deviation.abs() >= MIN_NAMED_DEVIATION).collect();
     order.sort_by(|a, b| b.deviation.abs().total_cmp(&a.deviation.abs()));
     let several = quantities.iter().any(|q| quantities.first().is_some_and(|f| f.channel != q.channel));
     let one = |q: &&SiblingQuantity| -> Arg {
@@ -166,7 +168,7 @@ fn notes(lot: &str, units: usize, p_value: f64, quantities: &[SiblingQuantity]) 
         };
         note.into()
     };
-    let list: Vec<Arg> = order.iter().take(NAMED).map(one).collect();
+    let list: Vec<Arg> = order.iter().take(MAX_NAMED_QUANTITIES).map(one).collect();
     let second = if list.is_empty() {
         Note::new("siblings.together")
     } else {

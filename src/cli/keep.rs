@@ -16,9 +16,9 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// The variable of the environment that names a store.
-const VARIABLE: &str = "SAGNAC_STORE";
+const STORE_VARIABLE: &str = "SAGNAC_STORE";
 /// Digits of an address that are shown.
-const SHOWN: usize = 12;
+const SHOWN_ADDRESS_DIGITS: usize = 12;
 
 /// The choice of a store.
 #[derive(Debug, Default, Args)]
@@ -43,7 +43,7 @@ impl StoreArgs {
         if self.no_store {
             return Ok(None);
         }
-        let set = || std::env::var_os(VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
+        let set = || std::env::var_os(STORE_VARIABLE).filter(|v| !v.is_empty()).map(PathBuf::from);
         match self.store.clone().or_else(set) {
             Some(path) => Ok(Some(path)),
             None => Ok(user::load(|name| std::env::var_os(name)).map_err(|p| p.say(lang))?.store),
@@ -156,7 +156,7 @@ impl Keeper {
             store.keep_recordings(&added.address).map_err(|e| self.say(&e))?;
         }
         let note = Note::new("store.kept")
-            .with("address", added.address.get(..SHOWN).unwrap_or(&added.address))
+            .with("address", added.address.get(..SHOWN_ADDRESS_DIGITS).unwrap_or(&added.address))
             .with("store", place::shown(path));
         printer.next_step(Some(&note));
         Ok(())

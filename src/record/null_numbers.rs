@@ -79,7 +79,7 @@ impl<'de> Deserializer<'de> for NullNumbers {
     }
 }
 
-/// What stands where an enum was expected.
+/// The JSON value that stands where an enum was expected.
 fn unexpected(value: &Value) -> Unexpected<'_> {
     match value {
         Value::Null => Unexpected::Unit,

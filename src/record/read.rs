@@ -55,7 +55,7 @@ pub enum ReadError {
 }
 
 impl ReadError {
-    /// What is wrong with the file at `path`, as a note. What the JSON reader says of a field is in English.
+    /// The fault of the file at `path`, as a note. The words of the JSON reader on a field are English.
     pub fn note(&self, path: &Path) -> Note {
         let note = |key: &'static str| Note::new(key).with("path", path.display().to_string());
         match self {

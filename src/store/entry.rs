@@ -14,7 +14,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Members of a result that the index reads.
-const MEMBERS: &[&str] = &[
+const INDEXED_MEMBERS: &[&str] = &[
     "kind",
     "procedure.id",
     "procedure.revision",
@@ -122,7 +122,7 @@ pub struct EntryTest {
     pub earlier: Vec<String>,
 }
 
-/// What a reason is of.
+/// Kind of a reason.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ReasonKind {
     /// A quantity that is not shown to keep its limit.
@@ -154,7 +154,7 @@ impl ReasonKind {
 /// What kept a unit from passing.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Reason {
-    /// What it is of.
+    /// Kind.
     pub kind: ReasonKind,
     /// Id of the measurand, the condition, the kind of fault or the message.
     pub name: String,
@@ -178,7 +178,7 @@ impl Entry {
     /// [`StoreError::Result`] where the bytes are no result, [`StoreError::NoTest`] for one without a procedure.
     pub fn of_json(bytes: &[u8], path: &Path) -> Result<Entry, StoreError> {
         let refused = |source: ReadError| StoreError::Result { path: path.to_owned(), source };
-        let result = read::of_any_program(bytes, MEMBERS).map_err(refused)?;
+        let result = read::of_any_program(bytes, INDEXED_MEMBERS).map_err(refused)?;
         if result.kind == RunKind::Analyze {
             return Err(StoreError::NoTest(path.to_owned()));
         }

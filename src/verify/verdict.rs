@@ -6,8 +6,8 @@ use crate::estimate::{Rule, Verdict};
 use crate::i18n::Note;
 use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
 
-/// Slack of a comparison of numbers that went through decimal digits, relative.
-const SLACK: f64 = 1e-9;
+/// Relative difference of numbers that went through decimal digits within which they are equal.
+const ROUNDING_TOLERANCE: f64 = 1e-9;
 
 /// Decides every row of a record anew, and the whole by its rows, conditions and errors.
 pub fn verdict(record: &RunRecord) -> Vec<Finding> {
@@ -27,7 +27,7 @@ pub fn verdict(record: &RunRecord) -> Vec<Finding> {
         if let (Some(value), Some(margin)) = (row.value, row.margin) {
             let nearest = [limit.max.map(|max| max - value), limit.min.map(|min| value - min)];
             let nearest = nearest.into_iter().flatten().reduce(f64::min);
-            if nearest.is_none_or(|n| (n - margin).abs() > SLACK * (value.abs() + n.abs())) {
+            if nearest.is_none_or(|n| (n - margin).abs() > ROUNDING_TOLERANCE * (value.abs() + n.abs())) {
                 findings.push(Finding::Differs(
                     Note::new("verify.row_margin")
                         .with("measurand", row.id.as_str())
@@ -61,11 +61,11 @@ pub fn verdict(record: &RunRecord) -> Vec<Finding> {
 /// The verdicts that the numbers of a row allow.
 fn allowed(row: &MeasurandRecord, limit: &LimitRecord) -> Vec<Verdict> {
     let inside = |value: f64, low: Option<f64>, high: Option<f64>| {
-        let slack = SLACK * value.abs();
+        let slack = ROUNDING_TOLERANCE * value.abs();
         low.is_none_or(|low| value >= low - slack) && high.is_none_or(|high| value <= high + slack)
     };
     let Some(value) = row.value else {
-        let shown = 1.0 - limit.risk - SLACK;
+        let shown = 1.0 - limit.risk - ROUNDING_TOLERANCE;
         let beyond =
             limit.max.zip(row.lower_limit).is_some_and(|(max, b)| b.value > max && b.coverage >= shown);
         let below =

@@ -16,11 +16,11 @@ use std::path::Path;
 use std::time::Duration;
 
 /// How often what cannot be reached is tried.
-const ATTEMPTS: u32 = 3;
+const MAX_ATTEMPTS: u32 = 3;
 /// Pause before the second attempt; it doubles.
-const PAUSE: Duration = Duration::from_millis(500);
+const FIRST_PAUSE: Duration = Duration::from_millis(500);
 
-/// What to do with one recording. Files are given by path or address.
+/// Task for one recording. Files are given by path or address.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Task<'a> {
     /// Measure what the recording shows, as `sagnac analyze` does.
@@ -54,8 +54,8 @@ pub struct Order<'a> {
 
 /// Evaluates one recording. A fault of the program, too, is data: it ends in [`FailureKind::Program`].
 pub fn evaluate(order: &Order<'_>) -> Outcome {
-    let mut pause = PAUSE;
-    for _ in 1..ATTEMPTS {
+    let mut pause = FIRST_PAUSE;
+    for _ in 1..MAX_ATTEMPTS {
         match guarded(order) {
             Err(failure) if failure.kind == FailureKind::Access => std::thread::sleep(pause),
             done => return done.unwrap_or_else(Outcome::from),

@@ -8,7 +8,7 @@ use datafusion::arrow::datatypes::{DataType, Field, Fields};
 use sagnac::record::{FaultRecord, MeasurandRecord};
 use std::sync::Arc;
 
-/// What one recording gave: a result, or the reason why there is none.
+/// The result of one recording, or the reason why there is none.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Outcome {
     /// Serial number of the unit.
@@ -43,13 +43,13 @@ pub struct Outcome {
 /// Why a recording has no result.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Failure {
-    /// What it is about.
+    /// Kind.
     pub kind: FailureKind,
     /// One or more sentences.
     pub text: String,
 }
 
-/// What a failure is about.
+/// Kind of a failure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FailureKind {
     /// There is no such recording.

@@ -5,7 +5,7 @@ use sagnac_core::recording::integrity::Fault;
 use std::collections::BTreeMap;
 
 /// At most this many faults of a kind are listed.
-pub const LISTED: usize = 100;
+pub const MAX_LISTED_OF_A_KIND: usize = 100;
 
 /// Entries looked through, from the last, for one that a fault continues: as many as channels can fail together.
 const LOOK_BACK: usize = 16;
@@ -37,7 +37,7 @@ impl FaultLog {
             fault.count += count;
             return;
         }
-        if list.len() < LISTED {
+        if list.len() < MAX_LISTED_OF_A_KIND {
             list.push(Fault {
                 kind: kind.to_owned(),
                 channel: channel.map(str::to_owned),
@@ -81,6 +81,6 @@ mod tests {
         for i in 0..1000 {
             log.push("gap", None, None, 2 * i + 1, 1, || Note::new("fault_note.duplicate"));
         }
-        assert_eq!(log.into_list().len(), LISTED);
+        assert_eq!(log.into_list().len(), MAX_LISTED_OF_A_KIND);
     }
 }

@@ -9,7 +9,7 @@ use crate::measurand;
 use crate::record::{MeasurandRecord, RunRecord};
 
 /// The quantities that a comparison takes from a result.
-const COMPARED: &[&str] = &[
+const COMPARED_MEASURANDS: &[&str] = &[
     measurand::RUSSIAN_DRIFT_100S.id,
     measurand::RUSSIAN_DRIFT_100S_3SIGMA.id,
     measurand::RUSSIAN_SIGMA_10S.id,
@@ -29,7 +29,7 @@ const COMPARED: &[&str] = &[
 /// # Errors
 /// A note on a result that has none, such as one whose run failed.
 pub fn units_of(result: &RunRecord, path: &str, stem: &str, origin: Origin) -> Result<Vec<Unit>, Note> {
-    let rows = result.measurands.iter().filter(|r| COMPARED.contains(&r.id.as_str()));
+    let rows = result.measurands.iter().filter(|r| COMPARED_MEASURANDS.contains(&r.id.as_str()));
     let quantities: Vec<&MeasurandRecord> = rows.collect();
     if quantities.is_empty() {
         return Err(Note::new("compare.error.nothing").with("path", path));
@@ -86,13 +86,16 @@ pub fn units_of(result: &RunRecord, path: &str, stem: &str, origin: Origin) -> R
 /// What checks contradict of the compared quantities of a channel.
 fn contradictions(result: &RunRecord, channel: &str) -> Vec<Note> {
     contradicted(
-        result.measurands.iter().filter(|r| r.channel == channel && COMPARED.contains(&r.id.as_str())),
+        result
+            .measurands
+            .iter()
+            .filter(|r| r.channel == channel && COMPARED_MEASURANDS.contains(&r.id.as_str())),
     )
 }
 
 /// A note on limits for quantities that no comparison holds.
 pub fn not_compared<'a>(limited: impl Iterator<Item = &'a str>) -> Option<Note> {
-    let mut ids: Vec<&str> = limited.filter(|id| !COMPARED.contains(id)).collect();
+    let mut ids: Vec<&str> = limited.filter(|id| !COMPARED_MEASURANDS.contains(id)).collect();
     ids.dedup();
     let names: Vec<Arg> = ids.into_iter().map(|id| Arg::Key(format!("measurand.{id}"))).collect();
     (!names.is_empty())

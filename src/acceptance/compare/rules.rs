@@ -6,20 +6,20 @@ use crate::measurand;
 use crate::record::MeasurandRecord;
 
 /// √(2 ln 2/π): the Allan floor of flicker noise is this times B.
-const FLOOR: f64 = 0.664_282_470_3;
+const FLOOR_OF_FLICKER: f64 = 0.664_282_470_3;
 
 /// The rules: the measurand each is read from, and the factor on it.
-const RULES: [(ReadOutRule, &str, f64); 4] = [
+const READ_OUT_RULES: [(ReadOutRule, &str, f64); 4] = [
     (ReadOutRule::Minimum, measurand::BIAS_INSTABILITY_MINIMUM.id, 1.0),
     (ReadOutRule::ScaledMinimum, measurand::BIAS_INSTABILITY_MINIMUM_SCALED.id, 1.0),
     (ReadOutRule::FittedB, measurand::BIAS_INSTABILITY.id, 1.0),
-    (ReadOutRule::FittedFloor, measurand::BIAS_INSTABILITY.id, FLOOR),
+    (ReadOutRule::FittedFloor, measurand::BIAS_INSTABILITY.id, FLOOR_OF_FLICKER),
 ];
 
 /// The rows of a unit; a rule whose measurand the result lacks has no row.
 pub(super) fn rules(unit: &Unit) -> Vec<RuleRow> {
     let drift = unit.quantity(measurand::RUSSIAN_DRIFT_100S.id);
-    RULES
+    READ_OUT_RULES
         .into_iter()
         .filter_map(|(rule, id, factor)| {
             let q = unit.quantity(id)?;
@@ -32,9 +32,11 @@ pub(super) fn rules(unit: &Unit) -> Vec<RuleRow> {
             let ratio = sigma.zip(value.or(limit.map(|l| l.value))).map(|(s, v)| s / v);
             let ratio_interval = match rule {
                 ReadOutRule::Minimum => of_minimum,
-                ReadOutRule::ScaledMinimum => {
-                    of_minimum.map(|i| Interval { low: i.low * FLOOR, high: i.high * FLOOR, ..i })
-                }
+                ReadOutRule::ScaledMinimum => of_minimum.map(|i| Interval {
+                    low: i.low * FLOOR_OF_FLICKER,
+                    high: i.high * FLOOR_OF_FLICKER,
+                    ..i
+                }),
                 _ => drift.and_then(|d| quotient(d, q, 1.0 / factor)),
             };
             Some(RuleRow {

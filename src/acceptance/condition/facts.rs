@@ -25,7 +25,7 @@ pub struct Thermometer {
     pub counts: bool,
 }
 
-/// What conditions are judged by.
+/// Facts that conditions are judged by.
 #[derive(Debug)]
 pub struct Facts<'a> {
     /// The procedure.

@@ -8,9 +8,9 @@ use crate::record::{SheetCurve, SheetPoint, SheetUnitCurve};
 use rayon::prelude::*;
 
 /// The estimator whose curves are taken.
-const ESTIMATOR: &str = "oadev";
+const CURVE_ESTIMATOR: &str = "oadev";
 /// Two averaging times that differ by less than this share are the same.
-const SAME: f64 = 0.01;
+const MAX_TIME_DIFFERENCE: f64 = 0.01;
 
 /// The curves of every channel that at least two units have.
 pub(super) fn curves(units: &[TestedUnit], promise: Promise) -> Vec<SheetCurve> {
@@ -32,7 +32,7 @@ fn curve(channel: &str, units: &[TestedUnit], promise: Promise) -> Option<SheetC
                 .result
                 .deviations
                 .iter()
-                .filter(|d| d.channel == channel && d.estimator == ESTIMATOR)
+                .filter(|d| d.channel == channel && d.estimator == CURVE_ESTIMATOR)
                 .filter(|d| d.deviation_deg_h > 0.0 && d.deviation_deg_h.is_finite())
                 .map(|d| [d.tau_s, d.deviation_deg_h])
                 .collect(),
@@ -41,7 +41,7 @@ fn curve(channel: &str, units: &[TestedUnit], promise: Promise) -> Option<SheetC
         .collect();
     let mut times: Vec<f64> = curves.iter().flat_map(|c| c.points.iter().map(|[tau, _]| *tau)).collect();
     times.sort_by(f64::total_cmp);
-    times.dedup_by(|b, a| *b - *a <= SAME * *a);
+    times.dedup_by(|b, a| *b - *a <= MAX_TIME_DIFFERENCE * *a);
     let points: Vec<Option<SheetPoint>> =
         times.into_par_iter().map(|tau| point(tau, &curves, promise)).collect();
     let points: Vec<SheetPoint> = points.into_iter().flatten().collect();
@@ -55,7 +55,10 @@ fn curve(channel: &str, units: &[TestedUnit], promise: Promise) -> Option<SheetC
 /// The units at one averaging time; `None` where fewer than two have it.
 fn point(tau_s: f64, curves: &[SheetUnitCurve], promise: Promise) -> Option<SheetPoint> {
     let at = |c: &SheetUnitCurve| {
-        c.points.iter().find(|[tau, _]| (tau - tau_s).abs() <= SAME * tau_s).map(|[_, deviation]| *deviation)
+        c.points
+            .iter()
+            .find(|[tau, _]| (tau - tau_s).abs() <= MAX_TIME_DIFFERENCE * tau_s)
+            .map(|[_, deviation]| *deviation)
     };
     let mut all: Vec<f64> = curves.iter().filter_map(at).collect();
     all.sort_by(f64::total_cmp);

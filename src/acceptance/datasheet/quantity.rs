@@ -16,7 +16,7 @@ use crate::record::{
 use rayon::prelude::*;
 
 /// Coverage of the intervals of medians and shares.
-const COVERAGE: f64 = 0.95;
+const INTERVAL_COVERAGE: f64 = 0.95;
 
 /// What tells one quantity from another.
 type Key<'a> = (Option<&'a str>, &'a str, &'a str);
@@ -162,8 +162,8 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
         reading: reading(&rows),
         scale,
         typical: population.as_ref().map(|p| {
-            let Central { value, low, high } = p.typical(COVERAGE);
-            let interval = Interval { low: back(low), high: back(high), coverage: COVERAGE };
+            let Central { value, low, high } = p.typical(INTERVAL_COVERAGE);
+            let interval = Interval { low: back(low), high: back(high), coverage: INTERVAL_COVERAGE };
             SheetTypical { value: back(value), interval }
         }),
         spread: population.as_ref().map(|p| SheetSpread {
@@ -202,7 +202,7 @@ fn common(rows: &[Row<'_>], scale: SheetScale) -> Option<f64> {
     valued.map(|r| r.common(scale)).try_fold(0.0, |most: f64, u| Some(most.max(u?)))
 }
 
-/// What must be known of an error in common: how large it is, or that nothing is known of one.
+/// A note on the error in common: how large it is, or that nothing is known of one.
 fn said_of_common(common: Option<f64>, rows: &[Row<'_>], scale: SheetScale) -> Option<Note> {
     let unit = rows.first()?.told.unit.as_str();
     let with = |key: &'static str, u: f64| {
@@ -332,8 +332,8 @@ fn limit(rows: &[Row<'_>], population: Option<&Population>, scale: SheetScale) -
 
 /// The share of true values above a value on the scale of the population.
 fn share_above(population: &Population, at: f64) -> SheetShare {
-    let Central { value, low, high } = population.share_above(at, COVERAGE);
-    SheetShare { value, interval: Interval { low, high, coverage: COVERAGE } }
+    let Central { value, low, high } = population.share_above(at, INTERVAL_COVERAGE);
+    SheetShare { value, interval: Interval { low, high, coverage: INTERVAL_COVERAGE } }
 }
 
 fn value(row: &Row<'_>) -> SheetValue {

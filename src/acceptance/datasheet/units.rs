@@ -12,7 +12,7 @@ use std::path::Path;
 const MAX_NAMED_SERIALS: usize = 5;
 
 /// Members of a result that a data sheet reads.
-const MEMBERS: &[&str] = &[
+const SHEET_MEMBERS: &[&str] = &[
     "procedure.id",
     "procedure.revision",
     "unit_under_test.serial",
@@ -75,7 +75,7 @@ impl TestedUnit {
     }
 
     fn of_record(bytes: &[u8], file: &Path, tables: Vec<Table>) -> Result<TestedUnit, Note> {
-        let result = read::of_any_program(bytes, MEMBERS).map_err(|e| e.note(file))?;
+        let result = read::of_any_program(bytes, SHEET_MEMBERS).map_err(|e| e.note(file))?;
         let path = file.display().to_string();
         let serial = result.unit_under_test.serial.as_deref().map(str::trim).unwrap_or_default().to_owned();
         if serial.is_empty() {
@@ -232,7 +232,7 @@ mod tests {
 
     fn unit(serial: &str, more: &str) -> TestedUnit {
         let text = format!(r#"{{"unit_under_test": {{"serial": "{serial}"}}, "measurands": [] {more}}}"#);
-        let result = read::with_members(serde_json::from_str(&text).unwrap(), MEMBERS).unwrap();
+        let result = read::with_members(serde_json::from_str(&text).unwrap(), SHEET_MEMBERS).unwrap();
         TestedUnit {
             serial: serial.to_owned(),
             path: more.to_owned(),

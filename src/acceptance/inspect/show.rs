@@ -214,7 +214,7 @@ fn time_base(page: &mut Page, found: &Inspection) {
     }
 }
 
-/// What must be known of a rate that is measured from stamps.
+/// Notes on a sample rate that is measured from stamps.
 fn rate_of_stamps(page: &mut Page, found: &Inspection) {
     if let Some(given) = found.declared_hz {
         let off = (given * found.tau0_s - 1.0) * 100.0;

@@ -4,7 +4,7 @@ use crate::output::csv_line;
 use crate::store::Attempt;
 
 /// The columns.
-const COLUMNS: [&str; 24] = [
+const HISTORY_COLUMNS: [&str; 24] = [
     "evaluated_at",
     "serial",
     "model",
@@ -33,7 +33,7 @@ const COLUMNS: [&str; 24] = [
 
 /// The table of some results; of one measurand only where it is named.
 pub fn csv(attempts: &[Attempt], measurand: Option<&str>) -> String {
-    let mut out = csv_line(COLUMNS);
+    let mut out = csv_line(HISTORY_COLUMNS);
     let number = |v: Option<f64>| v.map_or_else(String::new, |v| v.to_string());
     for a in attempts {
         let (unit, test) = (&a.entry.unit, &a.entry.test);

@@ -84,12 +84,14 @@ fn grave(i: &Integrity) -> [(&'static str, u64); 2] {
 }
 
 /// Faults that are times: id of the condition.
-const TIMED: &[&str] = &["longest_gap", "timestamp_jitter"];
+const TIME_CONDITIONS: &[&str] = &["longest_gap", "timestamp_jitter"];
 
 /// True when a condition is about a fault of the recording.
 pub fn is_fault(id: &str) -> bool {
     let none = Integrity::default();
-    TIMED.contains(&id) || grave(&none).iter().any(|c| c.0 == id) || counts(&none).iter().any(|c| c.0 == id)
+    TIME_CONDITIONS.contains(&id)
+        || grave(&none).iter().any(|c| c.0 == id)
+        || counts(&none).iter().any(|c| c.0 == id)
 }
 
 impl Faults {
@@ -112,7 +114,7 @@ impl Faults {
         for (id, n) in grave(integrity).into_iter().filter(|(_, n)| *n > 0) {
             found.push(kind(id, count(n, words.lang), String::new(), condition(id), words));
         }
-        for c in TIMED.iter().filter_map(|id| condition(id)) {
+        for c in TIME_CONDITIONS.iter().filter_map(|id| condition(id)) {
             let seconds = c.observed.get("seconds").and_then(serde_json::Value::as_f64).unwrap_or(0.0);
             let kind = kind(&c.id, duration(seconds, words.lang), String::new(), Some(c), words);
             if seconds > 0.0 || kind.status == "invalid" { found.push(kind) } else { absent.push(kind) }

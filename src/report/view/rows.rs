@@ -344,15 +344,9 @@ mod tests {
         MeasurandRecord {
             id: id.into(),
             channel: "rate".into(),
-            phase: None,
             value: Some(0.4),
             unit: "deg/h".into(),
-            interval: None,
-            common_standard_uncertainty: None,
             identifiable: true,
-            upper_limit: None,
-            most_likely: None,
-            lower_limit: None,
             method: "mean".into(),
             limit: Some(LimitRecord {
                 min: limits[0],
@@ -364,12 +358,8 @@ mod tests {
                 acceptance_max: accepted[1],
                 source: "limits.toml".into(),
             }),
-            reference: None,
             verdict: Verdict::Indeterminate,
-            margin: None,
-            specific_risk: None,
-            notes: vec![],
-            objections: vec![],
+            ..MeasurandRecord::default()
         }
     }
 

@@ -46,7 +46,7 @@ pub struct Attempt {
     /// Which test of the unit by the procedure it is, from 1: as many as there are up to it, or as it states where some are missing;
     /// 0 for a unit without a serial number.
     pub number: u64,
-    /// What supersedes it; the latest where there are several.
+    /// The correction that supersedes it; the latest where there are several.
     pub superseded: Option<Correction>,
     /// Addresses of attempts that it names as earlier ones and that the store does not hold.
     pub missing: Vec<String>,
@@ -69,7 +69,7 @@ pub struct Correction {
 pub(in super::super) type StatementRow = (String, Vec<String>);
 
 /// Columns of a result, in the order of [`result`].
-const RESULT: &str = "SELECT r.id, r.address, r.serial, r.model, r.lot, r.build_date, r.reference, r.attributes, r.procedure,
+const SELECT_RESULT: &str = "SELECT r.id, r.address, r.serial, r.model, r.lot, r.build_date, r.reference, r.attributes, r.procedure,
     r.revision, r.procedure_sha256, r.limits, r.limits_sha256, r.station, r.operator, r.evaluated_at, r.attempt, r.verdict,
     r.result_sha256,
     CASE WHEN r.serial_key = '' THEN 0 ELSE
@@ -78,7 +78,7 @@ const RESULT: &str = "SELECT r.id, r.address, r.serial, r.model, r.lot, r.build_
     FROM result r";
 
 /// The order of results: by time, but after those that they follow; then as they state themselves, then by address.
-const ORDER: &str = " ORDER BY r.placed_at, r.attempt, r.evaluated_at, r.address";
+const BY_TIME: &str = " ORDER BY r.placed_at, r.attempt, r.evaluated_at, r.address";
 
 impl Index {
     /// The results that a filter lets through, the earliest first.
@@ -87,7 +87,7 @@ impl Index {
     /// What the database refuses.
     pub fn attempts(&self, filter: &Filter) -> Result<Vec<Attempt>, StoreError> {
         let (condition, values) = filter.condition();
-        self.select(&format!("{RESULT}{condition}{ORDER}"), values).map_err(|e| self.refused(&e))
+        self.select(&format!("{SELECT_RESULT}{condition}{BY_TIME}"), values).map_err(|e| self.refused(&e))
     }
 
     /// Addresses of the results that a filter lets through, the earliest first: of products, as far as no other result counts in
@@ -99,7 +99,7 @@ impl Index {
         let (condition, values) = filter.condition();
         let query = format!(
             "SELECT r.address, r.reference OR EXISTS (SELECT 1 FROM correction c WHERE c.superseded = r.address)
-             FROM result r{condition}{ORDER}"
+             FROM result r{condition}{BY_TIME}"
         );
         let read = || -> rusqlite::Result<Vec<(String, bool)>> {
             let mut query = self.db.prepare_cached(&query)?;
@@ -116,7 +116,7 @@ impl Index {
     /// # Errors
     /// What the database refuses.
     pub fn by_address(&self, beginning: &str) -> Result<Vec<Attempt>, StoreError> {
-        let query = format!("{RESULT} WHERE substr(r.address, 1, length(?1)) = ?1{ORDER} LIMIT 2");
+        let query = format!("{SELECT_RESULT} WHERE substr(r.address, 1, length(?1)) = ?1{BY_TIME} LIMIT 2");
         self.select(&query, vec![beginning.to_owned().into()]).map_err(|e| self.refused(&e))
     }
 
@@ -125,7 +125,8 @@ impl Index {
     /// # Errors
     /// What the database refuses.
     pub fn at(&self, address: &str) -> Result<Option<Attempt>, StoreError> {
-        let found = self.select(&format!("{RESULT} WHERE r.address = ?1"), vec![address.to_owned().into()]);
+        let found =
+            self.select(&format!("{SELECT_RESULT} WHERE r.address = ?1"), vec![address.to_owned().into()]);
         Ok(found.map_err(|e| self.refused(&e))?.pop())
     }
 
@@ -163,7 +164,7 @@ impl Index {
         Ok(all)
     }
 
-    /// What results are found and put in order by, of each address.
+    /// Serial number and place in the order of time of each result, by address.
     ///
     /// # Errors
     /// What the database refuses.
