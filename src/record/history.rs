@@ -3,7 +3,7 @@
 //! It depends on the store alone and not on the moment of asking, so that the same store gives the same bytes.
 
 use super::{Message, Program};
-use crate::estimate::{Interval, Verdict};
+use crate::estimate::{Interval, Limits, Verdict};
 use serde::Serialize;
 
 /// Version of the format of a history.
@@ -180,7 +180,7 @@ pub struct HistoryChart {
     #[serde(flatten)]
     pub quantity: HistoryQuantity,
     /// Limits, where all values have the same.
-    pub limit: Option<HistoryLimit>,
+    pub limit: Option<Limits>,
     /// The values.
     pub points: Vec<HistoryPoint>,
     /// Control limits and what lies beyond; absent for few values.
@@ -206,16 +206,6 @@ pub struct HistoryQuantity {
     pub phase: Option<String>,
     /// Unit of the numbers.
     pub unit: String,
-}
-
-/// Limits of a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-pub struct HistoryLimit {
-    /// Lower limit.
-    pub min: Option<f64>,
-    /// Upper limit.
-    pub max: Option<f64>,
 }
 
 /// A value in time.

@@ -46,8 +46,8 @@ pub use explained::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use history::{
     HISTORY_FORMAT, HistoryAsked, HistoryCapability, HistoryChart, HistoryChartOf, HistoryControl,
-    HistoryControlPoint, HistoryCounts, HistoryDrift, HistoryLimit, HistoryMonth, HistoryPoint,
-    HistoryQuantity, HistoryReason, HistoryRecord, HistoryResult, HistoryShare, HistoryStation, HistoryYield,
+    HistoryControlPoint, HistoryCounts, HistoryDrift, HistoryMonth, HistoryPoint, HistoryQuantity,
+    HistoryReason, HistoryRecord, HistoryResult, HistoryShare, HistoryStation, HistoryYield,
 };
 pub use integrity::{FaultRecord, FaultText, Integrity};
 pub use interval_mean::IntervalMeanRecord;
@@ -62,7 +62,9 @@ pub use proof::{
 pub use siblings::{SiblingQuantity, SiblingsRecord};
 pub use table_step::TableStepRecord;
 
-use crate::estimate::{Finding, Interval, Judgement, LowerLimit, Objection, Rule, UpperLimit, Verdict};
+use crate::estimate::{
+    Finding, Interval, Judgement, Limits, LowerLimit, Objection, Rule, UpperLimit, Verdict,
+};
 use crate::i18n::LocalText;
 use crate::noise::data::NoiseType;
 pub use sagnac_core::mismatch::finding as explanation;
@@ -261,14 +263,9 @@ fn is_shown() -> bool {
 }
 
 impl MeasurandRecord {
-    /// Lower limit of the row.
-    pub fn lowest_allowed(&self) -> Option<f64> {
-        self.limit.as_ref()?.min
-    }
-
-    /// Upper limit of the row.
-    pub fn highest_allowed(&self) -> Option<f64> {
-        self.limit.as_ref()?.max
+    /// The limits that the row was judged by; without any, both are absent.
+    pub fn limits(&self) -> Limits {
+        self.limit.as_ref().map(LimitRecord::limits).unwrap_or_default()
     }
 }
 
@@ -417,6 +414,11 @@ pub struct FigureRecord {
 }
 
 impl LimitRecord {
+    /// The limits themselves.
+    pub fn limits(&self) -> Limits {
+        Limits { min: self.min, max: self.max }
+    }
+
     /// The record of a limit with the acceptance limits of a judgement.
     pub fn new(limit: &crate::estimate::Limit, unit: &str, judgement: &Judgement) -> LimitRecord {
         LimitRecord {

@@ -195,7 +195,7 @@ fn read_as<T>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::estimate::Verdict;
+    use crate::estimate::{Limits, Verdict};
 
     #[test]
     fn members_that_are_not_asked_for_may_be_anything() {
@@ -218,7 +218,7 @@ mod tests {
         assert_eq!(read.recording.iter().map(|f| f.bytes).collect::<Vec<_>>(), [0, 8]);
         let row = &read.measurands[0];
         assert!(row.identifiable && row.value.is_none() && row.method.is_empty());
-        assert_eq!((row.lowest_allowed(), row.highest_allowed()), (None, Some(2.0)));
+        assert_eq!(row.limits(), Limits { min: None, max: Some(2.0) });
         assert!(from_slice(text.as_bytes()).is_err(), "it is no whole result");
     }
 

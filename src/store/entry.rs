@@ -234,7 +234,7 @@ pub(super) fn indexed(row: MeasurandRecord) -> MeasurandRecord {
         value: row.value.filter(|v| v.is_finite()),
         interval: row.interval.filter(|i| i.low.is_finite() && i.high.is_finite()),
         upper_limit: row.upper_limit.filter(|u| u.value.is_finite()),
-        limit: row.limit.filter(|l| l.min.is_some() || l.max.is_some()),
+        limit: row.limit.filter(|l| !l.limits().is_empty()),
         ..row
     }
 }

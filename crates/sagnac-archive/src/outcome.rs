@@ -195,8 +195,8 @@ fn append_measurand(m: &MeasurandRecord, row: &mut Row<'_>) {
     row.number(5, m.upper_limit.map(|u| u.value));
     row.text(6, Some(&m.unit));
     row.text(7, Some(m.verdict.id()));
-    row.number(8, m.lowest_allowed());
-    row.number(9, m.highest_allowed());
+    row.number(8, m.limits().min);
+    row.number(9, m.limits().max);
 }
 
 fn append_fault(f: &FaultRecord, row: &mut Row<'_>) {

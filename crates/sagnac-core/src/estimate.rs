@@ -15,7 +15,7 @@ mod distribution;
 mod objection;
 mod tail;
 
-pub use decision::{Judgement, Limit, Rule, Verdict, judge};
+pub use decision::{Judgement, Limit, Limits, Rule, Verdict, judge};
 pub(crate) use distribution::student_quantile;
 pub use distribution::{chi_square_quantile, normal_probability, normal_quantile};
 pub use objection::{Finding, Holds, Objection};

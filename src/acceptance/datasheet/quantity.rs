@@ -10,8 +10,8 @@ use crate::lot::population::{
 use crate::lot::tolerance::Promise;
 use crate::measurand;
 use crate::record::{
-    MeasurandRecord, Message, SheetBound, SheetLargest, SheetLimit, SheetOf, SheetOutlook, SheetQuantity,
-    SheetScale, SheetShare, SheetSide, SheetSpread, SheetTypical, SheetValue,
+    LimitRecord, MeasurandRecord, Message, SheetBound, SheetLargest, SheetLimit, SheetOf, SheetOutlook,
+    SheetQuantity, SheetScale, SheetShare, SheetSide, SheetSpread, SheetTypical, SheetValue,
 };
 use rayon::prelude::*;
 
@@ -319,15 +319,15 @@ fn largest(rows: &[Row<'_>]) -> Option<SheetLargest> {
 
 /// The limit that all rows have, and how many units are beyond it.
 fn limit(rows: &[Row<'_>], population: Option<&Population>, scale: SheetScale) -> Option<SheetLimit> {
-    let of = |row: &Row<'_>| row.told.limit.as_ref().map(|l| (l.min, l.max));
-    let (min, max) = of(rows.first()?)?;
-    if !rows.iter().all(|r| of(r) == Some((min, max))) {
+    let of = |row: &Row<'_>| row.told.limit.as_ref().map(LimitRecord::limits);
+    let limits = of(rows.first()?)?;
+    if !rows.iter().all(|r| of(r) == Some(limits)) {
         return None;
     }
     let share_above = population
-        .zip(max.filter(|m| scale == SheetScale::Linear || *m > 0.0))
+        .zip(limits.max.filter(|m| scale == SheetScale::Linear || *m > 0.0))
         .map(|(p, max)| share_above(p, if scale == SheetScale::Log { max.ln() } else { max }));
-    Some(SheetLimit { min, max, share_above })
+    Some(SheetLimit { min: limits.min, max: limits.max, share_above })
 }
 
 /// The share of true values above a value on the scale of the population.

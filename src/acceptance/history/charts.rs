@@ -1,13 +1,13 @@
 //! Quantities over time, with control limits.
 
 use super::selection::{Group, Selection, Tested};
-use crate::estimate::normal_quantile;
+use crate::estimate::{Limits, normal_quantile};
 use crate::i18n::Note;
-use crate::lot::capability::{self, Capability, Limits};
+use crate::lot::capability::{self, Capability};
 use crate::lot::control_chart::{Chart, LEAST_VALUES, Measured, SETTLED_VALUES};
 use crate::record::{
-    HistoryCapability, HistoryChart, HistoryChartOf, HistoryControl, HistoryControlPoint, HistoryLimit,
-    HistoryPoint, HistoryQuantity, Message,
+    HistoryCapability, HistoryChart, HistoryChartOf, HistoryControl, HistoryControlPoint, HistoryPoint,
+    HistoryQuantity, Message,
 };
 use std::collections::BTreeMap;
 
@@ -118,17 +118,17 @@ fn control(chart: Chart) -> HistoryControl {
 /// The capability of a process within its limits.
 fn capable(
     points: &[HistoryPoint],
-    limit: Option<HistoryLimit>,
+    limits: Option<Limits>,
     notes: &mut Vec<Note>,
 ) -> Option<HistoryCapability> {
-    let limit = limit?;
+    let limits = limits?;
     if points.len() < capability::LEAST_VALUES {
         let note = Note::new("history.note.no_capability").with("n", points.len());
         notes.push(note.with("needed", capability::LEAST_VALUES));
         return None;
     }
     let values: Vec<f64> = points.iter().map(|p| p.value).collect();
-    let found = Capability::of(&values, Limits { min: limit.min, max: limit.max })?;
+    let found = Capability::of(&values, limits)?;
     Some(HistoryCapability {
         units: found.values,
         mean: found.mean,

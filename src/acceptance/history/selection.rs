@@ -1,7 +1,7 @@
 //! Which results count for what.
 
-use crate::estimate::Verdict;
-use crate::record::{HistoryLimit, HistoryPoint, HistoryQuantity, MeasurandRecord};
+use crate::estimate::{Limits, Verdict};
+use crate::record::{HistoryPoint, HistoryQuantity, MeasurandRecord};
 use crate::store::{Attempt, ReasonKind};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -107,17 +107,16 @@ impl<'a> Selection<'a> {
     }
 
     /// The limits of a quantity in some results. `Err` where they differ, `Ok(None)` where there are none.
-    pub fn limit(&self, of: &HistoryQuantity, group: &Group) -> Result<Option<HistoryLimit>, ()> {
-        let mut found: Option<HistoryLimit> = None;
+    pub fn limit(&self, of: &HistoryQuantity, group: &Group) -> Result<Option<Limits>, ()> {
+        let mut found: Option<Limits> = None;
         for (row, _) in self.rows(of, group) {
-            let limit =
-                HistoryLimit { min: row.measurand.lowest_allowed(), max: row.measurand.highest_allowed() };
+            let limit = row.measurand.limits();
             match found {
                 Some(other) if other != limit => return Err(()),
                 _ => found = Some(limit),
             }
         }
-        Ok(found.filter(|l| l.min.is_some() || l.max.is_some()))
+        Ok(found.filter(|l| !l.is_empty()))
     }
 
     /// Results that count, of units that are products.

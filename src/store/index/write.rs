@@ -119,8 +119,8 @@ fn insert(db: &Connection, address: &str, entry: &Entry) -> rusqlite::Result<boo
             m.interval.map(|i| i.coverage),
             m.upper_limit.map(|u| u.value),
             m.upper_limit.map(|u| u.coverage),
-            m.lowest_allowed(),
-            m.highest_allowed(),
+            m.limits().min,
+            m.limits().max,
             m.verdict.id(),
         ])?;
     }

@@ -16,6 +16,23 @@ pub enum Rule {
     GuardBand,
 }
 
+/// Limits of a quantity.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema), schemars(rename = "HistoryLimit"))]
+pub struct Limits {
+    /// Lower limit.
+    pub min: Option<f64>,
+    /// Upper limit.
+    pub max: Option<f64>,
+}
+
+impl Limits {
+    /// True where there is neither.
+    pub fn is_empty(self) -> bool {
+        self.min.is_none() && self.max.is_none()
+    }
+}
+
 /// A limit on one quantity of a unit, with its decision rule.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Limit {

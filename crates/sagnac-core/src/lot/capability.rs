@@ -1,21 +1,12 @@
 //! Capability of a process: the distance between its values and their limits in standard deviations, with lower bounds.
 
-use crate::estimate::normal_quantile;
+use crate::estimate::{Limits, normal_quantile};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Fewest values that a capability is stated for.
 pub const LEAST_VALUES: usize = 5;
 /// Confidence in the lower bounds.
 pub const CONFIDENCE: f64 = 0.95;
-
-/// Limits of the values; at least one of them is needed.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Limits {
-    /// Lower limit.
-    pub min: Option<f64>,
-    /// Upper limit.
-    pub max: Option<f64>,
-}
 
 /// An index with its one-sided lower bound at [`CONFIDENCE`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -42,7 +33,7 @@ pub struct Capability {
 }
 
 impl Capability {
-    /// The capability of values. `None` below [`LEAST_VALUES`], without limits, and where all values are equal.
+    /// The capability of values. `None` below [`LEAST_VALUES`], without any limit, and where all values are equal.
     pub fn of(values: &[f64], limits: Limits) -> Option<Capability> {
         let n = values.len();
         if n < LEAST_VALUES {
