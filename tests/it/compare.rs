@@ -408,3 +408,22 @@ fn a_crafted_comparison_is_shown_whatever_count_of_digits_it_asks_for() {
     let said = sagnac(dir.path(), &["report", "c/comparison.json", "--out", "p"]);
     assert_eq!(said.code, 0, "{said:?}");
 }
+
+#[test]
+fn a_comparison_whose_rows_have_fewer_members_is_still_read() {
+    let dir = tempdir().unwrap();
+    let (_, mut all) = compare(dir.path(), &[tested_once("pass").path()]);
+    for row in all["units"][0]["quantities"].as_array_mut().unwrap() {
+        let members = ["id", "channel", "value", "unit", "interval", "upper_limit", "limit", "verdict"];
+        row.as_object_mut().unwrap().retain(|name, _| members.contains(&name.as_str()));
+        if let Some(limit) = row["limit"].as_object_mut() {
+            limit.retain(|name, _| ["min", "max", "unit", "source"].contains(&name.as_str()));
+        }
+    }
+    std::fs::write(dir.path().join("earlier.json"), all.to_string()).unwrap();
+    let said = sagnac(dir.path(), &["report", "earlier.json", "--out", "p"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let page = |folder: &str| std::fs::read_to_string(dir.path().join(folder).join("comparison.md")).unwrap();
+    assert_eq!(page("p"), page("c"));
+    assert!(page("p").contains("sample-unit.toml"), "the limits of the rows are shown");
+}

@@ -1,6 +1,6 @@
 //! Faults of a recording.
 //!
-//! What a fault says of itself is a note where faults are found; a result has its words beside the note.
+//! The sentence on a fault is a note where faults are found; in a result its words stand beside the note.
 
 use crate::message::Note;
 use serde::{Deserialize, Serialize};
@@ -58,7 +58,7 @@ pub struct Integrity<Text = Note> {
 }
 
 impl<Text> Integrity<Text> {
-    /// The same with what each fault says in another form.
+    /// The same faults, with the sentence of each in another form.
     pub fn with_texts<Other>(self, of: impl Fn(Text) -> Other) -> Integrity<Other> {
         let fault = |f: Fault<Text>| Fault {
             kind: f.kind,
@@ -121,7 +121,7 @@ pub struct Fault<Text = Note> {
     pub row: u64,
     /// Samples concerned.
     pub count: u64,
-    /// What was seen.
+    /// The sentence on it.
     #[serde(flatten)]
     pub seen: Text,
 }
