@@ -14,6 +14,7 @@ pub mod joint;
 pub mod lot;
 pub mod methods;
 pub mod number;
+pub mod page;
 pub mod pdf;
 pub mod plan;
 pub mod proof;

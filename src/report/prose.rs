@@ -8,16 +8,20 @@ use minijinja::{AutoEscape, State};
 /// A sentence, escaped for the file. Backticks that do not pair, and pairs with nothing between them, stay as they are.
 pub fn prose(state: &State, sentence: &str) -> Value {
     match state.auto_escape() {
-        AutoEscape::Html => Value::from_safe_string(parted(sentence, whole_quantities, |name| {
-            format!("<code>{}</code>", svg::escape(name))
-        })),
-        AutoEscape::Custom(kind) if kind == "md" => {
-            // Within code nothing is markup but the bar that ends a cell.
-            let name = |name: &str| format!("`{}`", visible(name).replace('|', "\\|"));
-            Value::from_safe_string(parted(sentence, markdown, name))
-        }
+        AutoEscape::Html => Value::from_safe_string(html_sentence(sentence)),
+        AutoEscape::Custom(kind) if kind == "md" => Value::from_safe_string(markdown_sentence(sentence)),
         _ => Value::from(sentence),
     }
+}
+
+/// A sentence in HTML.
+pub fn html_sentence(sentence: &str) -> String {
+    parted(sentence, whole_quantities, |name| format!("<code>{}</code>", svg::escape(name)))
+}
+
+/// A sentence in Markdown. Within code nothing is markup but the bar that ends a cell.
+pub fn markdown_sentence(sentence: &str) -> String {
+    parted(sentence, markdown, |name| format!("`{}`", visible(name).replace('|', "\\|")))
 }
 
 /// A formula, escaped for the file. In HTML, letters and digits behind an underscore stand below the line.

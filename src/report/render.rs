@@ -44,18 +44,42 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("compare.md", include_str!("../../templates/compare.md")),
     ("lot.html", include_str!("../../templates/lot.html")),
     ("lot.md", include_str!("../../templates/lot.md")),
-    ("datasheet.html", include_str!("../../templates/datasheet.html")),
-    ("datasheet.md", include_str!("../../templates/datasheet.md")),
-    ("history.html", include_str!("../../templates/history.html")),
-    ("history.md", include_str!("../../templates/history.md")),
-    ("explain.html", include_str!("../../templates/explain.html")),
-    ("explain.md", include_str!("../../templates/explain.md")),
     ("joint.html", include_str!("../../templates/joint.html")),
     ("joint.md", include_str!("../../templates/joint.md")),
     ("plan.html", include_str!("../../templates/plan.html")),
     ("plan.md", include_str!("../../templates/plan.md")),
     ("proof.html", include_str!("../../templates/proof.html")),
     ("proof.md", include_str!("../../templates/proof.md")),
+    ("page.html", include_str!("../../templates/page.html")),
+    ("page.md", include_str!("../../templates/page.md")),
+    ("page.css", include_str!("../../templates/page.css")),
+    ("blocks.html", include_str!("../../templates/blocks.html")),
+    ("blocks.md", include_str!("../../templates/blocks.md")),
+    ("block-facts.html", include_str!("../../templates/block-facts.html")),
+    ("block-facts.md", include_str!("../../templates/block-facts.md")),
+    ("block-figure.html", include_str!("../../templates/block-figure.html")),
+    ("block-figure.md", include_str!("../../templates/block-figure.md")),
+    ("block-head.html", include_str!("../../templates/block-head.html")),
+    ("block-head.md", include_str!("../../templates/block-head.md")),
+    ("block-heading.html", include_str!("../../templates/block-heading.html")),
+    ("block-heading.md", include_str!("../../templates/block-heading.md")),
+    ("block-hint.html", include_str!("../../templates/block-hint.html")),
+    ("block-hint.md", include_str!("../../templates/block-hint.md")),
+    ("block-lead.html", include_str!("../../templates/block-lead.html")),
+    ("block-lead.md", include_str!("../../templates/block-lead.md")),
+    ("block-paragraph.html", include_str!("../../templates/block-paragraph.html")),
+    ("block-paragraph.md", include_str!("../../templates/block-paragraph.md")),
+    ("block-section.html", include_str!("../../templates/block-section.html")),
+    ("block-steps.html", include_str!("../../templates/block-steps.html")),
+    ("block-steps.md", include_str!("../../templates/block-steps.md")),
+    ("block-table.html", include_str!("../../templates/block-table.html")),
+    ("block-table.md", include_str!("../../templates/block-table.md")),
+    ("datasheet.html", include_str!("../../templates/datasheet.html")),
+    ("datasheet.md", include_str!("../../templates/datasheet.md")),
+    ("history.html", include_str!("../../templates/history.html")),
+    ("history.md", include_str!("../../templates/history.md")),
+    ("explain.html", include_str!("../../templates/explain.html")),
+    ("explain.md", include_str!("../../templates/explain.md")),
 ];
 
 /// Largest template file that is read, bytes.
@@ -363,6 +387,11 @@ pub(super) fn view_context(view: &impl serde::Serialize, lang: Lang) -> Value {
         v => Value::from(Serde(view)),
         locale => Value::from(Serde(table(lang))),
     }
+}
+
+/// What the templates of blocks see.
+pub(super) fn page_context(page: Value, lang: Lang) -> Value {
+    minijinja::context! { v => page, locale => Value::from(Serde(table(lang))) }
 }
 
 /// What a template sees whose page is to be printed.

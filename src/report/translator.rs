@@ -1,5 +1,6 @@
 //! Keys, ids, notes and units in the words of a language, numbers printed as a report prints them.
 
+use super::page::{Align, Column, joined};
 use super::{number, unit};
 use crate::estimate::Verdict;
 use crate::i18n;
@@ -67,6 +68,16 @@ impl Translator {
         }
     }
 
+    /// A column of text whose head has a key; the last part of the key is its name.
+    pub fn column(self, key: &str) -> Column {
+        Column::text(key.rsplit('.').next().unwrap_or(key), self.t(key))
+    }
+
+    /// The same of numbers.
+    pub fn number_column(self, key: &str) -> Column {
+        Column { align: Align::Right, ..self.column(key) }
+    }
+
     /// A text of a user.
     pub fn local(self, text: &LocalText) -> String {
         text.say(self.lang)
@@ -105,12 +116,7 @@ impl Translator {
 
     /// A printed number with its printed unit.
     pub fn joined(self, number: &str, unit: &str) -> String {
-        match unit {
-            "" => number.to_owned(),
-            // Degrees, minutes and seconds of arc stand at the figure.
-            "°" | "′" | "″" => format!("{number}{unit}"),
-            _ => format!("{number}\u{202f}{unit}"),
-        }
+        joined(number, unit)
     }
 
     /// A channel as it is read. Rows of a test with several temperatures, ramps or levels name theirs behind the channel,

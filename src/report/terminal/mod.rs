@@ -11,7 +11,7 @@ mod plan;
 mod proof;
 mod run;
 mod screen;
-mod table;
+pub(super) mod table;
 mod wrap;
 
 pub use datasheet::datasheet;
@@ -23,3 +23,4 @@ pub use plan::plan;
 pub use proof::proof;
 pub use run::run;
 pub use screen::Terminal;
+pub(super) use screen::verdict_style;

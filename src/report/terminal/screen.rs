@@ -16,22 +16,22 @@ pub struct Terminal {
 
 impl Terminal {
     /// Text in a style. The text must be [`visible`].
-    pub(super) fn styled(self, text: &str, style: Style) -> String {
+    pub(in crate::report) fn styled(self, text: &str, style: Style) -> String {
         if self.colour && !text.is_empty() { format!("{style}{text}{style:#}") } else { text.to_owned() }
     }
 
     /// A heading.
-    pub(super) fn heading(self, text: &str) -> String {
+    pub(in crate::report) fn heading(self, text: &str) -> String {
         self.styled(text, Style::new().bold())
     }
 
     /// A word in the colour of a verdict.
-    pub(super) fn verdict(self, text: &str, id: &str) -> String {
+    pub(in crate::report) fn verdict(self, text: &str, id: &str) -> String {
         self.styled(text, verdict_style(id))
     }
 
     /// A styled word with what it is of, on its line or, where that is too long, below it.
-    pub(super) fn headed(self, styled: &str, word: &str, of: &str) -> String {
+    pub(in crate::report) fn headed(self, styled: &str, word: &str, of: &str) -> String {
         if word.width() + 2 + of.width() > self.width {
             format!("{styled}\n{}", self.indented([of]))
         } else {
@@ -50,7 +50,7 @@ impl Terminal {
     }
 
     /// Sentences, each wrapped to the width behind an indent of two columns.
-    pub(super) fn indented(self, sentences: impl IntoIterator<Item = impl AsRef<str>>) -> String {
+    pub(in crate::report) fn indented(self, sentences: impl IntoIterator<Item = impl AsRef<str>>) -> String {
         let mut out = String::new();
         for sentence in sentences {
             let text = visible(sentence.as_ref()).into_owned();
@@ -65,7 +65,7 @@ impl Terminal {
 }
 
 /// The style of a verdict or a state.
-pub(super) fn verdict_style(id: &str) -> Style {
+pub(in crate::report) fn verdict_style(id: &str) -> Style {
     let colour = match id {
         "pass" | "ok" | "consistent" => AnsiColor::Green,
         "fail" | "error" | "invalid" => AnsiColor::Red,

@@ -3,6 +3,7 @@
 use super::screen::Terminal;
 use super::wrap::wrapped;
 use crate::i18n::visible;
+pub use crate::report::page::Align;
 use anstyle::Style;
 use unicode_width::UnicodeWidthStr;
 
@@ -12,15 +13,6 @@ const GAP: usize = 2;
 const NAME_WIDTH: usize = 46;
 /// Narrowest column that names are wrapped to where the others need the room.
 const LEAST_NAME_WIDTH: usize = 26;
-
-/// On which side the cells of a column are in line.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Align {
-    /// Text.
-    Left,
-    /// Numbers.
-    Right,
-}
 
 /// A column with its head.
 pub struct Column {

@@ -5,26 +5,8 @@ use crate::i18n::lookup;
 use crate::record::RunRecord;
 use crate::report::translator::Translator;
 use crate::report::{file_name, svg};
-use serde::Serialize;
 
-/// A figure with its drawing.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FigureView {
-    /// Id.
-    pub id: String,
-    /// Number, counted from 1.
-    pub number: usize,
-    /// Title.
-    pub title: String,
-    /// What is to be seen, in a sentence; empty when the table has none.
-    pub caption: String,
-    /// The drawing.
-    pub svg: String,
-    /// What a pointer reads off it, as JSON for the script of the page; empty where nothing can be read off.
-    pub readings: String,
-    /// File, relative to the report, as a URL.
-    pub href: String,
-}
+pub use crate::report::page::Figure as FigureView;
 
 impl FigureView {
     /// Draws a figure; `file` is that of the drawing, relative to the report.

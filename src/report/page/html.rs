@@ -1,0 +1,46 @@
+//! Values in HTML.
+
+use super::markup::Markup;
+use super::table::{Layout, Table};
+use super::value::State;
+use crate::report::prose;
+use crate::report::svg::escape;
+
+/// HTML.
+pub struct Html;
+
+impl Markup for Html {
+    fn text(&self, text: &str) -> String {
+        escape(text)
+    }
+
+    fn sentence(&self, text: &str) -> String {
+        prose::html_sentence(text)
+    }
+
+    fn code(&self, name: &str) -> String {
+        format!("<code>{}</code>", escape(name))
+    }
+
+    fn named(&self, text: &str, id: &str) -> String {
+        format!("{} {}", escape(text), self.code(id))
+    }
+
+    fn link(&self, text: &str, to: &str) -> String {
+        format!("<a href=\"{}\">{}</a>", escape(to), escape(text))
+    }
+
+    fn state(&self, state: &State) -> String {
+        format!("<span class=\"mark {}\">{}</span>", escape(&state.id), escape(&state.word))
+    }
+
+    fn list(&self, items: &[String], ordered: bool) -> String {
+        let tag = if ordered { "ol" } else { "ul" };
+        let items: String = items.iter().map(|i| format!("<li>{}</li>", self.sentence(i))).collect();
+        if items.is_empty() { items } else { format!("<{tag}>{items}</{tag}>") }
+    }
+
+    fn layout(&self, table: &Table) -> Layout {
+        table.in_html
+    }
+}

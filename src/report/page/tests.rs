@@ -1,0 +1,284 @@
+//! Every kind of block in every form, and what is hostile in their texts.
+
+use super::*;
+use crate::i18n::Lang;
+use crate::report::Renderer;
+use crate::report::render::page_context;
+use crate::report::terminal::Terminal;
+
+/// A text that is markup in every form.
+const HOSTILE: &str = "</td><script>alert(1)</script> \"x' *a*|b [l](javascript:1) `c|d";
+
+/// What stands between the frame of a page of HTML.
+fn html(blocks: Vec<Block>) -> String {
+    let page = Page { title: "t".into(), generator: "g".into(), footer: "f".into(), blocks };
+    let text =
+        Renderer::new().render("page.html", &page_context(seen(&page, &Html), Lang::En), Lang::En).unwrap();
+    let (_, main) = text.split_once("<main>").unwrap();
+    main.split_once("<footer>f</footer>").unwrap().0.trim().to_owned()
+}
+
+fn markdown(blocks: Vec<Block>) -> String {
+    let page = Page { footer: "f".into(), blocks, ..Page::default() };
+    let context = page_context(seen(&page, &Markdown), Lang::En);
+    let text = Renderer::new().render("page.md", &context, Lang::En).unwrap();
+    text.trim_end().strip_suffix('f').unwrap().trim_end().to_owned()
+}
+
+fn on_terminal(blocks: &[Block]) -> String {
+    terminal(blocks, Terminal { width: 60, colour: false })
+}
+
+fn pass() -> State {
+    State { id: "pass".into(), word: "годен".into() }
+}
+
+fn head(size: &str) -> Block {
+    let counts = if size.is_empty() { vec![] } else { vec![(pass(), 2)] };
+    Block::Head(Head {
+        kind: "Plan".into(),
+        title: "SN <1>".into(),
+        size: size.into(),
+        label: "Outcome".into(),
+        verdict: pass(),
+        counts,
+    })
+}
+
+/// A table of a quantity with its interval and unit, listed in Markdown.
+fn parameters() -> Table {
+    let quantity = Quantity { number: Some(0.5), printed: "0.50".into(), unit: "°/h".into() };
+    Table::new("cards", 1)
+        .column(Column::text("name", "Parameter"), ["Bias"])
+        .column(Column::number("value", "Value"), [quantity])
+        .column(Column::number("interval", "Interval").listed(Listed::Bracketed), ["0.4 … 0.6"])
+        .units("Unit")
+        .laid_out(Layout::Grid, Layout::List)
+}
+
+#[test]
+fn a_head_names_kind_subject_and_verdict() {
+    let page = html(vec![head("")]);
+    assert!(page.contains("<p class=\"kind\">Plan</p>") && page.contains("<h1>SN &lt;1&gt;</h1>"), "{page}");
+    assert!(
+        page.contains("<div class=\"verdict pass\">") && page.contains("<strong>годен</strong>"),
+        "{page}"
+    );
+    assert_eq!(markdown(vec![head("")]), "# Plan: SN &lt;1&gt;\n\n**Outcome: годен**");
+    assert_eq!(on_terminal(&[head("")]), "ГОДЕН  SN <1>\n");
+    // Of several, it says how many have which verdict.
+    assert!(html(vec![head("2 units")]).contains("<span class=\"mark pass\">годен</span></dt><dd>2</dd>"));
+    assert_eq!(markdown(vec![head("2 units")]), "# SN &lt;1&gt;\n\n**Outcome: годен** · 2 units · годен 2");
+    assert_eq!(on_terminal(&[head("2 units")]), "ГОДЕН  SN <1> · 2 units (годен 2)\n");
+}
+
+#[test]
+fn sentences_and_headings_are_shown_by_every_form() {
+    let sentence = "Column `a_b` < 1.".to_owned();
+    let verdict = Heading { level: 3, text: "Run".into(), verdict: Some(pass()) };
+    let blocks = || {
+        vec![
+            Block::Lead(Lead { id: "fail".into(), sentences: vec![sentence.clone()] }),
+            Block::section("figures", "Facts", vec![Block::Heading(verdict.clone())]),
+            Block::Paragraph(sentence.clone()),
+            Block::Hint(sentence.clone()),
+        ]
+    };
+    let page = html(blocks());
+    let shown = "Column <code>a_b</code> <span class=\"unit\">&lt; 1.</span>";
+    for part in [
+        format!("<div class=\"says fail\"><p>{shown}</p></div>"),
+        "<section class=\"figures\">\n<h2>Facts</h2>".to_owned(),
+        "<h3>Run: <strong class=\"pass\">годен</strong></h3>".to_owned(),
+        format!("<p>{shown}</p>\n<p class=\"hint\">{shown}</p>"),
+    ] {
+        assert!(page.contains(&part), "{part}\n{page}");
+    }
+    let shown = "Column `a_b` &lt; 1.";
+    assert_eq!(
+        markdown(blocks()),
+        format!("{shown}\n\n## Facts\n\n### Run\n\n**годен**\n\n{shown}\n\n{shown}")
+    );
+    let shown = "  Column `a_b` < 1.\n";
+    assert_eq!(on_terminal(&blocks()), format!("{shown}\nFacts\n\nRun\n{shown}\n{shown}"));
+}
+
+#[test]
+fn facts_and_steps_are_lists() {
+    let blocks = || {
+        let hashes = vec![("r.csv".to_owned(), "ab12".to_owned())];
+        let items = vec![Step { text: "Do".into(), hashes }, Step { text: "Look".into(), hashes: vec![] }];
+        vec![
+            Block::identity([("Case".to_owned(), "unit".to_owned()), ("Empty".to_owned(), " ".to_owned())]),
+            Block::files([("a.json".to_owned(), "for programs".to_owned())]),
+            Block::Steps(Steps { class: "steps", items }),
+        ]
+    };
+    let page = html(blocks());
+    assert!(page.contains("<div><dt>Case</dt><dd>unit</dd></div>\n</dl>"), "{page}");
+    assert!(page.contains("<dt><code>a.json</code></dt><dd>for programs</dd>"), "{page}");
+    assert!(page.contains("<li>Do<br><code>r.csv</code> <span class=\"hash\">ab12</span></li>"), "{page}");
+    assert_eq!(
+        markdown(blocks()),
+        "- Case: unit\n\n- `a.json`: for programs\n\n1. Do\n   - `r.csv`: `ab12`\n2. Look"
+    );
+    assert_eq!(on_terminal(&blocks()), "  1. Do\n  2. Look\n");
+}
+
+#[test]
+fn a_unit_stands_in_its_column_or_at_the_number() {
+    let page = html(vec![Block::Table(parameters())]);
+    assert!(
+        page.contains("<th scope=\"row\">Bias</th><td class=\"n\" data-label=\"Value\">0.50</td>"),
+        "{page}"
+    );
+    assert!(page.contains("<td data-label=\"Unit\">°/h</td>"), "{page}");
+    assert_eq!(markdown(vec![Block::Table(parameters())]), "- Bias: 0.50\u{202f}°/h (0.4 … 0.6)");
+    let shown = on_terminal(&[Block::heading("H"), Block::Table(parameters())]);
+    assert_eq!(shown, "\nH\n  Parameter     Value   Interval\n  Bias       0.50\u{202f}°/h  0.4 … 0.6\n");
+}
+
+#[test]
+fn a_table_marks_states_lists_and_the_chosen_row() {
+    let table = || {
+        let list = |item: &str, ordered| Value::List { items: vec![item.into(), "b".into()], ordered };
+        let mut table = Table::new("", 2)
+            .column(Column::text("steps", "Steps"), [list("a", true), list("c", false)])
+            .column(Column::text("state", "State"), [Value::State(pass()), Value::Empty])
+            .column(
+                Column::text("kind", "Kind").on_terminal(OnTerminal::Bracketed),
+                [Value::Named { text: "Drift".into(), id: "rate_ramp".into() }, Value::Code("x".into())],
+            )
+            .column(
+                Column::text("page", "Page").on_terminal(OnTerminal::Hidden),
+                [Value::Link { text: "SN".into(), to: "a/b.html".into() }, Value::Empty],
+            );
+        table.rows[0].chosen = true;
+        vec![Block::Table(table)]
+    };
+    let page = html(table());
+    for part in [
+        "<tr class=\"chosen\"><th scope=\"row\"><ol><li>a</li><li>b</li></ol></th>",
+        "<td><span class=\"mark pass\">годен</span></td><td>Drift <code>rate_ramp</code></td>",
+        "<td><a href=\"a/b.html\">SN</a></td></tr>",
+        "<th scope=\"row\"><ul><li>c</li><li>b</li></ul></th><td></td><td><code>x</code></td>",
+    ] {
+        assert!(page.contains(part), "{part}\n{page}");
+    }
+    assert_eq!(
+        markdown(table()),
+        "| Steps | State | Kind | Page |\n|---|---|---|---|\n\
+         | → a; b | годен | Drift (`rate_ramp`) | SN |\n| c b |  | `x` |  |"
+    );
+    let shown = on_terminal(&table());
+    assert_eq!(shown, "\n  Steps  State\n  a; b   годен (Drift)\n  c b     (x)\n");
+}
+
+#[test]
+fn a_list_leaves_out_what_is_empty() {
+    let table = || {
+        Table::new("", 1)
+            .column(Column::text("what", "What"), ["Scale"])
+            .column(Column::text("known", "Known"), [""])
+            .column(Column::text("found", "Found").listed(Listed::Below("Found: ".into())), ["0.5"])
+            .column(
+                Column::text("source", "Source").class("hint").listed(Listed::Below(String::new())),
+                ["X"],
+            )
+            .laid_out(Layout::List, Layout::List)
+    };
+    let page = html(vec![Block::Table(table())]);
+    assert_eq!(page, "<p><b>Scale</b><br><span>Found: 0.5</span><br><span class=\"hint\">X</span></p>");
+    assert_eq!(markdown(vec![Block::Table(table())]), "- Scale\n  - Found: 0.5\n  - X");
+}
+
+#[test]
+fn figures_are_drawn_or_linked_and_the_summary_ends_on_paper_alone() {
+    let figure = Figure {
+        id: "sigma".into(),
+        number: 1,
+        title: "σ <τ>".into(),
+        caption: "Falls.".into(),
+        svg: "<svg></svg>".into(),
+        readings: "{\"a\":1}".into(),
+        href: "figures/s.svg".into(),
+    };
+    let blocks =
+        || vec![Block::Figure(Box::new(figure.clone())), Block::SummaryEnd, Block::Paragraph("x".into())];
+    let page = html(blocks());
+    assert!(
+        page.contains("<figure data-readings=\"{&quot;a&quot;:1}\"><svg></svg><figcaption>Falls."),
+        "{page}"
+    );
+    assert!(!page.contains("summary"), "{page}");
+    assert_eq!(markdown(blocks()), "![σ &lt;τ&gt;](figures/s.svg)\n\nFalls.\n\nx");
+    assert_eq!(on_terminal(&blocks()), "  x\n");
+    let page = Page { blocks: blocks(), ..Page::default() };
+    let context = crate::report::render::paper_context(page_context(seen(&page, &Markdown), Lang::En));
+    let paper = Renderer::new().render("page.md", &context, Lang::En).unwrap();
+    assert!(paper.contains("Falls.\n\n<!-- summary -->\n\nx"), "{paper}");
+}
+
+#[test]
+fn nothing_in_a_text_is_markup() {
+    let text = || HOSTILE.to_owned();
+    let named = Value::Named { text: text(), id: text() };
+    let values = || {
+        [
+            Value::Text(text()),
+            Value::Sentence(text()),
+            Value::Code(text()),
+            named.clone(),
+            Value::Link { text: text(), to: text() },
+            Value::state(text(), text()),
+            Value::List { items: vec![text()], ordered: false },
+            Value::Quantity(Quantity { number: None, printed: text(), unit: text() }),
+        ]
+    };
+    let blocks = || {
+        let table = values().into_iter().fold(Table::new("cards", 1), |t, v| {
+            t.column(Column::text("c", HOSTILE).listed(Listed::Below(text())), [v])
+        });
+        let listed = table.clone().laid_out(Layout::List, Layout::List);
+        vec![
+            Block::Head(Head { kind: text(), title: text(), size: text(), label: text(), ..Head::default() }),
+            Block::Lead(Lead { id: text(), sentences: vec![text()] }),
+            Block::heading(named.clone()),
+            Block::Facts(Facts { class: "", rows: values().map(|v| (v.clone(), v)).into() }),
+            Block::Steps(Steps {
+                class: "",
+                items: vec![Step { text: text(), hashes: vec![(text(), text())] }],
+            }),
+            Block::Table(table),
+            Block::Table(listed),
+        ]
+    };
+    let page = html(blocks());
+    assert!(!page.contains("<script") && !page.contains("alert(1)</") && !page.contains("\"x'"), "{page}");
+    assert!(!page.contains("href=\"</"), "{page}");
+    let page = markdown(blocks());
+    assert!(!page.contains("\n<script") && !page.contains("[l](javascript"), "{page}");
+    // Bars end no cell but where the table has them.
+    let bars = |line: &str| line.replace("\\|", "").matches('|').count();
+    let rows: Vec<&str> = page.lines().filter(|l| l.starts_with('|')).collect();
+    assert_eq!(rows.iter().map(|r| bars(r)).collect::<Vec<_>>(), [9, 9, 9], "{page}");
+    let steers = Block::heading(Value::Text("\u{1b}[2Jx".into()));
+    assert!(!on_terminal(&[steers]).contains('\u{1b}'));
+}
+
+#[test]
+fn a_fence_of_code_is_longer_than_what_it_holds() {
+    assert_eq!(Markdown.code("temp_degC"), "`temp_degC`");
+    assert_eq!(Markdown.code("a`b|c"), "`` a`b\\|c ``");
+}
+
+#[test]
+fn a_user_replaces_the_template_of_a_block() {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("block-hint.html"), "<aside>{{ b.text }}</aside>").unwrap();
+    let page =
+        Page { blocks: vec![Block::Hint("a < b".into()), Block::Paragraph("c".into())], ..Page::default() };
+    let renderer = Renderer::with_overrides(folder.path()).unwrap();
+    let text = renderer.render("page.html", &page_context(seen(&page, &Html), Lang::En), Lang::En).unwrap();
+    assert!(text.contains("<aside>a &lt; b</aside>\n<p>c</p>"), "{text}");
+}

@@ -1,0 +1,134 @@
+//! What stands in a cell, or beside a label.
+
+/// What stands in a cell or beside a label. Each form prints it in its own way.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub enum Value {
+    /// Nothing.
+    #[default]
+    Empty,
+    /// A text as it is, such as a serial number.
+    Text(String),
+    /// A sentence, in which names between backticks are code.
+    Sentence(String),
+    /// A name as files have it.
+    Code(String),
+    /// A text, and the id that files have for it. A terminal shows the text alone.
+    Named {
+        /// Text.
+        text: String,
+        /// Id.
+        id: String,
+    },
+    /// A text that leads to another page; a link in HTML alone.
+    Link {
+        /// Text.
+        text: String,
+        /// Address, relative to the page.
+        to: String,
+    },
+    /// A verdict or a state.
+    State(State),
+    /// A number with its unit.
+    Quantity(Quantity),
+    /// Sentences; in their order where they are steps.
+    List {
+        /// The sentences.
+        items: Vec<String>,
+        /// True for steps.
+        ordered: bool,
+    },
+}
+
+/// A verdict or a state: pages and the terminal show its word in its colour, tables for programs its id.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct State {
+    /// Id such as `pass`.
+    pub id: String,
+    /// Word of the language of the page.
+    pub word: String,
+}
+
+/// A number with its unit: tables for programs have the number, all others what is printed of it.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Quantity {
+    /// The number; absent where none was found, or where an interval is printed.
+    pub number: Option<f64>,
+    /// As printed, without the unit.
+    pub printed: String,
+    /// Unit as printed.
+    pub unit: String,
+}
+
+impl Quantity {
+    /// The printed number with its unit; empty where nothing is printed.
+    pub fn whole(&self) -> String {
+        if self.printed.is_empty() { String::new() } else { joined(&self.printed, &self.unit) }
+    }
+}
+
+impl Value {
+    /// A verdict or a state by its id and its word.
+    pub fn state(id: impl Into<String>, word: impl Into<String>) -> Value {
+        Value::State(State { id: id.into(), word: word.into() })
+    }
+
+    /// The value as one line of plain text, as a terminal has it.
+    pub fn plain(&self) -> String {
+        match self {
+            Value::Empty => String::new(),
+            Value::Text(text) | Value::Sentence(text) | Value::Code(text) => text.clone(),
+            Value::Named { text, .. } | Value::Link { text, .. } => text.clone(),
+            Value::State(state) => state.word.clone(),
+            Value::Quantity(quantity) => quantity.whole(),
+            Value::List { items, ordered: true } => items.join("; "),
+            Value::List { items, ordered: false } => items.join(" "),
+        }
+    }
+
+    /// The value as tables for programs have it: the same in every language where the texts are.
+    pub fn for_programs(&self) -> String {
+        match self {
+            Value::State(state) => state.id.clone(),
+            Value::Quantity(quantity) => {
+                let number = quantity.number.filter(|v| v.is_finite());
+                number.map(|v| format!("{v:e}")).unwrap_or_default()
+            }
+            other => other.plain(),
+        }
+    }
+}
+
+impl From<String> for Value {
+    fn from(text: String) -> Value {
+        Value::Text(text)
+    }
+}
+
+impl From<&str> for Value {
+    fn from(text: &str) -> Value {
+        Value::Text(text.to_owned())
+    }
+}
+
+impl From<Quantity> for Value {
+    fn from(quantity: Quantity) -> Value {
+        Value::Quantity(quantity)
+    }
+}
+
+/// A number without a unit, for tables for programs alone.
+impl From<Option<f64>> for Value {
+    fn from(number: Option<f64>) -> Value {
+        Value::Quantity(Quantity { number, ..Quantity::default() })
+    }
+}
+
+/// A printed number with its printed unit.
+pub fn joined(number: &str, unit: &str) -> String {
+    match unit {
+        "" => number.to_owned(),
+        // Degrees, minutes and seconds of arc stand at the figure.
+        "°" | "′" | "″" => format!("{number}{unit}"),
+        _ => format!("{number}\u{202f}{unit}"),
+    }
+}
