@@ -72,7 +72,7 @@ pub fn main(args: &ProveArgs, lang: Lang) -> Result<u8, String> {
     let view = ProofView::new(&proved.record, &[], lang);
     let outcome = proved.record.outcome;
     let claim = vec![(CLAIM_FILE.to_owned(), proved.claim)];
-    let results = Results::Proof(Box::new(proved.record), proved.figures, claim);
+    let results = Results::of(proved.record, proved.figures, claim);
     let folder = writer.publish(&results, folder)?;
     drop(progress);
     printer.outcome(&folder, Kind::Proof, |t| terminal::proof(&view, lang, t))?;

@@ -12,7 +12,7 @@ use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::LotUnit;
 use crate::report::export::{Dcc, EXPORTERS, FURTHER};
 use crate::report::signatures::{self, SIGNATURES_SHOWN, Signature};
-use crate::report::{Results, StoredResults};
+use crate::report::{Record, StoredResults};
 use crate::signing;
 use crate::verify::{Folder, stated_hashes};
 use clap::Args;
@@ -71,7 +71,7 @@ pub fn main(args: &ReportArgs, lang: Lang) -> Result<u8, String> {
     }
     let mut progress = Progress::new(Display::unless(false), lang);
     progress.stage("progress.writing");
-    if let Results::Lot(lot, _) = &stored.results {
+    if let Record::Lot(lot) = stored.results.record().record() {
         let from = if args.result.is_dir() { Some(args.result.as_path()) } else { args.result.parent() };
         for unit in &lot.units {
             let written = unit_anew(unit, from.unwrap_or(Path::new("")), &folder, &writer, lang);

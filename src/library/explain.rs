@@ -191,6 +191,6 @@ impl Explanation {
         lang: Lang,
     ) -> Result<(), Error> {
         let results = ExplanationResults::new(&self.outcome, self.context());
-        files::write(folder.as_ref(), &Document::of_explanation(&results, lang), exporters)
+        files::write(folder.as_ref(), &results.document(lang), exporters)
     }
 }

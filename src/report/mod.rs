@@ -9,6 +9,7 @@ mod document;
 pub mod explain;
 pub mod export;
 mod figure_file;
+mod files;
 pub mod history;
 pub mod joint;
 pub mod lot;
@@ -28,10 +29,10 @@ mod translator;
 pub mod unit;
 pub mod view;
 
-pub use document::Document;
+pub use document::{Contents, Document, Documented, PageForm, Record};
 pub use figure_file::FIGURES_FILE;
 pub use render::{Renderer, ReportError, render_html, render_markdown};
-pub use results::{ALTERNATIVES_FILE, ExplanationResults, JointResults, Results, RunResults, StoredResults};
+pub use results::{ALTERNATIVES_FILE, ExplanationResults, JointResults, OtherResults, Results, RunResults, StoredResults};
 
 use crate::figure::Figure;
 use crate::i18n::Lang;

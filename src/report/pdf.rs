@@ -6,7 +6,7 @@ use super::render::{paper_context, view_context};
 use super::signatures::SIGNATURES_SHOWN;
 #[cfg(feature = "pdf")]
 use super::translator::Translator;
-use super::{Document, Renderer, ReportError, file_name, svg};
+use super::{Document, PageForm, Renderer, ReportError, file_name, svg};
 use crate::acceptance::history::figures;
 use crate::figure::Figure;
 use crate::i18n::Lang;
@@ -57,7 +57,7 @@ impl Document<'_> {
         if !MAKES_PDF {
             return Err(ReportError::NoPdf);
         }
-        let markdown = renderer.render(&self.template("md"), &self.paper_context(), self.lang)?;
+        let markdown = self.text(PageForm::Paper, renderer)?;
         let figures = match self.own_figures() {
             [] => String::new(),
             own => figure_file::text(own).map_err(ReportError::Json)?,
@@ -71,7 +71,7 @@ impl Document<'_> {
             self.tables.iter().filter(source).map(|(n, t)| (n.as_str(), t.as_str())).collect();
         sources.sort_unstable();
         let page = Page {
-            subject: &self.subject(),
+            subject: self.subject(),
             made_at: self.made_at(),
             markdown: &markdown,
             drawings: self.figures.iter().map(|f| drawing(f, self.lang)).collect(),

@@ -1,10 +1,10 @@
 //! Everything that a run or an explanation gives, in memory or read back from its folder.
 
+use super::document::{Document, Documented};
 use super::explain::{Context, ExplainFile};
 use super::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
-use super::joint::JointFile;
+use super::files::{JointFile, PlanFile};
 use super::lot;
-use super::plan::PlanFile;
 use crate::acceptance::Outcome;
 use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, csv, figures};
 use crate::acceptance::datasheet;
@@ -78,6 +78,13 @@ impl ExplanationResults {
     }
 }
 
+impl ExplanationResults {
+    /// The document of the explanation.
+    pub fn document(&self, lang: Lang) -> Document<'_> {
+        Document::new(&self.file, &self.figures, &self.tables, lang)
+    }
+}
+
 /// `correction.csv`: the shortest digits from which time and correction come back to the bit.
 fn correction_csv(correction: &[(f64, f64)]) -> String {
     let mut out = String::with_capacity(24 + 32 * correction.len());
@@ -104,39 +111,51 @@ pub enum Results {
     Run(Box<RunResults>),
     /// Of an explanation.
     Explanation(Box<ExplanationResults>),
-    /// Of a comparison: the record, figures and tables.
-    Comparison(Box<Comparison>, Vec<Figure>, Vec<(String, String)>),
-    /// Of a lot: the record and tables. The results of its units stand in folders of their own.
-    Lot(Box<LotRecord>, Vec<(String, String)>),
     /// Of several recordings that are explained together.
     Joint(Box<JointResults>),
-    /// Of a plan: the record and its schedule.
-    Plan(Box<PlanFile>, Vec<(String, String)>),
-    /// Of a data sheet: the record, figures and tables.
-    DataSheet(Box<DataSheet>, Vec<Figure>, Vec<(String, String)>),
-    /// Of a proof: the record, figures, and the claim as a model.
-    Proof(Box<ProofRecord>, Vec<Figure>, Vec<(String, String)>),
+    /// Of any other record.
+    Other(OtherResults),
+}
+
+/// A record that needs nothing but itself, its figures and its tables.
+pub struct OtherResults {
+    /// The record.
+    pub record: Box<dyn Documented>,
+    /// The figures, in the order of the page.
+    pub figures: Vec<Figure>,
+    /// Tables and other data files: name and contents.
+    pub tables: Vec<(String, String)>,
 }
 
 impl Results {
+    /// The results of a record that needs nothing but itself, its figures and its tables.
+    pub fn of(
+        record: impl Documented + 'static,
+        figures: Vec<Figure>,
+        tables: Vec<(String, String)>,
+    ) -> Results {
+        Results::Other(OtherResults { record: Box::new(record), figures, tables })
+    }
+
     /// The results of a comparison.
     pub fn of_comparison(comparison: Comparison) -> Results {
         let figures = figures::all(&comparison.units);
         let rows = csv::of(&comparison);
-        Results::Comparison(Box::new(comparison), figures, vec![("comparison.csv".into(), rows)])
+        Results::of(comparison, figures, vec![("comparison.csv".into(), rows)])
     }
 
-    /// The results of a lot.
+    /// The results of a lot. Those of its units stand in folders of their own.
     pub fn of_lot(record: LotRecord) -> Results {
         let rows = lot::csv(&record);
-        Results::Lot(Box::new(record), vec![("index.csv".into(), rows)])
+        Results::of(record, vec![], vec![("index.csv".into(), rows)])
     }
 
-    /// The results of a plan.
+    /// The results of a plan: the record and its schedule.
     pub fn of_plan(file: PlanFile) -> Results {
         let planned = file.plan.schedule.as_ref();
         let schedule = planned.map(|s| (SCHEDULE_FILE.to_owned(), schedule::write(&s.schedule)));
-        Results::Plan(Box::new(file), schedule.into_iter().collect())
+        let tables = schedule.into_iter().collect();
+        Results::of(file, vec![], tables)
     }
 
     /// The results of a data sheet. The head of its limits file is in one language, as files of limits are.
@@ -144,7 +163,7 @@ impl Results {
         let head = Note::new("datasheet.limits_head").with("n", record.units).say(Lang::En);
         let limits = datasheet::limits::limits_file(&record, &head);
         let figures = datasheet::figures::all(&record);
-        Results::DataSheet(Box::new(record), figures, vec![("limits.toml".into(), limits)])
+        Results::of(record, figures, vec![("limits.toml".into(), limits)])
     }
 
     /// The files of the recording that were read, with the SHA-256 of what was read.
@@ -154,46 +173,61 @@ impl Results {
         files.map(|f| (PathBuf::from(&f.path), f.sha256.clone())).collect()
     }
 
+    /// The record of the whole.
+    pub fn record(&self) -> &dyn Documented {
+        match self {
+            Results::Run(results) => &results.outcome.record,
+            Results::Explanation(results) => &results.file,
+            Results::Joint(results) => &results.file,
+            Results::Other(results) => &*results.record,
+        }
+    }
+
     /// What the folder of the results holds.
     pub fn kind(&self) -> Kind {
-        match self {
-            Results::Run(_) => Kind::Result,
-            Results::Explanation(_) => Kind::Explanation,
-            Results::Comparison(..) => Kind::Comparison,
-            Results::Lot(..) => Kind::Lot,
-            Results::Joint(_) => Kind::Joint,
-            Results::Plan(..) => Kind::Plan,
-            Results::DataSheet(..) => Kind::DataSheet,
-            Results::Proof(..) => Kind::Proof,
-        }
+        self.record().kind()
     }
 
     /// Version of the program that wrote the results; `None` where their record does not tell it.
     pub fn program_version(&self) -> Option<&str> {
-        match self {
-            Results::Run(results) => Some(&results.outcome.record.program.version),
-            Results::Comparison(comparison, ..) => Some(&comparison.program.version),
-            Results::Lot(lot, _) => Some(&lot.program.version),
-            Results::DataSheet(sheet, ..) => Some(&sheet.program.version),
-            Results::Proof(proof, ..) => Some(&proof.program.version),
-            Results::Explanation(_) | Results::Joint(_) | Results::Plan(..) => None,
-        }
+        self.record().program_version()
     }
 
     /// What a folder is named after: the serial number of the unit, or the case that is explained.
     pub fn subject(&self) -> Option<&str> {
+        self.record().folder_name()
+    }
+
+    /// The document of the whole.
+    pub fn whole(&self, lang: Lang) -> Document<'_> {
         match self {
-            Results::Run(results) => results.outcome.record.unit_under_test.serial.as_deref(),
-            Results::Explanation(results) => {
-                Some(results.file.explanation.case.as_str()).filter(|c| !c.is_empty())
+            Results::Run(results) if results.outcome.record.phases.is_empty() => {
+                Document::of_run(&results.outcome, lang)
             }
-            Results::Comparison(..) => None,
-            Results::Lot(lot, _) => Some(&lot.procedure.id),
-            Results::Joint(results) => Some(results.file.explanation.case.as_str()).filter(|c| !c.is_empty()),
-            Results::Plan(file, _) => Some(file.plan.case.as_str()).filter(|c| !c.is_empty()),
-            Results::DataSheet(sheet, ..) => sheet.model.as_deref(),
-            Results::Proof(..) => None,
+            Results::Run(results) => Document::of_phases(&results.outcome.record, &results.phases, lang),
+            Results::Explanation(results) => results.document(lang),
+            Results::Joint(results) => Document::new(&results.file, &[], &results.tables, lang),
+            Results::Other(results) => {
+                Document::new(&*results.record, &results.figures, &results.tables, lang)
+            }
         }
+    }
+
+    /// The documents that stand in folders below that of the whole, each with its folder, such as `phases/static`.
+    pub fn parts(&self, lang: Lang) -> Vec<(String, Document<'_>)> {
+        if let Results::Joint(results) = self {
+            let folders = results.file.explanation.recordings.iter().map(|r| r.folder.clone());
+            let parts =
+                folders.zip(&results.recordings).filter_map(|(folder, e)| Some((folder, e.as_ref()?)));
+            return parts.map(|(folder, e)| (folder, e.document(lang))).collect();
+        }
+        let Results::Run(results) = self else { return vec![] };
+        let phases = results.outcome.record.phases.iter().zip(&results.phases);
+        let phases = phases.filter_map(|(phase, o)| phase.folder.clone().zip(o.as_ref()));
+        let explanation = results.explanation.as_ref().map(|e| ("explain".to_owned(), e));
+        let phases = phases.map(|(folder, o)| (folder, Document::of_run(o, lang)));
+        let explanation = explanation.map(|(folder, e)| (folder, e.document(lang)));
+        phases.chain(explanation).collect()
     }
 }
 
@@ -219,8 +253,8 @@ struct Listing {
 }
 
 impl StoredResults {
-    /// Reads a `result.json`, `explain.json`, `joint.json`, `comparison.json`, `index.json`, `plan.json`, `datasheet.json` or `proof.json`, or
-    /// the folder of one, with what stands beside it.
+    /// Reads a `result.json`, `explain.json`, `joint.json`, `comparison.json`, `index.json`, `plan.json`, `datasheet.json`
+    /// or `proof.json`, or the folder of one, with what stands beside it.
     ///
     /// # Errors
     /// A note that names the file and what is wrong with it.
@@ -248,7 +282,7 @@ impl StoredResults {
             Some("proof-result") => {
                 let proof: ProofRecord = read::of_format(&bytes, PROOF_FORMAT).map_err(wrong)?;
                 let figures = from.figures("", 1, &[]);
-                Results::Proof(Box::new(proof), figures, from.tables("", Kind::Proof))
+                Results::of(proof, figures, from.tables("", Kind::Proof))
             }
             _ => Results::Run(Box::new(from.run(&bytes).map_err(wrong)?)),
         };

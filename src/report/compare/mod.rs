@@ -8,12 +8,14 @@ pub use published::PublishedView;
 pub use terminal::table;
 pub use unit::{Cell, LimitView, RuleCell, ShareView, UnitView};
 
+use super::document::{Contents, Documented, Record};
 use super::number::date_time;
 use super::translator::Translator;
 use super::view::FigureView;
 use crate::acceptance::compare::Comparison;
 use crate::figure::Figure;
 use crate::i18n::Lang;
+use crate::output::Kind;
 use serde::Serialize;
 
 /// Everything that a comparison shows.
@@ -33,6 +35,32 @@ pub struct CompareView {
     pub footer: String,
     /// The program with its version.
     pub generator: String,
+}
+
+impl Documented for Comparison {
+    fn record(&self) -> Record<'_> {
+        Record::Comparison(self)
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Comparison
+    }
+
+    fn subject(&self) -> Option<&str> {
+        None
+    }
+
+    fn made_at(&self) -> &str {
+        &self.compared_at
+    }
+
+    fn program_version(&self) -> Option<&str> {
+        Some(&self.program.version)
+    }
+
+    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
+        Contents::view("compare", &CompareView::new(self, figures, lang), lang)
+    }
 }
 
 impl CompareView {

@@ -4,12 +4,14 @@ mod quantity;
 
 pub use quantity::{BoundView, QuantityView};
 
+use super::document::{Contents, Documented, Record};
 use super::number::{count, date_time, duration, limit_digits};
 use super::translator::{Field, Translator};
 use super::view::FigureView;
 use crate::acceptance::datasheet::figures::figure_id;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize};
+use crate::output::Kind;
 use crate::record::{DataSheet, SheetCondition, SheetPair};
 use serde::Serialize;
 
@@ -78,6 +80,32 @@ pub struct ResultView {
     pub path: String,
     /// Its digest.
     pub sha256: String,
+}
+
+impl Documented for DataSheet {
+    fn record(&self) -> Record<'_> {
+        Record::DataSheet(self)
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::DataSheet
+    }
+
+    fn subject(&self) -> Option<&str> {
+        self.model.as_deref()
+    }
+
+    fn made_at(&self) -> &str {
+        &self.made_at
+    }
+
+    fn program_version(&self) -> Option<&str> {
+        Some(&self.program.version)
+    }
+
+    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
+        Contents::view("datasheet", &SheetView::new(self, figures, lang), lang)
+    }
 }
 
 impl SheetView {

@@ -1,7 +1,7 @@
 //! HTML.
 
 use super::{ExportedFile, Exporter};
-use crate::report::{Document, Renderer, ReportError};
+use crate::report::{Document, PageForm, Renderer, ReportError};
 
 /// One page with its figures inside, `report.html`.
 pub struct Html;
@@ -12,7 +12,7 @@ impl Exporter for Html {
     }
 
     fn files(&self, document: &Document<'_>, renderer: &Renderer) -> Result<Vec<ExportedFile>, ReportError> {
-        let page = renderer.render(&document.template("html"), document.context(), document.lang)?;
+        let page = document.text(PageForm::Html, renderer)?;
         Ok(vec![ExportedFile::new(document.page("html"), page)])
     }
 }

@@ -1,7 +1,7 @@
 //! Markdown.
 
 use super::{ExportedFile, Exporter, Svg};
-use crate::report::{Document, Renderer, ReportError};
+use crate::report::{Document, PageForm, Renderer, ReportError};
 
 /// A page, `report.md`, with its figures beside it.
 pub struct Markdown;
@@ -12,7 +12,7 @@ impl Exporter for Markdown {
     }
 
     fn files(&self, document: &Document<'_>, renderer: &Renderer) -> Result<Vec<ExportedFile>, ReportError> {
-        let page = renderer.render(&document.template("md"), document.context(), document.lang)?;
+        let page = document.text(PageForm::Markdown, renderer)?;
         let mut files = Svg.files(document, renderer)?;
         files.push(ExportedFile::new(document.page("md"), page));
         Ok(files)

@@ -3,38 +3,19 @@
 
 mod sentence;
 
+pub use super::files::{JointContext, JointFile};
+
+use super::document::{Contents, Documented, Record};
 use super::explain::print::{capital, difference, parameter, title, value, verdict};
 use super::explain::{FileView, ParameterRow};
 use super::number::{date_time, digits};
 use super::translator::{Field, Translator};
 use crate::effect::{Domain, find};
-use crate::i18n::{EffectText, Lang, Note, effect_text};
+use crate::figure::Figure;
+use crate::i18n::{EffectText, Lang, effect_text};
 use crate::mismatch::joint::record::{Brief, JointExplanation, SharedEffect, SharedIn};
-use serde::{Deserialize, Serialize};
-
-/// What `joint.json` holds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct JointFile {
-    /// What was found.
-    #[serde(flatten)]
-    pub explanation: JointExplanation,
-    /// What its page shows besides.
-    #[serde(default)]
-    pub context: JointContext,
-}
-
-/// Where a joint explanation comes from.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default)]
-pub struct JointContext {
-    /// The claim, as named by the user.
-    pub claim: String,
-    /// RFC 3339.
-    pub explained_at: String,
-    /// What must be known of the recordings.
-    #[serde(with = "crate::record::message::notes")]
-    pub notes: Vec<Note>,
-}
+use crate::output::Kind;
+use serde::Serialize;
 
 /// A shared effect.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -112,6 +93,28 @@ pub struct JointView {
     pub footer: String,
     /// The program with its version.
     pub generator: String,
+}
+
+impl Documented for JointFile {
+    fn record(&self) -> Record<'_> {
+        Record::Joint(self)
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Joint
+    }
+
+    fn subject(&self) -> Option<&str> {
+        Some(self.explanation.case.as_str()).filter(|c| !c.is_empty())
+    }
+
+    fn made_at(&self) -> &str {
+        &self.context.explained_at
+    }
+
+    fn contents(&self, _: &[Figure], lang: Lang) -> Contents {
+        Contents::view("joint", &JointView::new(self, lang), lang)
+    }
 }
 
 impl JointView {

@@ -8,10 +8,13 @@ pub use csv::csv;
 pub use quantity::QuantityView;
 pub(super) use reasons::{condition_reason, measurand_reason, reasons, several_channels};
 
+use super::document::{Contents, Documented, Record};
 use super::number::date_time;
 use super::translator::{Field, Translator};
 use crate::estimate::Verdict;
+use crate::figure::Figure;
 use crate::i18n::Lang;
+use crate::output::Kind;
 use crate::record::{LotRecord, LotUnit, SerialSource};
 use serde::Serialize;
 
@@ -72,6 +75,32 @@ pub struct LotUnitView {
     pub met: String,
     /// Why it does not pass; empty where it does.
     pub reasons: Vec<String>,
+}
+
+impl Documented for LotRecord {
+    fn record(&self) -> Record<'_> {
+        Record::Lot(self)
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Lot
+    }
+
+    fn subject(&self) -> Option<&str> {
+        Some(&self.procedure.id)
+    }
+
+    fn made_at(&self) -> &str {
+        &self.session.evaluated_at
+    }
+
+    fn program_version(&self) -> Option<&str> {
+        Some(&self.program.version)
+    }
+
+    fn contents(&self, _: &[Figure], lang: Lang) -> Contents {
+        Contents::view("lot", &LotView::new(self, lang), lang)
+    }
 }
 
 impl LotView {

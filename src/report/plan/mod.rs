@@ -3,42 +3,21 @@
 mod print;
 mod sentence;
 
+pub use super::files::{PlanContext, PlanFile};
+
 use sentence::step;
 
+use super::document::{Contents, Documented, Record};
 use super::explain::FileView;
 use super::number::{date_time, digits, limit_digits, percent};
 use super::translator::{Field, Translator};
-use crate::i18n::{Lang, Note};
+use crate::figure::Figure;
+use crate::i18n::Lang;
+use crate::output::Kind;
 use crate::plan::Plan;
 use crate::plan::record::{AlternativePlan, CausePlan, PairPlan, PlanOutcome};
 use print::{at_most, chance, title};
-use serde::{Deserialize, Serialize};
-
-/// What `plan.json` holds.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct PlanFile {
-    /// The plan.
-    #[serde(flatten)]
-    pub plan: Plan,
-    /// What its page shows besides.
-    #[serde(default)]
-    pub context: PlanContext,
-}
-
-/// Where a plan comes from.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default)]
-pub struct PlanContext {
-    /// The explanation or the recording, as named by the user.
-    pub explained: String,
-    /// The model, as named by the user.
-    pub model: String,
-    /// RFC 3339.
-    pub planned_at: String,
-    /// What must be known of the plan.
-    #[serde(with = "crate::record::message::notes")]
-    pub notes: Vec<Note>,
-}
+use serde::Serialize;
 
 /// A step of the schedule.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -132,6 +111,28 @@ pub struct PlanView {
     pub footer: String,
     /// The program with its version.
     pub generator: String,
+}
+
+impl Documented for PlanFile {
+    fn record(&self) -> Record<'_> {
+        Record::Plan(self)
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Plan
+    }
+
+    fn subject(&self) -> Option<&str> {
+        Some(self.plan.case.as_str()).filter(|c| !c.is_empty())
+    }
+
+    fn made_at(&self) -> &str {
+        &self.context.planned_at
+    }
+
+    fn contents(&self, _: &[Figure], lang: Lang) -> Contents {
+        Contents::view("plan", &PlanView::new(self, lang), lang)
+    }
 }
 
 impl PlanView {

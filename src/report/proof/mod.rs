@@ -1,12 +1,14 @@
 //! The view of a proof: what was hidden, what was said, what was true, side by side, ready for the templates and for the
 //! terminal.
 
+use super::document::{Contents, Documented, Record};
 use super::explain::{ExplainView, FileView, FitRow};
 use super::number::{count, date_time, digits, duration, limit_digits};
 use super::translator::{Field, Translator};
 use super::view::FigureView;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize};
+use crate::output::Kind;
 use crate::record::explanation::Explanation;
 use crate::record::{
     ClaimOrigin, CourseRecord, HiddenKind, KnownRecord, ProofOutcome, ProofRecord, RuleRecord,
@@ -139,6 +141,36 @@ pub struct ProofView {
     pub footer: String,
     /// The program with its version.
     pub generator: String,
+}
+
+impl Documented for ProofRecord {
+    fn record(&self) -> Record<'_> {
+        Record::Proof(self)
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Proof
+    }
+
+    fn subject(&self) -> Option<&str> {
+        Some(self.title.text())
+    }
+
+    fn made_at(&self) -> &str {
+        &self.proved_at
+    }
+
+    fn program_version(&self) -> Option<&str> {
+        Some(&self.program.version)
+    }
+
+    fn folder_name(&self) -> Option<&str> {
+        None
+    }
+
+    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
+        Contents::view("proof", &ProofView::new(self, figures, lang), lang)
+    }
 }
 
 impl ProofView {
