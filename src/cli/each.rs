@@ -22,8 +22,8 @@ use crate::moment;
 use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::{LotUnit, ProcedureRecord, SerialSource, Session};
 use crate::report::export::{EXPORTERS, export};
-use crate::report::lot::{LotUnitView, LotView};
-use crate::report::{Results, RunResults, terminal};
+use crate::report::lot::unit_done;
+use crate::report::{Documented, Results, RunResults, page};
 use chrono::{DateTime, SecondsFormat, Utc};
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroUsize;
@@ -180,12 +180,12 @@ fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang)
     progress.stage("progress.writing");
     let record = lot::lot(test.procedure(), session, units);
     let code = exit::code(record.verdict);
-    let view = LotView::new(&record, lang);
+    let outcome = record.on_terminal(lang);
     let results = Results::of_lot(record);
     writer.files(&results, &folder)?;
     let place = publish(folder, results.whole(lang).record(), lang)?;
     drop(progress);
-    printer.outcome(&place, Kind::Lot, |t| terminal::lot(&view, lang, t))?;
+    printer.outcome(&place, Kind::Lot, |t| format!("\n{}", page::terminal(&outcome, t)))?;
     for member in &members {
         keeper.keep(&place.join(&member.folder), printer)?;
     }
@@ -260,8 +260,8 @@ impl Work<'_> {
             for (i, done) in receive {
                 match done {
                     Ok((unit, problems)) => {
-                        let view = LotUnitView::new(&unit, self.lang);
-                        progress.beside(|| printer.line(|t| terminal::lot_unit(&view, t)));
+                        let done = unit_done(&unit, self.lang);
+                        progress.beside(|| printer.line(|t| page::terminal(&done, t)));
                         if let Some(new) = problems.and_then(|p| unsaid(p, &mut said)) {
                             progress.beside(|| place::eprint_diagnostic(&new.say(self.lang)));
                         }

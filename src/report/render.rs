@@ -42,8 +42,6 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("report.md", include_str!("../../templates/report.md")),
     ("compare.html", include_str!("../../templates/compare.html")),
     ("compare.md", include_str!("../../templates/compare.md")),
-    ("lot.html", include_str!("../../templates/lot.html")),
-    ("lot.md", include_str!("../../templates/lot.md")),
     ("joint.html", include_str!("../../templates/joint.html")),
     ("joint.md", include_str!("../../templates/joint.md")),
     ("plan.html", include_str!("../../templates/plan.html")),

@@ -1,81 +1,19 @@
-//! The view of a lot: words and printed numbers, ready for a template and for the terminal.
+//! The document of a lot: which units pass, why others do not, and every quantity over all units.
 
-mod csv;
 mod quantity;
 mod reasons;
 
-pub use csv::csv;
-pub use quantity::QuantityView;
 pub(super) use reasons::{condition_reason, measurand_reason, reasons, several_channels};
 
 use super::document::{Contents, Documented, Record};
 use super::number::date_time;
-use super::translator::{Field, Translator};
+use super::page::{self, Block, Column, Head, OnTerminal, Page, State, Table, Value};
+use super::translator::Translator;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::output::Kind;
-use crate::record::{LotRecord, LotUnit, SerialSource};
-use serde::Serialize;
-
-/// Everything that the page of a lot shows.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LotView {
-    /// Title of the procedure.
-    pub title: String,
-    /// Id of the worst verdict, for colours.
-    pub verdict: &'static str,
-    /// The worst verdict in words.
-    pub verdict_word: String,
-    /// How many units there are, in words.
-    pub size: String,
-    /// How many units have each verdict, the worst first.
-    pub counts: Vec<CountView>,
-    /// Where the serial numbers were taken from.
-    pub serials: String,
-    /// Procedure, limits, session.
-    pub identity: Vec<Field>,
-    /// The units: errors first, then failed, undecided, and passed ones; else in the order of the record.
-    pub units: Vec<LotUnitView>,
-    /// The quantities that have a limit, each over all units.
-    pub quantities: Vec<QuantityView>,
-    /// Line at the foot of every page.
-    pub footer: String,
-    /// The program with its version.
-    pub generator: String,
-}
-
-/// A verdict and how many units have it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CountView {
-    /// Id of the verdict.
-    pub verdict: &'static str,
-    /// The verdict in words.
-    pub verdict_word: String,
-    /// Units.
-    pub n: usize,
-}
-
-/// A unit, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LotUnitView {
-    /// Serial number.
-    pub serial: String,
-    /// Where it was taken from, in words.
-    pub serial_from: String,
-    /// The recording as named.
-    pub recording: String,
-    /// Folder of its report.
-    pub folder: String,
-    /// Id of the verdict, for colours.
-    pub verdict: &'static str,
-    /// The verdict in words.
-    pub verdict_word: String,
-    /// How many limits are met, in words; empty without a limit.
-    pub met: String,
-    /// Why it does not pass; empty where it does.
-    pub reasons: Vec<String>,
-}
+use crate::record::{ConditionStatus, LotRecord, LotUnit, SerialSource};
 
 impl Documented for LotRecord {
     fn record(&self) -> Record<'_> {
@@ -99,68 +37,146 @@ impl Documented for LotRecord {
     }
 
     fn contents(&self, _: &[Figure], lang: Lang) -> Contents {
-        Contents::view("lot", &LotView::new(self, lang), lang)
+        Contents::Page(pages(self, Translator { lang }))
     }
-}
 
-impl LotView {
-    /// Builds the view.
-    pub fn new(lot: &LotRecord, lang: Lang) -> LotView {
+    /// The worst verdict and how many units have which, the units, and the reasons of those that do not pass.
+    fn on_terminal(&self, lang: Lang) -> Vec<Block> {
         let words = Translator { lang };
-        let mut units: Vec<&LotUnit> = lot.units.iter().collect();
-        units.sort_by_key(|u| std::cmp::Reverse(u.verdict.max(Verdict::Pass)));
-        let generator = format!("{} {}", lot.program.name, lot.program.version);
-        LotView {
-            title: words.local(&lot.procedure.title),
-            verdict: lot.verdict.id(),
-            verdict_word: words.verdict(lot.verdict),
-            size: words.with("lot.size", &[("n", &lot.units.len().to_string())]),
-            counts: lot
-                .counts
-                .present()
-                .into_iter()
-                .map(|(verdict, n)| CountView {
-                    verdict: verdict.id(),
-                    verdict_word: words.verdict(verdict),
-                    n,
-                })
-                .collect(),
-            serials: serials(&lot.units, words),
-            identity: identity(lot, words),
-            units: units.into_iter().map(|u| unit_view(u, words)).collect(),
-            quantities: quantity::quantities(&lot.units, words),
-            footer: [&revision(lot, words), &date_time(&lot.session.evaluated_at), &generator]
-                .map(String::as_str)
-                .join(" · "),
-            generator,
+        let units = worst_first(&self.units);
+        let mut out = vec![
+            Block::Head(head(self, words)),
+            Block::Table(table(&units, words).only(&["serial", "recording", "met", "verdict"])),
+        ];
+        for unit in units {
+            let reasons = reasons(unit, words);
+            if !reasons.is_empty() {
+                out.push(Block::heading(unit.serial()));
+                out.extend(reasons.into_iter().map(Block::Paragraph));
+            }
         }
+        out.push(Block::Hint(serials(&self.units, words)));
+        out
     }
 }
 
-impl LotUnitView {
-    /// One unit, printed.
-    pub fn new(unit: &LotUnit, lang: Lang) -> LotUnitView {
-        unit_view(unit, Translator { lang })
+/// The line of a unit that is done, and below it the first reason where it does not pass.
+pub fn unit_done(unit: &LotUnit, lang: Lang) -> Vec<Block> {
+    let words = Translator { lang };
+    let head = Head {
+        title: format!("{} · {}", unit.serial(), unit.recording),
+        verdict: verdict(unit.verdict, words),
+        ..Head::default()
+    };
+    let reason = reasons(unit, words).into_iter().next();
+    std::iter::once(Block::Head(head)).chain(reason.map(Block::Paragraph)).collect()
+}
+
+/// `index.csv`: one row a unit, plain numbers, empty where there is none; the same in every language.
+pub fn csv(lot: &LotRecord) -> String {
+    let units: Vec<&LotUnit> = lot.units.iter().collect();
+    page::csv(&quantity::with_values(table(&units, Translator { lang: Lang::En }), &units))
+}
+
+fn pages(lot: &LotRecord, words: Translator) -> Page {
+    let head = head(lot, words);
+    let generator = format!("{} {}", lot.program.name, lot.program.version);
+    let footer = [&revision(lot, words), &date_time(&lot.session.evaluated_at), &generator];
+    let columns = ["serial", "verdict", "met", "reasons", "recording"];
+    let mut units = table(&worst_first(&lot.units), words).only(&columns);
+    units.class = "units small cards";
+    let units = vec![Block::Table(units), Block::Hint(serials(&lot.units, words))];
+    let quantities = quantity::table(&lot.units, words);
+    let over_all = [
+        Block::SummaryEnd,
+        Block::section("", words.t("lot.quantities"), vec![Block::Table(quantities.clone())]),
+    ];
+    let identity = Block::identity(identity(lot, words));
+    Page {
+        title: [head.title.as_str(), &head.size, &head.verdict.word].join(" · "),
+        footer: footer.map(String::as_str).join(" · "),
+        blocks: [Block::Head(head), Block::section("", words.t("lot.units"), units)]
+            .into_iter()
+            .chain(over_all.into_iter().filter(|_| !quantities.rows.is_empty()))
+            .chain([Block::section("identity", words.t("report.identity"), vec![identity])])
+            .collect(),
+        generator,
     }
 }
 
-fn unit_view(unit: &LotUnit, words: Translator) -> LotUnitView {
-    let met = unit.measurands.iter().filter(|m| m.verdict == Verdict::Pass).count();
-    let (met, all) = (met.to_string(), unit.measurands.len().to_string());
-    LotUnitView {
-        serial: unit.serial().to_owned(),
-        serial_from: words.name("serial_from", unit.serial_from.id()),
-        recording: unit.recording.clone(),
-        folder: unit.folder.clone(),
-        verdict: unit.verdict.id(),
-        verdict_word: words.verdict(unit.verdict),
-        met: if unit.measurands.is_empty() {
-            String::new()
-        } else {
-            words.with("terminal.met", &[("met", &met), ("all", &all)])
-        },
-        reasons: reasons(unit, words),
+fn verdict(verdict: Verdict, words: Translator) -> State {
+    State { id: verdict.id().to_owned(), word: words.verdict(verdict) }
+}
+
+fn head(lot: &LotRecord, words: Translator) -> Head {
+    Head {
+        kind: words.t("lot.kind"),
+        title: words.local(&lot.procedure.title),
+        size: words.with("lot.size", &[("n", &lot.units.len().to_string())]),
+        label: words.t("lot.worst"),
+        verdict: verdict(lot.verdict, words),
+        counts: lot.counts.present().into_iter().map(|(v, n)| (verdict(v, words), n)).collect(),
     }
+}
+
+/// The units: errors first, then failed, undecided, and passed ones; else in the order of the record.
+fn worst_first(units: &[LotUnit]) -> Vec<&LotUnit> {
+    let mut units: Vec<&LotUnit> = units.iter().collect();
+    units.sort_by_key(|u| std::cmp::Reverse(u.verdict.max(Verdict::Pass)));
+    units
+}
+
+/// What every unit has: a row each.
+fn table(units: &[&LotUnit], words: Translator) -> Table {
+    let all = |of: fn(&LotUnit) -> String| units.iter().map(move |u| of(u)).collect::<Vec<_>>();
+    let link =
+        |u: &&LotUnit| Value::Link { text: u.serial().to_owned(), to: format!("./{}/report.html", u.folder) };
+    let state = |u: &&LotUnit| Value::State(verdict(u.verdict, words));
+    let why = |u: &&LotUnit| Value::List { items: reasons(u, words), ordered: false };
+    let hashes = |u: &LotUnit| u.files.iter().map(|f| f.sha256.as_str()).collect::<Vec<_>>().join(" ");
+    let program = |name: &str| Column::text(name, "");
+    Table::new("", units.len())
+        .column(
+            Column::text("serial", words.t("report.serial")).short(words.name("terminal_column", "unit")),
+            units.iter().map(link),
+        )
+        .column(program("serial_from"), all(|u| u.serial_from.id().to_owned()))
+        .column(Column::text("verdict", words.t("report.verdict")), units.iter().map(state))
+        .column(
+            Column::text("recording", words.t("report.recording"))
+                .class("recording")
+                .on_terminal(OnTerminal::Optional),
+            all(|u| u.recording.clone()),
+        )
+        .column(program("sha256"), all(hashes))
+        .column(program("folder"), all(|u| u.folder.clone()))
+        .column(program("limits"), all(|u| u.measurands.len().to_string()))
+        .column(program("limits_met"), all(|u| count(u, Verdict::Pass)))
+        .column(
+            Column::text("met", words.name("terminal_column", "met")).class("whole").for_pages(),
+            units.iter().map(|u| met(u, words)),
+        )
+        .column(program("limits_failed"), all(|u| count(u, Verdict::Fail)))
+        .column(program("limits_undecided"), all(|u| count(u, Verdict::Indeterminate)))
+        .column(program("conditions_not_met"), all(|u| not_met(u).to_string()))
+        .column(Column::text("reasons", words.t("report.reasons")).class("why"), units.iter().map(why))
+}
+
+fn count(unit: &LotUnit, verdict: Verdict) -> String {
+    unit.measurands.iter().filter(|m| m.verdict == verdict).count().to_string()
+}
+
+fn not_met(unit: &LotUnit) -> usize {
+    unit.conditions.iter().filter(|c| c.status == ConditionStatus::Invalid).count()
+}
+
+/// How many limits are met, in words; empty without a limit.
+fn met(unit: &LotUnit, words: Translator) -> String {
+    if unit.measurands.is_empty() {
+        return String::new();
+    }
+    let all = unit.measurands.len().to_string();
+    words.with("terminal.met", &[("met", &count(unit, Verdict::Pass)), ("all", &all)])
 }
 
 /// How many serial numbers were taken from where.
@@ -180,21 +196,19 @@ fn revision(lot: &LotRecord, words: Translator) -> String {
     words.with("report.id_revision", &[("id", &p.id), ("revision", &p.revision)])
 }
 
-fn identity(lot: &LotRecord, words: Translator) -> Vec<Field> {
-    let mut out = vec![Field { label: words.t("report.procedure"), value: revision(lot, words) }];
-    let mut put = |key: &str, value: Option<&str>| {
-        if let Some(value) = value.filter(|v| !v.trim().is_empty()) {
-            out.push(Field { label: words.t(key), value: value.to_owned() });
-        }
-    };
-    put("report.standard", lot.procedure.standard.as_ref().map(|s| words.local(s)).as_deref());
-    if let Some(l) = &lot.procedure.limits {
+fn identity(lot: &LotRecord, words: Translator) -> Vec<(String, String)> {
+    let limits = lot.procedure.limits.as_ref().map(|l| {
         let id = words.with("report.id_revision", &[("id", &l.id), ("revision", &l.revision)]);
-        put("report.limits", Some(&format!("{} ({id})", words.local(&l.title))));
-    }
-    put("report.station", lot.session.station.as_deref());
-    put("report.operator", lot.session.operator.as_deref());
-    put("report.evaluated_at", Some(&date_time(&lot.session.evaluated_at)));
-    put("report.program", Some(&format!("{} {}", lot.program.name, lot.program.version)));
-    out
+        format!("{} ({id})", words.local(&l.title))
+    });
+    let rows = [
+        ("report.procedure", Some(revision(lot, words))),
+        ("report.standard", lot.procedure.standard.as_ref().map(|s| words.local(s))),
+        ("report.limits", limits),
+        ("report.station", lot.session.station.clone()),
+        ("report.operator", lot.session.operator.clone()),
+        ("report.evaluated_at", Some(date_time(&lot.session.evaluated_at))),
+        ("report.program", Some(format!("{} {}", lot.program.name, lot.program.version))),
+    ];
+    rows.map(|(key, value)| (words.t(key), value.unwrap_or_default())).into()
 }
