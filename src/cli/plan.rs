@@ -18,8 +18,8 @@ use crate::output::Kind;
 use crate::plan::record::PlanOutcome;
 use crate::plan::{Limits, plan};
 use crate::record::explanation::Explanation;
-use crate::report::plan::{PlanContext, PlanFile, PlanView};
-use crate::report::{ALTERNATIVES_FILE, Results, StoredResults, terminal};
+use crate::report::plan::{PlanContext, PlanFile};
+use crate::report::{ALTERNATIVES_FILE, Documented, Results, StoredResults, page};
 use crate::series::{SeriesOptions, load_series};
 use chrono::SecondsFormat;
 use clap::Args;
@@ -91,11 +91,12 @@ pub fn main(args: &PlanArgs, lang: Lang) -> Result<u8, String> {
     };
     let outcome = plan.outcome;
     let file = PlanFile { plan, context };
-    let view = PlanView::new(&file, lang);
+    let told = file.on_terminal(lang);
+    let is_scheduled = file.plan.schedule.as_ref().is_some_and(|s| !s.schedule.steps.is_empty());
     let folder = writer.publish(&Results::of_plan(file), folder)?;
     drop(progress);
-    printer.outcome(&folder, Kind::Plan, |t| terminal::plan(&view, lang, t))?;
-    if view.steps.is_empty() {
+    printer.outcome(&folder, Kind::Plan, |t| page::terminal(&told, t))?;
+    if !is_scheduled {
         return Ok(code(outcome));
     }
     let next = Note::new("next_step.plan")

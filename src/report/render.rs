@@ -44,8 +44,6 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("compare.md", include_str!("../../templates/compare.md")),
     ("joint.html", include_str!("../../templates/joint.html")),
     ("joint.md", include_str!("../../templates/joint.md")),
-    ("plan.html", include_str!("../../templates/plan.html")),
-    ("plan.md", include_str!("../../templates/plan.md")),
     ("proof.html", include_str!("../../templates/proof.html")),
     ("proof.md", include_str!("../../templates/proof.md")),
     ("page.html", include_str!("../../templates/page.html")),

@@ -1,4 +1,4 @@
-//! The view of a plan: words and printed numbers, ready for the templates and for the terminal.
+//! The document of a plan: the schedule of the next test, what it tells apart and why.
 
 mod print;
 mod sentence;
@@ -7,111 +7,16 @@ pub use super::files::{PlanContext, PlanFile};
 
 use sentence::step;
 
-use super::document::{Contents, Documented, Record};
-use super::explain::FileView;
+use super::document::{Contents, Documented, Record, generator};
 use super::number::{date_time, digits, limit_digits, percent};
-use super::translator::{Field, Translator};
+use super::page::{Block, Column, Head, Lead, OnTerminal, Page, State, Step, Steps, Table, Value};
+use super::translator::Translator;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::output::Kind;
 use crate::plan::Plan;
 use crate::plan::record::{AlternativePlan, CausePlan, PairPlan, PlanOutcome};
 use print::{at_most, chance, title};
-use serde::Serialize;
-
-/// A step of the schedule.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StepRow {
-    /// Its number.
-    pub number: usize,
-    /// What to do.
-    pub what: String,
-}
-
-/// An explanation of a cause.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct AlternativeRow {
-    /// Effect.
-    pub kind: String,
-    /// Its title.
-    pub title: String,
-    /// What the planned recording shows of it.
-    pub shows_as: String,
-    /// Probability that it is found, if it is true.
-    pub found: String,
-    /// Probability that it is named alone, if it is true.
-    pub alone: String,
-}
-
-/// Two explanations under the schedule.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PairRow {
-    /// The one that is true.
-    pub truth: String,
-    /// The other.
-    pub against: String,
-    /// Distance in deviations of the noise.
-    pub distance: String,
-    /// Probability of telling them apart.
-    pub probability: String,
-    /// What decides.
-    pub why: String,
-}
-
-/// A cause with its explanations.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CauseView {
-    /// Its number in the explanation.
-    pub number: usize,
-    /// Its explanations.
-    pub alternatives: Vec<AlternativeRow>,
-    /// Its pairs.
-    pub pairs: Vec<PairRow>,
-}
-
-/// A schedule that was compared.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CandidateRow {
-    /// What to do.
-    pub what: Vec<String>,
-    /// Length.
-    pub hours: String,
-    /// Probability of naming each explanation alone, if it is true.
-    pub probabilities: Vec<String>,
-    /// True for the one that was chosen.
-    pub chosen: bool,
-}
-
-/// Everything that a plan shows.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PlanView {
-    /// Class of the outcome, for colours.
-    pub outcome_class: &'static str,
-    /// The outcome in a word.
-    pub outcome_word: String,
-    /// Case, or what was explained.
-    pub title: String,
-    /// The outcome in sentences.
-    pub summary: Vec<String>,
-    /// What must be known.
-    pub remarks: Vec<String>,
-    /// Explanation, model, budget.
-    pub identity: Vec<Field>,
-    /// The schedule.
-    pub steps: Vec<StepRow>,
-    /// Causes.
-    pub causes: Vec<CauseView>,
-    /// Schedules that were compared.
-    pub candidates: Vec<CandidateRow>,
-    /// Explanations in the order of the probabilities of candidates.
-    pub heads: Vec<String>,
-    /// Files of the folder.
-    pub files: Vec<FileView>,
-    /// Line at the foot of every page.
-    pub footer: String,
-    /// The program with its version.
-    pub generator: String,
-}
 
 impl Documented for PlanFile {
     fn record(&self) -> Record<'_> {
@@ -131,77 +36,155 @@ impl Documented for PlanFile {
     }
 
     fn contents(&self, _: &[Figure], lang: Lang) -> Contents {
-        Contents::view("plan", &PlanView::new(self, lang), lang)
+        Contents::Page(pages(self, Translator { lang }))
     }
-}
 
-impl PlanView {
-    /// Builds the view.
-    pub fn new(file: &PlanFile, lang: Lang) -> PlanView {
+    /// The outcome in sentences, the schedule step by step, the explanations of each cause with what decides between
+    /// them.
+    fn on_terminal(&self, lang: Lang) -> Vec<Block> {
         let words = Translator { lang };
-        let PlanFile { plan, context } = file;
-        let (outcome_class, outcome_word) = match plan.outcome {
-            PlanOutcome::Decides => ("pass", words.t("plan.outcome.decides")),
-            PlanOutcome::NothingToDecide => ("pass", words.t("plan.outcome.nothing_to_decide")),
-            PlanOutcome::TooShort => ("indeterminate", words.t("plan.outcome.too_short")),
-            PlanOutcome::Undecidable => ("fail", words.t("plan.outcome.undecidable")),
-        };
-        let generator = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
-        let footer = [date_time(&context.planned_at), generator.clone()];
-        let steps = plan.schedule.iter().flat_map(|s| &s.schedule.steps).enumerate();
-        let candidates = plan.candidates.iter().enumerate();
-        PlanView {
-            outcome_class,
-            outcome_word,
-            title: if plan.case.is_empty() { context.explained.clone() } else { plan.case.clone() },
-            summary: sentence::summary(plan, words),
-            remarks: context.notes.iter().map(|n| words.say(n)).collect(),
-            identity: identity(file, words),
-            steps: steps.map(|(i, s)| StepRow { number: i + 1, what: step(s, words) }).collect(),
-            causes: plan.causes.iter().map(|c| cause(c, words)).collect(),
-            candidates: candidates
-                .map(|(i, c)| CandidateRow {
-                    what: c.schedule.steps.iter().map(|s| step(s, words)).collect(),
-                    hours: limit_digits(c.duration_h, 3, lang),
-                    probabilities: c.probabilities.iter().map(|p| chance(*p, words)).collect(),
-                    chosen: i == 0 && plan.schedule.is_some(),
-                })
-                .collect(),
-            heads: plan.causes.iter().flat_map(|c| &c.alternatives).map(|a| title(&a.kind, words)).collect(),
-            files: files(plan, words),
-            footer: footer.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" · "),
-            generator,
+        let mut out = vec![Block::Head(head(self, words)), Block::Lead(lead(self, words))];
+        let steps = steps(&self.plan, words);
+        if !steps.items.is_empty() {
+            out.extend([Block::heading(words.t("plan.heading.schedule")), Block::Steps(steps)]);
         }
+        for cause in &self.plan.causes {
+            out.push(Block::heading(words.t("plan.heading.alternatives")));
+            out.push(Block::Table(alternatives(cause, words)));
+            out.extend(cause.pairs.iter().map(|p| Block::Paragraph(sentence::why(p, words))));
+        }
+        out
     }
 }
 
-fn cause(cause: &CausePlan, words: Translator) -> CauseView {
-    let alternative = |a: &AlternativePlan| AlternativeRow {
-        kind: a.kind.clone(),
-        title: title(&a.kind, words),
-        shows_as: match &a.shows_as {
-            None => words.t("plan.shows.nothing"),
-            Some(kind) if *kind == a.kind => words.t("plan.shows.itself"),
-            Some(kind) => title(kind, words),
-        },
-        found: chance(a.found, words),
-        alone: at_most(a.probability, words),
+fn pages(file: &PlanFile, words: Translator) -> Page {
+    let PlanFile { plan, context } = file;
+    let head = head(file, words);
+    let footer = [date_time(&context.planned_at), generator()];
+    let identity = vec![Block::identity(identity(file, words))];
+    let hint = |key: &str| Block::Hint(words.t(key));
+    let schedule = |steps| {
+        let below = vec![Block::Steps(steps), hint("plan.hint.schedule")];
+        Block::section("", words.t("plan.heading.schedule"), below)
     };
-    let pair = |p: &PairPlan| PairRow {
-        truth: title(&p.truth, words),
-        against: title(&p.against, words),
-        distance: digits(p.squared_distance.sqrt(), 2, words.lang),
-        probability: chance(p.probability, words),
-        why: sentence::why(p, words),
+    let cause = |cause: &CausePlan| {
+        let pairs = (!cause.pairs.is_empty()).then(|| Block::Table(pairs(&cause.pairs, words)));
+        let below = [hint("plan.hint.alternatives"), Block::Table(alternatives(cause, words))];
+        let number = cause.cause.to_string();
+        let heading = words.with("plan.heading.cause", &[("number", &number)]);
+        Block::section("", heading, below.into_iter().chain(pairs).collect())
     };
-    CauseView {
-        number: cause.cause,
-        alternatives: cause.alternatives.iter().map(alternative).collect(),
-        pairs: cause.pairs.iter().map(pair).collect(),
+    let compared = || {
+        let below = vec![hint("plan.hint.candidates"), Block::Table(candidates(plan, words))];
+        Block::section("", words.t("plan.heading.candidates"), below)
+    };
+    let method = vec![Block::Paragraph(words.t("plan.method"))];
+    Page {
+        title: format!("{} · {}", head.kind, head.title),
+        generator: generator(),
+        footer: footer.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" · "),
+        blocks: [
+            Block::Head(head),
+            Block::Lead(lead(file, words)),
+            Block::section("identity", words.t("plan.heading.facts"), identity),
+        ]
+        .into_iter()
+        .chain(Some(steps(plan, words)).filter(|s| !s.items.is_empty()).map(schedule))
+        .chain(plan.causes.iter().map(cause))
+        .chain((!plan.candidates.is_empty()).then(compared))
+        .chain([
+            Block::section("", words.t("plan.heading.method"), method),
+            Block::section("", words.t("plan.heading.files"), vec![files(plan, words)]),
+        ])
+        .collect(),
     }
 }
 
-fn identity(file: &PlanFile, words: Translator) -> Vec<Field> {
+fn head(file: &PlanFile, words: Translator) -> Head {
+    let (id, word) = match file.plan.outcome {
+        PlanOutcome::Decides => ("pass", words.t("plan.outcome.decides")),
+        PlanOutcome::NothingToDecide => ("pass", words.t("plan.outcome.nothing_to_decide")),
+        PlanOutcome::TooShort => ("indeterminate", words.t("plan.outcome.too_short")),
+        PlanOutcome::Undecidable => ("fail", words.t("plan.outcome.undecidable")),
+    };
+    Head {
+        kind: words.t("plan.kind"),
+        title: file.subject().unwrap_or(&file.context.explained).to_owned(),
+        label: words.t("plan.outcome.title"),
+        verdict: State { id: id.to_owned(), word },
+        ..Head::default()
+    }
+}
+
+/// The outcome in sentences, and what must be known.
+fn lead(file: &PlanFile, words: Translator) -> Lead {
+    let remarks = file.context.notes.iter().map(|n| words.say(n));
+    let sentences = sentence::summary(&file.plan, words).into_iter().chain(remarks).collect();
+    Lead { id: head(file, words).verdict.id, sentences }
+}
+
+fn steps(plan: &Plan, words: Translator) -> Steps {
+    let all = plan.schedule.iter().flat_map(|s| &s.schedule.steps);
+    let item = |s| Step { text: step(s, words), hashes: vec![] };
+    Steps { class: "steps", items: all.map(item).collect() }
+}
+
+/// The explanations of a cause.
+fn alternatives(cause: &CausePlan, words: Translator) -> Table {
+    let all = || cause.alternatives.iter();
+    let named = |a: &AlternativePlan| Value::Named { text: title(&a.kind, words), id: a.kind.clone() };
+    let shows_as = |a: &AlternativePlan| match &a.shows_as {
+        None => words.t("plan.shows.nothing"),
+        Some(kind) if *kind == a.kind => words.t("plan.shows.itself"),
+        Some(kind) => title(kind, words),
+    };
+    let found = words.number_column("plan.column.found").on_terminal(OnTerminal::Hidden);
+    Table::new("cards", cause.alternatives.len())
+        .column(words.column("plan.column.alternative"), all().map(named))
+        .column(words.column("plan.column.shows_as"), all().map(shows_as))
+        .column(found, all().map(|a| chance(a.found, words)))
+        .column(words.number_column("plan.column.alone"), all().map(|a| at_most(a.probability, words)))
+}
+
+/// Two explanations each, and how the schedule tells them apart.
+fn pairs(pairs: &[PairPlan], words: Translator) -> Table {
+    let distance = |p: &PairPlan| digits(p.squared_distance.sqrt(), 2, words.lang);
+    Table::new("cards", pairs.len())
+        .column(words.column("plan.column.truth"), pairs.iter().map(|p| title(&p.truth, words)))
+        .column(words.column("plan.column.against"), pairs.iter().map(|p| title(&p.against, words)))
+        .column(words.number_column("plan.column.distance"), pairs.iter().map(distance))
+        .column(words.number_column("plan.column.told"), pairs.iter().map(|p| chance(p.probability, words)))
+        .column(words.column("plan.column.why"), pairs.iter().map(|p| sentence::why(p, words)))
+}
+
+/// The schedules that were compared, the chosen one first.
+fn candidates(plan: &Plan, words: Translator) -> Table {
+    let all = || plan.candidates.iter();
+    let what = all().map(|c| Value::List {
+        items: c.schedule.steps.iter().map(|s| step(s, words)).collect(),
+        ordered: true,
+    });
+    let schedules = Table::new("compared", plan.candidates.len())
+        .column(words.column("plan.column.schedule"), what)
+        .column(
+            words.number_column("plan.column.hours"),
+            all().map(|c| limit_digits(c.duration_h, 3, words.lang)),
+        );
+    let explanations = plan.causes.iter().flat_map(|c| &c.alternatives).enumerate();
+    let mut table = explanations.fold(schedules, |table, (i, a)| {
+        let named_alone = |p: Option<&f64>| p.map(|p| chance(*p, words)).unwrap_or_default();
+        table.column(
+            Column::number(&a.kind, title(&a.kind, words)),
+            all().map(|c| named_alone(c.probabilities.get(i))),
+        )
+    });
+    if let Some(first) = table.rows.first_mut() {
+        first.chosen = plan.schedule.is_some();
+    }
+    table
+}
+
+fn identity(file: &PlanFile, words: Translator) -> Vec<(String, String)> {
     let PlanFile { plan, context } = file;
     let hours = words.with("plan.hours", &[("hours", &limit_digits(plan.budget_h, 3, words.lang))]);
     let rows = [
@@ -211,17 +194,15 @@ fn identity(file: &PlanFile, words: Translator) -> Vec<Field> {
         ("plan.fact.budget", hours),
         ("plan.fact.asked", percent(plan.asked, words.lang)),
     ];
-    let field = |(key, value): (&str, String)| Field { label: words.t(key), value };
-    rows.into_iter().filter(|(_, value)| !value.trim().is_empty()).map(field).collect()
+    rows.map(|(key, value)| (words.t(key), value)).into()
 }
 
-fn files(plan: &Plan, words: Translator) -> Vec<FileView> {
+fn files(plan: &Plan, words: Translator) -> Block {
     let schedule = plan.schedule.as_ref().map(|_| ("schedule.toml", "plan.wrote.schedule"));
     let always = [
         ("plan.json", "plan.wrote.for_programs"),
         ("report.html", "plan.wrote.page"),
         ("report.md", "plan.wrote.markdown"),
     ];
-    let row = |(name, key): (&str, &str)| FileView { name: name.to_owned(), what: words.t(key) };
-    schedule.into_iter().chain(always).map(row).collect()
+    Block::files(schedule.into_iter().chain(always).map(|(name, key)| (name.to_owned(), words.t(key))))
 }
