@@ -14,8 +14,8 @@ use crate::mismatch::joint::{JointOutcome, JointProgress, Recording, explain_joi
 use crate::moment;
 use crate::output::Kind;
 use crate::report::explain::Context;
-use crate::report::joint::{JointContext, JointFile, JointView};
-use crate::report::{ExplanationResults, JointResults, Results, terminal};
+use crate::report::joint::{JointContext, JointFile};
+use crate::report::{Documented, ExplanationResults, JointResults, Results, page};
 use chrono::SecondsFormat;
 use std::path::{Path, PathBuf};
 
@@ -79,11 +79,11 @@ pub fn main(args: &ExplainArgs, files: Vec<PathBuf>, lang: Lang) -> Result<u8, S
     progress.stage("progress.writing");
     let explained_at = now.to_rfc3339_opts(SecondsFormat::Secs, true);
     let results = results(&outcome, shown(path), explained_at, remarks);
-    let view = JointView::new(&results.file, lang);
+    let told = results.file.on_terminal(lang);
     let folder = writer.publish(&Results::Joint(Box::new(results)), folder)?;
     drop(progress);
-    printer.outcome(&folder, Kind::Joint, |t| terminal::joint(&view, lang, t))?;
-    let named = view.shared.first().map(|s| next_step::after_effect(&s.kind));
+    printer.outcome(&folder, Kind::Joint, |t| page::terminal(&told, t))?;
+    let named = outcome.explanation.shared.first().map(|s| next_step::after_effect(&s.kind));
     printer.next_step(named.as_ref());
     Ok(match outcome.explanation.verdict {
         MismatchVerdict::Consistent => exit::PASS,

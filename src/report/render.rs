@@ -42,8 +42,6 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("report.md", include_str!("../../templates/report.md")),
     ("compare.html", include_str!("../../templates/compare.html")),
     ("compare.md", include_str!("../../templates/compare.md")),
-    ("joint.html", include_str!("../../templates/joint.html")),
-    ("joint.md", include_str!("../../templates/joint.md")),
     ("proof.html", include_str!("../../templates/proof.html")),
     ("proof.md", include_str!("../../templates/proof.md")),
     ("page.html", include_str!("../../templates/page.html")),

@@ -46,7 +46,7 @@ fn noticeable(all: &[NoticeableRow], words: Translator, terminal: Terminal) -> S
 }
 
 /// Parameters with their values and intervals; nothing where there are none.
-pub(super) fn parameters(parameters: &[ParameterRow], words: Translator, terminal: Terminal) -> String {
+fn parameters(parameters: &[ParameterRow], words: Translator, terminal: Terminal) -> String {
     let column = |id: &str, align| Column { head: words.name("terminal_column", id), align, optional: false };
     let columns =
         [column("parameter", Align::Left), column("value", Align::Right), column("interval", Align::Right)];

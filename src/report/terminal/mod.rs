@@ -5,7 +5,6 @@
 mod datasheet;
 mod explanation;
 mod history;
-mod joint;
 mod proof;
 mod run;
 mod screen;
@@ -15,7 +14,6 @@ mod wrap;
 pub use datasheet::datasheet;
 pub use explanation::explanation;
 pub use history::history;
-pub use joint::joint;
 pub use proof::proof;
 pub use run::run;
 pub use screen::Terminal;
