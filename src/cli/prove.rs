@@ -13,8 +13,7 @@ use crate::moment;
 use crate::output::{Kind, sha256};
 use crate::prove::{CLAIM_FILE, ProofOrder, prove};
 use crate::record::ProofOutcome;
-use crate::report::proof::ProofView;
-use crate::report::{Results, terminal};
+use crate::report::{Documented, Results, page};
 use chrono::SecondsFormat;
 use clap::Args;
 use std::path::PathBuf;
@@ -69,13 +68,13 @@ pub fn main(args: &ProveArgs, lang: Lang) -> Result<u8, String> {
     };
     let proved = prove(&order, &mut |doing| progress.stage(doing)).map_err(say)?;
     progress.stage("progress.writing");
-    let view = ProofView::new(&proved.record, &[], lang);
+    let told = proved.record.on_terminal(lang);
     let outcome = proved.record.outcome;
     let claim = vec![(CLAIM_FILE.to_owned(), proved.claim)];
     let results = Results::of(proved.record, proved.figures, claim);
     let folder = writer.publish(&results, folder)?;
     drop(progress);
-    printer.outcome(&folder, Kind::Proof, |t| terminal::proof(&view, lang, t))?;
+    printer.outcome(&folder, Kind::Proof, |t| page::terminal(&told, t))?;
     Ok(match outcome {
         ProofOutcome::Holds => exit::PASS,
         ProofOutcome::Fails => exit::FAIL,

@@ -42,8 +42,6 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("report.md", include_str!("../../templates/report.md")),
     ("compare.html", include_str!("../../templates/compare.html")),
     ("compare.md", include_str!("../../templates/compare.md")),
-    ("proof.html", include_str!("../../templates/proof.html")),
-    ("proof.md", include_str!("../../templates/proof.md")),
     ("page.html", include_str!("../../templates/page.html")),
     ("page.md", include_str!("../../templates/page.md")),
     ("page.css", include_str!("../../templates/page.css")),

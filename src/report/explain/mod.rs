@@ -10,6 +10,7 @@ mod tables;
 pub use effect::{EffectView, EquivalentView, ParameterRow, StatedRow};
 pub use method::MethodView;
 pub use noticeable::{NotComputedRow, NoticeableRow};
+pub(super) use tables::fit_table;
 pub use tables::{CandidateRow, ColumnRow, FitRow, TestRow};
 
 use super::number::{count, date_time, digits, duration};

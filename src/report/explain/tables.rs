@@ -4,6 +4,7 @@ use super::print::capital;
 use super::print::{chance, difference, ends, plain, test, title, view};
 use crate::mismatch::finding::{ColumnRecord, Explanation, FitFigures, PlaceRecord};
 use crate::report::number::digits;
+use crate::report::page::Table;
 use crate::report::translator::Translator;
 use serde::Serialize;
 
@@ -159,6 +160,16 @@ pub(super) fn fit(all: &Explanation, words: Translator) -> Vec<FitRow> {
             change: String::new(),
         },
     ]
+}
+
+/// The fit before and after as a table.
+pub(in crate::report) fn fit_table(rows: &[FitRow], words: Translator) -> Table {
+    let all = |of: fn(&FitRow) -> &String| rows.iter().map(move |r| of(r).as_str());
+    Table::new("cards", rows.len())
+        .column(words.column("explain.column.figure"), all(|r| &r.name))
+        .column(words.number_column("explain.column.baseline"), all(|r| &r.baseline))
+        .column(words.number_column("explain.column.augmented"), all(|r| &r.augmented))
+        .column(words.number_column("explain.column.change"), all(|r| &r.change))
 }
 
 /// The change of a size in percent of what it was.

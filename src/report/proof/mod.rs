@@ -1,147 +1,28 @@
-//! The view of a proof: what was hidden, what was said, what was true, side by side, ready for the templates and for the
-//! terminal.
+//! The document of a proof: what was hidden, what was said, what was true, side by side.
 
-use super::document::{Contents, Documented, Record};
-use super::explain::{ExplainView, FileView, FitRow};
-use super::number::{count, date_time, digits, duration, limit_digits};
-use super::translator::{Field, Translator};
+use super::document::{Contents, Documented, Record, generator};
+use super::explain::{ExplainView, fit_table};
+use super::number::{count, date_time, digits, duration, limit_digits, percent};
+use super::page::{
+    Block, Head, Heading, Layout, Lead, Listed, OnTerminal, Page, Quantity, State, Step, Steps, Table, Value,
+};
+use super::translator::Translator;
 use super::view::FigureView;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize};
 use crate::output::Kind;
 use crate::record::explanation::Explanation;
 use crate::record::{
-    ClaimOrigin, CourseRecord, HiddenKind, KnownRecord, ProofOutcome, ProofRecord, RuleRecord,
+    ClaimOrigin, CourseRecord, Hidden, HiddenKind, KnownRecord, ProofOutcome, ProofRecord, ProtocolStep,
+    RuleRecord,
 };
 use crate::report::explain::Context;
-use serde::Serialize;
 
 /// Figures of the explanation while something was concealed begin so.
 pub const CONCEALED: &str = "concealed_";
 
 /// Figures of the explanation with the columns shown begin so.
 pub const UNVEILED: &str = "unveiled_";
-
-/// Something that was hidden.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct HiddenRow {
-    /// Name.
-    pub name: String,
-    /// What it is.
-    pub what: String,
-    /// SHA-256.
-    pub sha256: String,
-}
-
-/// What an explanation said.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SaidView {
-    /// Heading.
-    pub title: String,
-    /// Class of the verdict, for colours.
-    pub verdict_class: &'static str,
-    /// The verdict in a word.
-    pub verdict_word: String,
-    /// The verdict in sentences.
-    pub summary: Vec<String>,
-    /// The fit before and after.
-    pub fit: Vec<FitRow>,
-    /// What adding the effects does to the fit.
-    pub fit_summary: String,
-    /// Figures.
-    pub figures: Vec<FigureView>,
-}
-
-/// Something known from elsewhere.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ReferenceRow {
-    /// What it is.
-    pub what: String,
-    /// Interval.
-    pub known: String,
-    /// What was found, with its interval; empty where nothing was.
-    pub found: String,
-    /// Unit.
-    pub unit: String,
-    /// Where it comes from.
-    pub source: String,
-}
-
-/// A rule.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RuleRow {
-    /// Which explanation it speaks of.
-    pub when: String,
-    /// What must hold.
-    pub must: String,
-    /// What was found.
-    pub found: String,
-    /// Whether it holds, in a word.
-    pub word: String,
-    /// Class of that word, for colours.
-    pub class: &'static str,
-}
-
-/// An inferred course against something that was concealed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CourseRow {
-    /// What it is held against.
-    pub name: String,
-    /// Correlation.
-    pub correlation: String,
-    /// Share of the mean square explained.
-    pub share: String,
-    /// Lag of the largest correlation.
-    pub lag: String,
-    /// Correlation there.
-    pub at_lag: String,
-}
-
-/// A step of the protocol.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StepView {
-    /// What was done.
-    pub what: String,
-    /// Hashes: name and first digits.
-    pub hashes: Vec<Field>,
-}
-
-/// Everything that a proof shows.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ProofView {
-    /// Class of the outcome, for colours.
-    pub outcome_class: &'static str,
-    /// The outcome in a word.
-    pub outcome_word: String,
-    /// Title.
-    pub title: String,
-    /// What is asked.
-    pub question: String,
-    /// The outcome in a sentence.
-    pub summary: String,
-    /// Recording, claim, confinement.
-    pub identity: Vec<Field>,
-    /// What was hidden.
-    pub hidden: Vec<HiddenRow>,
-    /// What was said: while something was concealed, and unveiled.
-    pub said: Vec<SaidView>,
-    /// What is known from elsewhere.
-    pub references: Vec<ReferenceRow>,
-    /// Rules.
-    pub rules: Vec<RuleRow>,
-    /// The inferred course against what was concealed.
-    pub courses: Vec<CourseRow>,
-    /// Figure of that.
-    pub course_figure: Option<FigureView>,
-    /// What was done.
-    pub protocol: Vec<StepView>,
-    /// Files of the folder.
-    pub files: Vec<FileView>,
-    /// Line at the foot of every page.
-    pub footer: String,
-    /// The program with its version.
-    pub generator: String,
-}
 
 impl Documented for ProofRecord {
     fn record(&self) -> Record<'_> {
@@ -156,6 +37,11 @@ impl Documented for ProofRecord {
         Some(self.title.text())
     }
 
+    /// A folder is named after the file of the proof, which the verb knows.
+    fn folder_name(&self) -> Option<&str> {
+        None
+    }
+
     fn made_at(&self) -> &str {
         &self.proved_at
     }
@@ -164,74 +50,162 @@ impl Documented for ProofRecord {
         Some(&self.program.version)
     }
 
-    fn folder_name(&self) -> Option<&str> {
-        None
+    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
+        Contents::Page(pages(self, figures, Translator { lang }))
     }
 
-    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
-        Contents::view("proof", &ProofView::new(self, figures, lang), lang)
+    /// The outcome, what the engine said each time, and each rule with what was found.
+    fn on_terminal(&self, lang: Lang) -> Vec<Block> {
+        let words = Translator { lang };
+        let head = head(self, words);
+        let lead = Lead { id: head.verdict.id.clone(), sentences: vec![summary(self, words)] };
+        let mut out = vec![Block::Head(head), Block::Lead(lead)];
+        for said in Said::all(self, words) {
+            out.push(Block::heading(said.title));
+            out.extend(said.view.summary.into_iter().map(Block::Paragraph));
+        }
+        out.push(Block::heading(words.t("prove.heading.rules")));
+        out.push(Block::Table(rules(&self.rules, words)));
+        out
     }
 }
 
-impl ProofView {
-    /// Builds the view.
-    pub fn new(record: &ProofRecord, figures: &[Figure], lang: Lang) -> ProofView {
-        let words = Translator { lang };
-        let (outcome_class, outcome) = match record.outcome {
-            ProofOutcome::Holds => ("pass", "holds"),
-            ProofOutcome::Fails => ("fail", "fails"),
-        };
-        let failed = record.rules.iter().filter(|r| !r.holds).count();
-        let counts = [("n", count(record.rules.len() as u64, lang)), ("failed", count(failed as u64, lang))];
-        let counts = counts.each_ref().map(|(k, v)| (*k, v.as_str()));
-        let of = |before: &'static str| {
-            let own = figures.iter().enumerate().filter(move |(_, f)| f.id.starts_with(before));
-            own.map(|(i, f)| FigureView::of(f, i + 1, words)).collect::<Vec<_>>()
-        };
-        let course = figures.iter().position(|f| !f.id.starts_with(CONCEALED) && !f.id.starts_with(UNVEILED));
-        let said = |key: &str, explanation: &Explanation, figures| {
+fn pages(record: &ProofRecord, figures: &[Figure], words: Translator) -> Page {
+    let head = head(record, words);
+    let question = record.question.in_language(words.lang.code()).to_owned();
+    let lead = Lead { id: head.verdict.id.clone(), sentences: vec![question, summary(record, words)] };
+    let said = Said::all(record, words);
+    let footer = [record.path.clone(), date_time(&record.proved_at), generator()];
+    let below = |key: &str, below: Vec<Block>| Block::section("", words.t(key), below);
+    let course = |f: &Figure| !f.id.starts_with(CONCEALED) && !f.id.starts_with(UNVEILED);
+    let drawn = drawn(figures, course, words).into_iter().take(1).collect::<Vec<_>>();
+    let steps = Steps { class: "protocol", items: record.protocol.iter().map(|s| step(s, words)).collect() };
+    let protocol = vec![Block::Hint(words.t("prove.hint.protocol")), Block::Steps(steps)];
+    let courses = || {
+        let hint = Block::Hint(words.t("prove.hint.courses"));
+        below("prove.heading.courses", vec![Block::Table(courses(&record.courses, words)), hint])
+    };
+    Page {
+        title: format!("{} · {}", head.kind, head.title),
+        generator: generator(),
+        footer: footer.join(" · "),
+        blocks: [
+            Block::Head(head),
+            Block::Lead(lead),
+            below("prove.heading.rules", vec![Block::Table(rules(&record.rules, words))]),
+            Block::Section("beside", beside(record, &said, words)),
+            Block::SummaryEnd,
+        ]
+        .into_iter()
+        .chain((!record.courses.is_empty()).then(courses))
+        .chain((!drawn.is_empty()).then_some(Block::Section("figures", drawn)))
+        .chain(said.iter().map(|s| s.section(figures, words)))
+        .chain([
+            Block::section(
+                "identity",
+                words.t("prove.heading.facts"),
+                vec![Block::identity(identity(record, words))],
+            ),
+            below("prove.heading.protocol", protocol),
+            below("prove.heading.files", vec![files(words)]),
+        ])
+        .collect(),
+    }
+}
+
+fn head(record: &ProofRecord, words: Translator) -> Head {
+    let (id, outcome) = outcome(record);
+    Head {
+        kind: words.t("prove.kind"),
+        title: record.title.in_language(words.lang.code()).to_owned(),
+        label: words.t("prove.outcome.title"),
+        verdict: State { id: id.to_owned(), word: words.t(&format!("prove.outcome.{outcome}")) },
+        ..Head::default()
+    }
+}
+
+/// Id of the colour of the outcome, and of its words.
+fn outcome(record: &ProofRecord) -> (&'static str, &'static str) {
+    match record.outcome {
+        ProofOutcome::Holds => ("pass", "holds"),
+        ProofOutcome::Fails => ("fail", "fails"),
+    }
+}
+
+fn summary(record: &ProofRecord, words: Translator) -> String {
+    let failed = record.rules.iter().filter(|r| !r.holds).count();
+    let rules = count(record.rules.len() as u64, words.lang);
+    let failed = count(failed as u64, words.lang);
+    let (_, outcome) = outcome(record);
+    words.with(&format!("prove.summary.{outcome}"), &[("n", &rules), ("failed", &failed)])
+}
+
+/// What was hidden, what was said, and what is known from elsewhere.
+fn beside(record: &ProofRecord, said: &[Said], words: Translator) -> Vec<Block> {
+    let is_hidden = !record.hidden.is_empty();
+    let hint = if is_hidden { "prove.hint.hidden" } else { "prove.hint.nothing_hidden" };
+    let hidden = is_hidden.then(|| Block::Table(hidden(&record.hidden, words)));
+    let hidden = hidden.into_iter().chain([Block::Hint(words.t(hint))]).collect();
+    let verdict = |s: &Said| {
+        let state = State { id: s.view.verdict_class.to_owned(), word: s.view.verdict_word.clone() };
+        let heading = Heading { level: 3, text: s.title.clone().into(), verdict: Some(state) };
+        let sentences = s.view.summary.iter().cloned().map(Block::Paragraph);
+        std::iter::once(Block::Heading(heading)).chain(sentences).collect::<Vec<_>>()
+    };
+    let references = || {
+        let table = Block::Table(references(&record.references, words));
+        Block::section("", words.t("prove.heading.true"), vec![table])
+    };
+    [
+        Block::section("", words.t("prove.heading.hidden"), hidden),
+        Block::section("", words.t("prove.heading.said"), said.iter().flat_map(verdict).collect()),
+    ]
+    .into_iter()
+    .chain((!record.references.is_empty()).then(references))
+    .collect()
+}
+
+/// What an explanation said.
+struct Said {
+    title: String,
+    /// Figures of it begin so.
+    before: &'static str,
+    view: ExplainView,
+}
+
+impl Said {
+    /// What was said while something was concealed, and with it shown.
+    fn all(record: &ProofRecord, words: Translator) -> Vec<Said> {
+        let said = |key: &str, explanation: &Explanation, before| {
             let context = Context { explained_at: record.proved_at.clone(), ..Context::default() };
-            let view = ExplainView::new(explanation, &[], &context, lang);
-            SaidView {
+            Said {
                 title: words.t(key),
-                verdict_class: view.verdict_class,
-                verdict_word: view.verdict_word,
-                summary: view.summary,
-                fit: view.fit,
-                fit_summary: view.fit_summary,
-                figures,
+                before,
+                view: ExplainView::new(explanation, &[], &context, words.lang),
             }
         };
         let first = if record.hidden.is_empty() { "prove.when.only" } else { "prove.when.concealed" };
-        let concealed = said(first, &record.concealed, of(CONCEALED));
-        let unveiled = record.unveiled.as_ref().map(|u| said("prove.when.unveiled", u, of(UNVEILED)));
-        let footer = [record.path.clone(), date_time(&record.proved_at), generator()];
-        ProofView {
-            outcome_class,
-            outcome_word: words.t(&format!("prove.outcome.{outcome}")),
-            title: record.title.in_language(lang.code()).to_owned(),
-            question: record.question.in_language(lang.code()).to_owned(),
-            summary: words.with(&format!("prove.summary.{outcome}"), &counts),
-            identity: identity(record, words),
-            hidden: record.hidden.iter().map(|h| hidden(h, words)).collect(),
-            said: std::iter::once(concealed).chain(unveiled).collect(),
-            references: record.references.iter().map(|r| reference(r, words)).collect(),
-            rules: record.rules.iter().map(|r| rule(r, words)).collect(),
-            courses: record.courses.iter().map(|c| course_row(c, words)).collect(),
-            course_figure: course.and_then(|i| Some(FigureView::of(figures.get(i)?, i + 1, words))),
-            protocol: record.protocol.iter().map(|s| step(s, words)).collect(),
-            files: files(words),
-            footer: footer.join(" · "),
-            generator: generator(),
-        }
+        let concealed = said(first, &record.concealed, CONCEALED);
+        let unveiled = record.unveiled.as_ref().map(|u| said("prove.when.unveiled", u, UNVEILED));
+        std::iter::once(concealed).chain(unveiled).collect()
+    }
+
+    /// Its figures, and the fit before and after.
+    fn section(&self, figures: &[Figure], words: Translator) -> Block {
+        let mut below = drawn(figures, |f| f.id.starts_with(self.before), words);
+        below.push(Block::Table(fit_table(&self.view.fit, words)));
+        below.push(Block::Paragraph(self.view.fit_summary.clone()));
+        Block::section("figures", self.title.clone(), below)
     }
 }
 
-fn generator() -> String {
-    format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"))
+/// Some of the figures, each with its number among all.
+fn drawn(figures: &[Figure], of: impl Fn(&Figure) -> bool, words: Translator) -> Vec<Block> {
+    let own = figures.iter().zip(1..).filter(|(f, _)| of(f));
+    own.map(|(f, number)| Block::Figure(Box::new(FigureView::of(f, number, words)))).collect()
 }
 
-fn identity(record: &ProofRecord, words: Translator) -> Vec<Field> {
+fn identity(record: &ProofRecord, words: Translator) -> Vec<(String, String)> {
     let lang = words.lang;
     let recording = &record.recording;
     let length = duration(recording.rows as f64 * recording.sample_interval_s, lang);
@@ -253,79 +227,117 @@ fn identity(record: &ProofRecord, words: Translator) -> Vec<Field> {
         ("prove.fact.claim", words.t(claim)),
         ("prove.fact.engine", words.t(confined)),
     ];
-    let field = |(key, value): (&str, String)| Field { label: words.t(key), value };
-    fields.into_iter().filter(|(_, value)| !value.is_empty()).map(field).collect()
+    fields.map(|(key, value)| (words.t(key), value)).into()
 }
 
-fn hidden(hidden: &crate::record::Hidden, words: Translator) -> HiddenRow {
-    let key = match hidden.what {
-        HiddenKind::Column => "prove.hidden.column",
-        HiddenKind::Added => "prove.hidden.added",
-        HiddenKind::Simulated => "prove.hidden.simulated",
+fn hidden(hidden: &[Hidden], words: Translator) -> Table {
+    let what = |h: &Hidden| {
+        words.t(match h.what {
+            HiddenKind::Column => "prove.hidden.column",
+            HiddenKind::Added => "prove.hidden.added",
+            HiddenKind::Simulated => "prove.hidden.simulated",
+        })
     };
-    HiddenRow { name: hidden.name.clone(), what: words.t(key), sha256: hidden.sha256.clone() }
+    let hash = words.column("prove.fact.sha256");
+    Table::new("", hidden.len())
+        .column(words.column("prove.column.name"), hidden.iter().map(|h| Value::Code(h.name.clone())))
+        .column(words.column("prove.column.what"), hidden.iter().map(what))
+        .column(
+            hash.class("hash").listed(Listed::Below("SHA-256 ".into())),
+            hidden.iter().map(|h| h.sha256.clone()),
+        )
+        .laid_out(Layout::List, Layout::Grid)
 }
 
-fn reference(known: &KnownRecord, words: Translator) -> ReferenceRow {
+/// What is known from elsewhere, and what was found of it.
+fn references(all: &[KnownRecord], words: Translator) -> Table {
     let lang = words.lang;
-    let interval = known.interval.map(|[low, high]| {
-        if low == high {
-            limit_digits(low, 6, lang)
-        } else {
-            format!("{} … {}", limit_digits(low, 6, lang), limit_digits(high, 6, lang))
-        }
-    });
-    let found = known.found.as_ref().map(|f| {
-        let [low, high] = f.ci95.map(|v| digits(v, 4, lang));
-        let value = digits(f.value, 4, lang);
-        words.with("explain.with_interval", &[("value", &value), ("interval", &format!("{low} … {high}"))])
-    });
-    ReferenceRow {
-        what: known.what.in_language(lang.code()).to_owned(),
-        known: interval.unwrap_or_default(),
-        found: found.unwrap_or_default(),
-        unit: known.unit.as_deref().map(|u| words.unit(u)).unwrap_or_default(),
-        source: known.source.in_language(lang.code()).to_owned(),
-    }
+    let unit = |r: &KnownRecord| r.unit.as_deref().map(|u| words.unit(u)).unwrap_or_default();
+    let known = |r: &KnownRecord| {
+        let printed = r.interval.map(|[low, high]| {
+            let ends = [low, high].map(|v| limit_digits(v, 6, lang));
+            if low == high { ends.into_iter().next().unwrap_or_default() } else { ends.join(" … ") }
+        });
+        Quantity { number: None, printed: printed.unwrap_or_default(), unit: unit(r) }
+    };
+    let found = |r: &KnownRecord| {
+        let printed = r.found.as_ref().map(|f| {
+            let interval = f.ci95.map(|v| digits(v, 4, lang)).join(" … ");
+            let value = digits(f.value, 4, lang);
+            words.with("explain.with_interval", &[("value", &value), ("interval", &interval)])
+        });
+        let number = r.found.as_ref().map(|f| f.value);
+        Quantity { number, printed: printed.unwrap_or_default(), unit: unit(r) }
+    };
+    let found_word = words.t("prove.column.found");
+    Table::new("", all.len())
+        .column(words.column("prove.column.quantity"), all.iter().map(|r| r.what.in_language(lang.code())))
+        .column(words.number_column("prove.column.known"), all.iter().map(known))
+        .column(
+            words.number_column("prove.column.found").listed(Listed::Below(format!("{found_word}: "))),
+            all.iter().map(found),
+        )
+        .units(words.t("prove.column.unit"))
+        .column(
+            words.column("prove.column.source").class("hint").listed(Listed::Below(String::new())),
+            all.iter().map(|r| r.source.in_language(lang.code())),
+        )
+        .laid_out(Layout::List, Layout::Grid)
 }
 
-fn rule(rule: &RuleRecord, words: Translator) -> RuleRow {
-    let (class, word) = if rule.holds { ("pass", "prove.rule.holds") } else { ("fail", "prove.rule.fails") };
-    RuleRow {
-        when: words.t(&format!("prove.short.{}", rule.when)),
-        must: rule.must.say(words.lang),
-        found: rule.found.say(words.lang),
-        word: words.t(word),
-        class,
-    }
+fn rules(rules: &[RuleRecord], words: Translator) -> Table {
+    let holds = |r: &RuleRecord| {
+        let (id, key) = if r.holds { ("pass", "prove.rule.holds") } else { ("fail", "prove.rule.fails") };
+        Value::state(id, words.t(key))
+    };
+    Table::new("cards", rules.len())
+        .column(
+            words.column("prove.column.must"),
+            rules.iter().map(|r| Value::Sentence(r.must.say(words.lang))),
+        )
+        .column(
+            words.column("prove.column.when").on_terminal(OnTerminal::Bracketed),
+            rules.iter().map(|r| words.t(&format!("prove.short.{}", r.when))),
+        )
+        .column(
+            words.column("prove.column.found"),
+            rules.iter().map(|r| Value::Sentence(r.found.say(words.lang))),
+        )
+        .column(words.column("prove.column.holds"), rules.iter().map(holds))
 }
 
-fn course_row(course: &CourseRecord, words: Translator) -> CourseRow {
+/// Inferred courses, each against something that was concealed.
+fn courses(courses: &[CourseRecord], words: Translator) -> Table {
     let lang = words.lang;
-    let share = course.recovered_share.unwrap_or(course.correlation * course.correlation);
-    CourseRow {
-        name: course.name.clone(),
-        correlation: digits(course.correlation, 3, lang),
-        share: super::number::percent(share, lang),
-        lag: duration(course.lag_s, lang),
-        at_lag: digits(course.correlation_at_lag, 3, lang),
-    }
+    let share = |c: &CourseRecord| percent(c.recovered_share.unwrap_or(c.correlation * c.correlation), lang);
+    Table::new("cards", courses.len())
+        .column(words.column("prove.column.name"), courses.iter().map(|c| Value::Code(c.name.clone())))
+        .column(
+            words.number_column("prove.column.correlation"),
+            courses.iter().map(|c| digits(c.correlation, 3, lang)),
+        )
+        .column(words.number_column("prove.column.share"), courses.iter().map(share))
+        .column(words.number_column("prove.column.lag"), courses.iter().map(|c| duration(c.lag_s, lang)))
+        .column(
+            words.number_column("prove.column.at_lag"),
+            courses.iter().map(|c| digits(c.correlation_at_lag, 3, lang)),
+        )
 }
 
-fn step(step: &crate::record::ProtocolStep, words: Translator) -> StepView {
-    let hash = |(name, hash): (&String, &String)| Field { label: name.clone(), value: hash.clone() };
-    StepView {
-        what: words.t(&format!("prove.step.{}", step.step)),
+fn step(step: &ProtocolStep, words: Translator) -> Step {
+    let hash = |(name, hash): (&String, &String)| (name.clone(), hash.clone());
+    Step {
+        text: words.t(&format!("prove.step.{}", step.step)),
         hashes: step.sha256.iter().map(hash).collect(),
     }
 }
 
-fn files(words: Translator) -> Vec<FileView> {
+fn files(words: Translator) -> Block {
     let rows = [
         ("proof.json", "prove.wrote.for_programs"),
         ("model.toml", "prove.wrote.claim"),
         ("report.html", "prove.wrote.page"),
         ("report.md", "prove.wrote.markdown"),
     ];
-    rows.map(|(name, key)| FileView { name: name.to_owned(), what: words.t(key) }).to_vec()
+    Block::files(rows.map(|(name, key)| (name.to_owned(), words.t(key))))
 }

@@ -5,7 +5,6 @@
 mod datasheet;
 mod explanation;
 mod history;
-mod proof;
 mod run;
 mod screen;
 pub(super) mod table;
@@ -14,7 +13,6 @@ mod wrap;
 pub use datasheet::datasheet;
 pub use explanation::explanation;
 pub use history::history;
-pub use proof::proof;
 pub use run::run;
 pub use screen::Terminal;
 pub(super) use screen::verdict_style;
