@@ -10,7 +10,7 @@ use crate::record::explanation::{self, MismatchVerdict};
 use crate::report::explain::{Context, ExplainView};
 use crate::report::export::Exporter;
 use crate::report::terminal::{self, Terminal};
-use crate::report::{Document, ExplanationResults, Results};
+use crate::report::{ExplanationResults, Results};
 use crate::simulate::{Order, Over, Rows, SimulateError, Simulation};
 use chrono::SecondsFormat;
 use std::path::Path;

@@ -223,11 +223,6 @@ impl<'a> Document<'a> {
     }
 }
 
-/// The program with its version.
-pub(super) fn generator() -> String {
-    format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"))
-}
-
 impl Documented for RunRecord {
     fn record(&self) -> Record<'_> {
         Record::Run(self)

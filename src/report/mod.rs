@@ -32,7 +32,9 @@ pub mod view;
 pub use document::{Contents, Document, Documented, PageForm, Record};
 pub use figure_file::FIGURES_FILE;
 pub use render::{Renderer, ReportError, render_html, render_markdown};
-pub use results::{ALTERNATIVES_FILE, ExplanationResults, JointResults, OtherResults, Results, RunResults, StoredResults};
+pub use results::{
+    ALTERNATIVES_FILE, ExplanationResults, JointResults, OtherResults, Results, RunResults, StoredResults,
+};
 
 use crate::figure::Figure;
 use crate::i18n::Lang;
@@ -59,6 +61,11 @@ pub fn file_name(id: &str) -> String {
         .map(|c| if c.is_alphanumeric() || matches!(c, '_' | '-' | '.' | '@') { c } else { '-' })
         .collect();
     format!("{}.svg", stem.trim_start_matches('.'))
+}
+
+/// The program with its version.
+fn generator() -> String {
+    format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"))
 }
 
 #[cfg(test)]

@@ -132,7 +132,7 @@ impl ExplainView {
     pub fn new(all: &Explanation, figures: &[Figure], context: &Context, lang: Lang) -> ExplainView {
         let words = Translator { lang };
         let (verdict_class, verdict_word) = print::verdict(all.verdict, words);
-        let generator = format!("{} {}", env!("CARGO_PKG_NAME"), env!("CARGO_PKG_VERSION"));
+        let generator = super::generator();
         let title = if all.case.is_empty() { context.recording.clone() } else { all.case.clone() };
         let effects = all.effects.iter().enumerate();
         let footer = [date_time(&context.explained_at), generator.clone()];

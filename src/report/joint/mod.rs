@@ -5,8 +5,9 @@ mod sentence;
 
 pub use super::files::{JointContext, JointFile};
 
-use super::document::{Contents, Documented, Record, generator};
+use super::document::{Contents, Documented, Record};
 use super::explain::print::{capital, difference, parameter, title, value, verdict};
+use super::generator;
 use super::number::{date_time, digits};
 use super::page::{Block, Head, Layout, Lead, Listed, Page, Quantity, State, Table, Value};
 use super::translator::Translator;

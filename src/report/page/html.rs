@@ -22,6 +22,10 @@ impl Markup for Html {
         format!("<code>{}</code>", escape(name))
     }
 
+    fn digest(&self, digest: &str) -> String {
+        format!("<span class=\"hash\">{}</span>", escape(digest))
+    }
+
     fn named(&self, text: &str, id: &str) -> String {
         format!("{} {}", escape(text), self.code(id))
     }

@@ -29,6 +29,10 @@ impl Markup for Markdown {
         format!("{fence} {name} {fence}")
     }
 
+    fn digest(&self, digest: &str) -> String {
+        self.code(digest)
+    }
+
     fn named(&self, text: &str, id: &str) -> String {
         format!("{} ({})", self.text(text), self.code(id))
     }

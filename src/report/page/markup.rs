@@ -14,6 +14,8 @@ pub trait Markup {
     fn sentence(&self, text: &str) -> String;
     /// A name as files have it.
     fn code(&self, name: &str) -> String;
+    /// A digest of a file.
+    fn digest(&self, digest: &str) -> String;
     /// A text, and the id that files have for it.
     fn named(&self, text: &str, id: &str) -> String;
     /// A text that leads to another page.
@@ -32,6 +34,7 @@ pub trait Markup {
             Value::Text(text) => self.text(text),
             Value::Sentence(text) => self.sentence(text),
             Value::Code(name) => self.code(name),
+            Value::Digest(digest) => self.digest(digest),
             Value::Named { text, id } => self.named(text, id),
             Value::Link { text, to } => self.link(text, to),
             Value::State(state) => self.state(state),
@@ -86,7 +89,7 @@ fn block(block: &Block, markup: &dyn Markup) -> Seen {
         Block::Steps(steps) => {
             let item = |step: &super::block::Step| {
                 let hash = |(name, hash): &(String, String)| {
-                    context! { name => escaped(markup.code(name)), hash => escaped(markup.text(hash)) }
+                    context! { name => escaped(markup.code(name)), hash => escaped(markup.digest(hash)) }
                 };
                 let hashes: Vec<Seen> = step.hashes.iter().map(hash).collect();
                 context! { text => escaped(markup.text(&step.text)), hashes }

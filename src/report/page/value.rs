@@ -12,6 +12,8 @@ pub enum Value {
     Sentence(String),
     /// A name as files have it.
     Code(String),
+    /// A digest of a file, such as its SHA-256.
+    Digest(String),
     /// A text, and the id that files have for it. A terminal shows the text alone.
     Named {
         /// Text.
@@ -76,7 +78,9 @@ impl Value {
     pub fn plain(&self) -> String {
         match self {
             Value::Empty => String::new(),
-            Value::Text(text) | Value::Sentence(text) | Value::Code(text) => text.clone(),
+            Value::Text(text) | Value::Sentence(text) | Value::Code(text) | Value::Digest(text) => {
+                text.clone()
+            }
             Value::Named { text, .. } | Value::Link { text, .. } => text.clone(),
             Value::State(state) => state.word.clone(),
             Value::Quantity(quantity) => quantity.whole(),

@@ -7,7 +7,8 @@ pub use super::files::{PlanContext, PlanFile};
 
 use sentence::step;
 
-use super::document::{Contents, Documented, Record, generator};
+use super::document::{Contents, Documented, Record};
+use super::generator;
 use super::number::{date_time, digits, limit_digits, percent};
 use super::page::{Block, Column, Head, Lead, OnTerminal, Page, State, Step, Steps, Table, Value};
 use super::translator::Translator;

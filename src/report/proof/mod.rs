@@ -1,7 +1,8 @@
 //! The document of a proof: what was hidden, what was said, what was true, side by side.
 
-use super::document::{Contents, Documented, Record, generator};
+use super::document::{Contents, Documented, Record};
 use super::explain::{ExplainView, fit_table};
+use super::generator;
 use super::number::{count, date_time, digits, duration, limit_digits, percent};
 use super::page::{
     Block, Head, Heading, Layout, Lead, Listed, OnTerminal, Page, Quantity, State, Step, Steps, Table, Value,
@@ -244,7 +245,7 @@ fn hidden(hidden: &[Hidden], words: Translator) -> Table {
         .column(words.column("prove.column.what"), hidden.iter().map(what))
         .column(
             hash.class("hash").listed(Listed::Below("SHA-256 ".into())),
-            hidden.iter().map(|h| h.sha256.clone()),
+            hidden.iter().map(|h| Value::Digest(h.sha256.clone())),
         )
         .laid_out(Layout::List, Layout::Grid)
 }
