@@ -1,11 +1,10 @@
 //! The help and the complaints of the command line in the language of the user.
 //!
-//! The texts of the derived command are English; for another language each is replaced by its entry in the locale
-//! tables: `help.<verb>.about`, `help.<verb>.after`, `help.<verb>.arg.<id>`, `help.<verb>.value.<id>.<word>`, with
-//! `sagnac` for the program itself and `help.common` for what every verb has. The English entries repeat the texts of the
-//! command; the tests hold the two together.
+//! The English texts stand in the derived command and nowhere else. Another language translates each in its table `help_text`, whose keys
+//! are the English texts: one that changes has no translation until it is translated anew, and a test says so.
 
 use crate::i18n::{Lang, Localize, Note, lookup};
+use clap::builder::Str;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, Error};
 use std::ffi::OsString;
@@ -32,118 +31,98 @@ pub fn command(command: Command, lang: Lang) -> Command {
     if lang == Lang::En { command } else { translated(command, "sagnac", lang) }
 }
 
-/// The text of a key; `None` where the tables lack it, so that the English text stays.
-fn words(lang: Lang, key: &str) -> Option<&'static str> {
-    lookup(lang, key)
+/// The translation of an English text; `None` where the language has none, so that the English text stays.
+fn entry(english: &str, lang: Lang) -> Option<&'static str> {
+    lookup(lang, &format!("help_text.{english}"))
 }
 
-fn translated(command: Command, path: &str, lang: Lang) -> Command {
-    let of = |key: &str| words(lang, &format!("help.{path}.{key}"));
-    let common = |key: &str| words(lang, &format!("help.common.{key}")).unwrap_or_default();
+/// An English text in a language.
+fn translation(english: &str, lang: Lang) -> String {
+    entry(english, lang).unwrap_or(english).to_owned()
+}
+
+/// The lines of a text in a language; a command that a line shows has no translation.
+fn lines_translated(english: &str, lang: Lang) -> String {
+    let line = |line: &str| {
+        let text = line.trim_start();
+        line.replace(text, &translation(text, lang))
+    };
+    english.lines().map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// A command, called by its name behind those above it, and all below it.
+fn translated(command: Command, called: &str, lang: Lang) -> Command {
+    let own = |english: &'static str| entry(english, lang).unwrap_or(english);
     let mut command = command
         .help_template(format!(
             "{{before-help}}{{about-with-newline}}\n{}: {{usage}}\n\n{{all-args}}{{after-help}}",
-            common("usage")
+            own("Usage")
         ))
-        .subcommand_help_heading(common("commands"))
+        .subcommand_help_heading(own("Commands"))
         .disable_help_flag(true)
-        .disable_help_subcommand(true);
-    if let Some(about) = of("about") {
-        command = command.about(about);
+        .disable_help_subcommand(true)
+        .mut_args(|arg| argument(arg, lang));
+    if let Some(about) = command.get_about().map(ToString::to_string) {
+        command = command.about(translation(&about, lang));
     }
-    if let Some(after) = of("after") {
-        command = command.after_help(after.trim_start());
-    }
-    let ids: Vec<String> = command.get_arguments().map(|a| a.get_id().to_string()).collect();
-    for id in &ids {
-        // `--lang` is global and stands in one place of the tables.
-        let text = if id == "lang" { words(lang, "help.common.lang") } else { of(&format!("arg.{id}")) };
-        command = command.mut_arg(id, |arg| argument(arg, text, path, lang, &common));
+    if let Some(after) = command.get_after_help().map(ToString::to_string) {
+        command = command.after_help(lines_translated(&after, lang));
     }
     // What the library would add by itself is English.
-    command = command.arg(flag("help", 'h', ArgAction::Help, &common));
-    if path == "sagnac" {
-        command = command.disable_version_flag(true).arg(flag("version", 'V', ArgAction::Version, &common));
+    let flag = |name: &'static str, short, action, text| {
+        let arg = Arg::new(name).short(short).long(name).action(action);
+        arg.help(own(text)).help_heading(own("Options"))
+    };
+    command = command.arg(flag("help", 'h', ArgAction::Help, "Print help"));
+    if called == "sagnac" {
+        let version = flag("version", 'V', ArgAction::Version, "Print version");
+        command = command.disable_version_flag(true).arg(version);
     }
-    let usage = usage(&command, path, &common);
-    command = command.override_usage(usage);
-    let names: Vec<String> = command.get_subcommands().map(|c| c.get_name().to_owned()).collect();
-    for name in names {
-        command = command.mut_subcommand(&name, |below| translated(below, &below_path(path, &name), lang));
-    }
-    command
-}
-
-/// Path of the entries of a verb: its name, behind that of the verb that it is below.
-fn below_path(path: &str, name: &str) -> String {
-    if path == "sagnac" { name.to_owned() } else { format!("{path}_{name}") }
-}
-
-fn flag(name: &'static str, short: char, action: ArgAction, common: &dyn Fn(&str) -> &'static str) -> Arg {
-    let arg = Arg::new(name).short(short).long(name).action(action);
-    arg.help(common(name)).help_heading(common("options"))
+    let usage = usage(&command, called, lang);
+    command.override_usage(usage).mut_subcommands(|below| {
+        let called = format!("{called} {}", below.get_name());
+        translated(below, &called, lang)
+    })
 }
 
 /// The line that shows how the command is written.
-fn usage(command: &Command, path: &str, common: &dyn Fn(&str) -> &'static str) -> String {
-    let mut out =
-        if path == "sagnac" { path.to_owned() } else { format!("sagnac {}", path.replace('_', " ")) };
-    out.push_str(&format!(" [{}]", common("usage_options")));
+fn usage(command: &Command, called: &str, lang: Lang) -> String {
+    let mut out = format!("{called} [{}]", translation("OPTIONS", lang));
     for arg in command.get_positionals() {
         out.push_str(&format!(" {arg}"));
     }
     if command.has_subcommands() {
-        out.push_str(&format!(" <{}>", common("usage_command")));
+        out.push_str(&format!(" <{}>", translation("COMMAND", lang)));
     }
     out
 }
 
-fn argument(
-    arg: Arg,
-    text: Option<&'static str>,
-    path: &str,
-    lang: Lang,
-    common: &dyn Fn(&str) -> &'static str,
-) -> Arg {
-    let positional = arg.is_positional();
-    let id = arg.get_id().to_string();
-    // The only heading of its own is that of the options for reading.
-    let own = arg.get_help_heading().is_some();
-    let heading = if positional {
-        "arguments"
-    } else if own {
-        "how_read"
-    } else {
-        "options"
-    };
-    let mut arg = arg.help_heading(common(heading));
-    let Some(text) = text else { return arg };
-    let mut help = text.to_owned();
-    if arg.get_action().takes_values() {
-        let shown =
-            arg.get_value_names().and_then(|names| names.first()).map_or(id.clone(), ToString::to_string);
-        if let Some(name) = words(lang, &format!("help.value_name.{}", shown.to_lowercase())) {
-            arg = arg.value_name(name);
-        }
-        let values: Vec<String> = arg
-            .get_possible_values()
-            .iter()
-            .map(|v| match words(lang, &format!("help.{path}.value.{id}.{}", v.get_name())) {
-                Some(meaning) if meaning != v.get_name() => format!("{} ({meaning})", v.get_name()),
-                _ => v.get_name().to_owned(),
-            })
-            .collect();
-        if !values.is_empty() {
-            help.push_str(&format!(" [{}: {}]", common("values"), values.join(", ")));
-        }
-        let default: Vec<String> =
-            arg.get_default_values().iter().map(|v| v.to_string_lossy().into_owned()).collect();
-        if !default.is_empty() {
-            help.push_str(&format!(" [{}: {}]", common("default"), default.join(", ")));
-        }
-        arg = arg.hide_possible_values(true).hide_default_value(true);
+fn argument(arg: Arg, lang: Lang) -> Arg {
+    let default_heading = if arg.is_positional() { "Arguments" } else { "Options" };
+    let own_heading = arg.get_help_heading().filter(|_| !arg.is_positional());
+    let heading = entry(own_heading.unwrap_or(default_heading), lang).unwrap_or(default_heading);
+    let mut help = arg.get_help().map(|text| translation(&text.to_string(), lang)).unwrap_or_default();
+    if !arg.get_action().takes_values() {
+        return arg.help_heading(heading).help(help);
     }
-    arg.help(help)
+    let name = |english: &Str| entry(english, lang).map_or_else(|| english.clone(), Str::from);
+    let names: Vec<Str> = arg.get_value_names().unwrap_or_default().iter().map(name).collect();
+    let values = arg.get_possible_values();
+    let values = values.iter().map(|value| match value.get_help() {
+        Some(meaning) => format!("{} ({})", value.get_name(), translation(&meaning.to_string(), lang)),
+        None => value.get_name().to_owned(),
+    });
+    let defaults = arg.get_default_values().iter().map(|value| value.to_string_lossy().into_owned());
+    let lists: [(&str, Vec<String>); 2] =
+        [("possible values", values.collect()), ("default", defaults.collect())];
+    for (title, list) in lists.iter().filter(|(_, list)| !list.is_empty()) {
+        help.push_str(&format!(" [{}: {}]", translation(title, lang), list.join(", ")));
+    }
+    arg.help_heading(heading)
+        .help(help)
+        .value_names(names)
+        .hide_possible_values(true)
+        .hide_default_value(true)
 }
 
 /// Says why the arguments cannot be used, or shows the help that was asked for.

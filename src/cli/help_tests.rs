@@ -1,63 +1,65 @@
 use super::*;
 use clap::CommandFactory;
+use std::collections::BTreeSet;
 
 fn has_cyrillic(text: &str) -> bool {
     text.chars().any(|c| matches!(c, 'а'..='я' | 'А'..='Я' | 'ё'))
 }
 
-/// Every command with the path of its entries in the tables.
-fn walk(command: &Command, path: &str, out: &mut Vec<(String, Command)>) {
-    out.push((path.to_owned(), command.clone()));
-    for below in command.get_subcommands() {
-        walk(below, &below_path(path, below.get_name()), out);
-    }
-}
-
+/// Every command of a language with how it is called.
 fn all(lang: Lang) -> Vec<(String, Command)> {
+    fn walk(command: &Command, called: &str, out: &mut Vec<(String, Command)>) {
+        out.push((called.to_owned(), command.clone()));
+        for below in command.get_subcommands() {
+            walk(below, &format!("{called} {}", below.get_name()), out);
+        }
+    }
     let mut out = vec![];
     walk(&command(super::super::Cli::command(), lang), "sagnac", &mut out);
     out
 }
 
-#[test]
-fn the_english_entries_are_the_texts_of_the_command() {
-    let mut seen = 0;
-    for (path, command) in all(Lang::En) {
-        let entry = |key: &str| lookup(Lang::En, &format!("help.{path}.{key}")).map(str::trim);
-        let shown = |text: Option<&clap::builder::StyledStr>| text.map(|t| t.to_string().trim().to_owned());
-        assert_eq!(entry("about"), shown(command.get_about()).as_deref(), "{path}");
-        assert_eq!(entry("after"), shown(command.get_after_help()).as_deref(), "{path}");
+/// Every English text that needs a translation: those of the derived command, and those that this module adds.
+fn english_texts() -> BTreeSet<String> {
+    let added = ["Usage", "OPTIONS", "COMMAND", "Commands", "Arguments", "Options", "Print help"];
+    let added = added.into_iter().chain(["Print version", "possible values", "default"]);
+    let mut texts: BTreeSet<String> = added.map(str::to_owned).collect();
+    for (_, command) in all(Lang::En) {
+        texts.extend(command.get_about().map(ToString::to_string));
+        let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
+        texts.extend(after.lines().map(|line| line.trim_start().to_owned()));
         for arg in command.get_arguments() {
-            let id = arg.get_id().as_str();
-            let entry =
-                if id == "lang" { lookup(Lang::En, "help.common.lang") } else { entry(&format!("arg.{id}")) };
-            assert_eq!(entry, shown(arg.get_help()).as_deref(), "{path} {id}");
-            seen += 1;
-            for value in arg.get_possible_values() {
-                let key = format!("help.{path}.value.{id}.{}", value.get_name());
-                let said = value.get_help().map(ToString::to_string);
-                assert_eq!(lookup(Lang::En, &key).map(str::to_owned), said, "{key}");
+            texts.extend(arg.get_help().map(ToString::to_string));
+            texts.extend(arg.get_help_heading().map(str::to_owned));
+            if arg.get_action().takes_values() {
+                texts.extend(arg.get_value_names().unwrap_or_default().iter().map(ToString::to_string));
             }
+            let values = arg.get_possible_values();
+            texts.extend(values.iter().filter_map(|value| value.get_help().map(ToString::to_string)));
         }
     }
-    assert!(seen > 20, "only {seen} arguments were seen");
+    texts
+}
+
+/// True for a line that stays as it is: an empty one, a command, the name of a file.
+fn is_the_same_everywhere(text: &str) -> bool {
+    text.is_empty() || text.starts_with("sagnac ") || (text.ends_with(".json") && !text.contains(' '))
 }
 
 #[test]
-fn every_entry_of_the_tables_belongs_to_the_command() {
-    let commands = all(Lang::En);
-    for key in crate::i18n::table(Lang::En).keys().filter_map(|k| k.strip_prefix("help.")) {
-        let Some((path, rest)) = key.split_once('.') else { panic!("{key}") };
-        if matches!(path, "common" | "error" | "value_name") {
-            continue;
-        }
-        let command = commands.iter().find(|c| c.0 == path).map(|c| &c.1);
-        let command = command.unwrap_or_else(|| panic!("no command `{path}`"));
-        let id = rest.split('.').nth(1);
-        let known = matches!(rest, "about" | "after")
-            || command.get_arguments().any(|a| Some(a.get_id().as_str()) == id);
-        assert!(known, "nothing uses help.{key}");
+fn every_text_of_the_command_has_a_translation_and_none_is_left_over() {
+    let texts = english_texts();
+    assert!(texts.len() > 200, "only {} texts were found", texts.len());
+    for lang in Lang::ALL.iter().filter(|lang| **lang != Lang::En) {
+        let keys = crate::i18n::table(*lang).keys().filter_map(|key| key.strip_prefix("help_text."));
+        let keys: BTreeSet<String> = keys.map(str::to_owned).collect();
+        let missing: Vec<&String> =
+            texts.difference(&keys).filter(|text| !is_the_same_everywhere(text)).collect();
+        assert!(missing.is_empty(), "{lang:?} has no translation of {missing:#?}");
+        let left_over: Vec<&String> = keys.difference(&texts).collect();
+        assert!(left_over.is_empty(), "{lang:?} translates what the command does not say: {left_over:#?}");
     }
+    assert!(!crate::i18n::table(Lang::En).keys().any(|key| key.starts_with("help_text.")));
 }
 
 #[test]

@@ -77,7 +77,7 @@ struct Cli {
 enum Verb {
     /// Run a test procedure on a recording and write the acceptance report
     #[command(
-        after_help = "Example:\n  sagnac run procedures/static-bias.toml unit-0042.csv.gz --limits procedures/limits/sample-unit.toml \
+        after_help = "Examples:\n  sagnac run procedures/static-bias.toml unit-0042.csv.gz --limits procedures/limits/sample-unit.toml \
         --serial SN-0042 --operator \"A. Ivanova\" --out reports/SN-0042\n  \
         sagnac run static-bias 'lot-7/*.csv' --each --limits sample-unit --out reports/lot-7"
     )]

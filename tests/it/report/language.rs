@@ -15,14 +15,7 @@ use std::process::Command;
 /// file's and is not looked at.
 const LATIN: &[&str] = &[
     // Verbs, options and their words.
-    "approve",
-    "closed",
-    "loop",
     "proof",
-    "proofs",
-    "prove",
-    "proved",
-    "ramp",
     "approved",
     "dcc",
     "key",
@@ -34,7 +27,6 @@ const LATIN: &[&str] = &[
     "reason",
     "reviewed",
     "sign",
-    "signers",
     "tested",
     "to",
     "waive",
@@ -42,10 +34,7 @@ const LATIN: &[&str] = &[
     "Ed",
     "OpenSSH",
     "SUMS",
-    "allowed",
     "ed",
-    "first",
-    "half",
     "instability",
     "lead",
     "pub",
@@ -115,13 +104,6 @@ const LATIN: &[&str] = &[
     "store",
     "SAGNAC",
     "STORE",
-    "srv",
-    "OIUS",
-    "import",
-    "recordings",
-    "verify",
-    "history",
-    "since",
     "common",
     "yes",
     "no",
@@ -161,10 +143,6 @@ const LATIN: &[&str] = &[
     "degC",
     "run",
     "check",
-    "inspect",
-    "analyze",
-    "schema",
-    "procedure",
     "procedures",
     "static",
     "bias",
@@ -173,27 +151,13 @@ const LATIN: &[&str] = &[
     "csv",
     "SN",
     "reports",
-    "report",
-    "lang",
-    "html",
     "templates",
-    "parquet",
-    "gyro",
     "x",
-    "analysis",
-    "selftest",
     "simulate",
     "simulated",
-    "samples",
     "model",
-    "seed",
-    "like",
     "effects",
-    "step",
-    "compare",
     "comparison",
-    "published",
-    "txt",
     "ru",
     "V",
     "y",
@@ -230,40 +194,24 @@ const LATIN: &[&str] = &[
     "ln",
     "P",
     "explain",
-    "explained",
-    "simulation",
-    "hide",
     "temp",
     "ADAPT",
     "CI",
-    "acceptance",
-    "bash",
-    "completion",
-    "completions",
-    "demo",
     "each",
     "from",
     "index",
     "init",
     "join",
-    "local",
     "lot",
-    "datasheet",
-    "sheet",
-    "man",
-    "mine",
-    "share",
-    "show",
     "alternatives",
-    "budget",
-    "next",
     "plan",
     "schedule",
     "joint",
-    "monday",
-    "tuesday",
-    "wednesday",
 ];
+
+/// Prefix of the translations of the help. They have their English text for a key; the command itself holds it, and its tests compare
+/// the two.
+const HELP_TEXT: &str = "help_text.";
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
@@ -278,7 +226,6 @@ const SAME: &[&str] = &[
     "history.column.cpk",
     "history.index",
     "store_finding.unreadable",
-    "help.schema.value.kind.datasheet",
     "explain.noticeable.at",
     "explain.noticeable.beyond",
     "explain.noticeable.parameter",
@@ -315,7 +262,6 @@ const SAME: &[&str] = &[
     "note.required.held",
     "selftest.from.sp1065",
     "selftest.from.iso_14253",
-    "help.schema.value.kind.result",
     "inspect.unit_guessed",
     "dimension.power",
     "cli.of_option",
@@ -333,8 +279,6 @@ const SAME: &[&str] = &[
     "explain.fit.log_likelihood",
     "explain.plus_minus",
     "explain.with_interval",
-    "help.schema.value.kind.explain",
-    "help.schema.value.kind.plan",
     "reason.with_interval",
     "terminal.condition_plain",
 ];
@@ -377,7 +321,8 @@ fn both_tables_have_the_same_keys_and_arguments() {
     let (en, ru) = (table(Lang::En), table(Lang::Ru));
     let missing: Vec<&String> = en.keys().filter(|k| !ru.contains_key(*k)).collect();
     assert!(missing.is_empty(), "not in Russian: {missing:#?}");
-    let idle: Vec<&String> = ru.keys().filter(|k| !en.contains_key(*k)).collect();
+    let idle: Vec<&String> =
+        ru.keys().filter(|k| !en.contains_key(*k) && !k.starts_with(HELP_TEXT)).collect();
     assert!(idle.is_empty(), "in Russian only: {idle:#?}");
     for (key, english) in en {
         // In English the TOML parser is quoted; in Russian its faults have words of their own.
@@ -404,7 +349,8 @@ fn nothing_is_left_untranslated() {
             continue;
         }
         let same = SAME.iter().any(|s| key == s || (s.ends_with('.') && key.starts_with(s)));
-        if !same && *russian == en[key] {
+        let english = key.strip_prefix(HELP_TEXT).unwrap_or_else(|| &en[key]);
+        if !same && russian == english {
             latin.push(format!("{key} is the same in both languages: {russian}"));
         }
         let foreign = if key == "language.code" { vec![] } else { strangers(&prose(russian)) };

@@ -126,9 +126,6 @@ const OPEN: &[&str] = &[
     "history.rule",
 ];
 
-/// A table that the tests of the command line hold against the command itself.
-const HELP: &str = "help";
-
 /// Dotted names in the sources that only look like keys: tables of procedures.
 const NO_KEYS: &[&str] = &[
     "measurand.options",
@@ -243,7 +240,7 @@ fn no_key_is_idle() {
                     .strip_prefix("figure.caption.")
                     .is_some_and(|f| words.contains(&format!("figure.title.{f}")));
             let effects = of_effects(key);
-            !(prefix == HELP || keys.contains(*key) || listed || measurand || open || built || effects)
+            !(keys.contains(*key) || listed || measurand || open || built || effects)
         })
         .collect();
     assert!(idle.is_empty(), "in the table, but nothing uses them: {idle:?}");
