@@ -4,11 +4,22 @@
 //! are the English texts: one that changes has no translation until it is translated anew, and a test says so.
 
 use crate::i18n::{Lang, Localize, Note, lookup};
+use anstream::adapter::strip_str;
 use clap::builder::Str;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, Error};
 use std::ffi::OsString;
 use std::process::ExitCode;
+
+/// Headings of the list of verbs: the first verb below a heading, and the heading. Verbs stand in the order of their declaration.
+const HEADINGS: &[(&str, &str)] = &[
+    ("inspect", "Look"),
+    ("init", "Test"),
+    ("explain", "Understand"),
+    ("datasheet", "Lots"),
+    ("sign", "Sign"),
+    ("demo", "Program"),
+];
 
 /// The language that the arguments ask for, or else the locale. It is needed before the arguments are parsed, for the
 /// help and for the complaints about them.
@@ -26,9 +37,35 @@ pub fn language(arguments: &[OsString]) -> Lang {
     asked.unwrap_or_else(|| Lang::of_locale(|name| std::env::var(name).ok()))
 }
 
-/// The command with its texts in a language.
+/// The command with its texts in a language, its verbs below headings.
 pub fn command(command: Command, lang: Lang) -> Command {
-    if lang == Lang::En { command } else { translated(command, "sagnac", lang) }
+    let command = if lang == Lang::En { command } else { translated(command, "sagnac", lang) };
+    let style = *command.get_styles().get_header();
+    let heading = |text: &str| format!("{style}{}:{style:#}", translation(text, lang));
+    let template = format!(
+        "{{before-help}}{{about-with-newline}}\n{} {{usage}}\n\n{}\n{}\n{{options}}{{after-help}}",
+        heading("Usage"),
+        verbs_below_headings(&command, &heading),
+        heading("Options"),
+    );
+    command.help_template(template)
+}
+
+/// The list of verbs, a heading above the first of each group.
+fn verbs_below_headings(command: &Command, heading: &dyn Fn(&str) -> String) -> String {
+    let list = command.clone().help_template("{subcommands}").render_help().ansi().to_string();
+    let mut out = String::new();
+    for line in list.lines() {
+        // A line that goes on with the text of a verb is indented further.
+        let plain = strip_str(line).to_string();
+        let verb = plain.strip_prefix("  ").and_then(|rest| rest.split(' ').next());
+        if let Some((_, text)) = HEADINGS.iter().find(|(first, _)| verb == Some(first)) {
+            let before = if out.is_empty() { "" } else { "\n" };
+            out.push_str(&format!("{before}{}\n", heading(text)));
+        }
+        out.push_str(&format!("{line}\n"));
+    }
+    out
 }
 
 /// The translation of an English text; `None` where the language has none, so that the English text stays.

@@ -73,8 +73,23 @@ struct Cli {
     verb: Verb,
 }
 
+/// The verbs in the order of the help, below the headings of `help.rs`.
 #[derive(Debug, Subcommand)]
 enum Verb {
+    /// Show what a recording contains and which tests it supports
+    #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]
+    Inspect(inspect::InspectArgs),
+    /// Analyse the noise of a recording without a procedure
+    #[command(
+        after_help = "Example:\n  sagnac analyze unit-0042.csv --rate gyro_x --unit deg/s --out analysis-0042"
+    )]
+    Analyze(analyze::AnalyzeArgs),
+    /// Write a procedure, limits and a CI example for a recording
+    #[command(after_help = "Example:\n  sagnac init unit-0042.csv --out acceptance")]
+    Init(init::InitArgs),
+    /// Validate procedures and limits without data, and report what they cannot decide
+    #[command(after_help = "Example:\n  sagnac check 'procedures/**/*.toml'")]
+    Check(check::CheckArgs),
     /// Run a test procedure on a recording and write the acceptance report
     #[command(
         after_help = "Examples:\n  sagnac run procedures/static-bias.toml unit-0042.csv.gz --limits procedures/limits/sample-unit.toml \
@@ -82,51 +97,11 @@ enum Verb {
         sagnac run static-bias 'lot-7/*.csv' --each --limits sample-unit --out reports/lot-7"
     )]
     Run(run_args::RunArgs),
-    /// Validate procedures and limits without data, and report what they cannot decide
-    #[command(after_help = "Example:\n  sagnac check 'procedures/**/*.toml'")]
-    Check(check::CheckArgs),
-    /// Show what a recording contains and which tests it supports
-    #[command(after_help = "Example:\n  sagnac inspect unit-0042.parquet")]
-    Inspect(inspect::InspectArgs),
-    /// Write a procedure, limits and a CI example for a recording
-    #[command(after_help = "Example:\n  sagnac init unit-0042.csv --out acceptance")]
-    Init(init::InitArgs),
-    /// Analyse the noise of a recording without a procedure
-    #[command(
-        after_help = "Example:\n  sagnac analyze unit-0042.csv --rate gyro_x --unit deg/s --out analysis-0042"
-    )]
-    Analyze(analyze::AnalyzeArgs),
     /// Render the report of a result anew, without its recording: in another language, with other templates
     #[command(after_help = "Exit codes: 0 written, 2 could not.\n\n\
         Examples:\n  sagnac report reports/SN-0042 --lang ru --out reports/SN-0042-ru\n  \
         sagnac report result.json --format html --templates templates")]
     Report(report::ReportArgs),
-    /// Compare Russian and Allan figures and explain their ratio
-    #[command(
-        after_help = "Examples:\n  sagnac compare unit-0042.csv unit-0043.csv reports/SN-0044 --out comparison\n  \
-        sagnac compare --published"
-    )]
-    Compare(compare::CompareArgs),
-    /// Write the data sheet of a lot from the results of its units, with limits that it can keep
-    #[command(after_help = "Examples:\n  sagnac datasheet reports/*/result.json --out sheet\n  \
-        sagnac datasheet 'samples/lot/*/result.json' --lang ru --out sheet\n  \
-        sagnac datasheet --store /srv/sagnac --model OIUS-501 --lot 2026-14")]
-    Datasheet(datasheet::DatasheetArgs),
-    /// Write the model of a recording, or of its result: noise, mean and effects with their uncertainties
-    #[command(after_help = "Examples:\n  sagnac model unit-0042.csv --out model.toml\n  \
-        sagnac model reports/SN-0042 --out model.toml\n  \
-        sagnac model unit-0042.csv --from 0s --to 5h --out first-half.toml")]
-    Model(model::ModelArgs),
-    /// Simulate a recording from a model: noise, mean, effects and columns, reproducible to the bit
-    #[command(
-        after_help = "Examples:\n  sagnac simulate samples/model-static.toml --out static.csv --duration 10h --seed 7\n  \
-        sagnac simulate model.toml --out simulated.parquet --like unit-0042.csv\n  \
-        sagnac simulate model.toml --out next.csv --schedule next/schedule.toml"
-    )]
-    Simulate(simulate::SimulateArgs),
-    /// List the effects known to models and explanations, or describe one
-    #[command(after_help = "Examples:\n  sagnac effects\n  sagnac effects bias_step")]
-    Effects(effects::EffectsArgs),
     /// Find where a recording differs from its simulation, and why
     #[command(
         after_help = "Exit codes: 0 consistent, 1 mismatch explained, 2 could not run, 3 unknown mismatch.\n\n\
@@ -143,25 +118,38 @@ enum Verb {
     )]
     Plan(plan::PlanArgs),
     /// Conceal something of a recording, let the engine explain the rest, and judge its answer by rules fixed before
-    #[command(after_help = "Exit codes: 0 every rule holds, 1 a rule does not hold, 2 could not run.\n\n\
-        Example:\n  sagnac prove proofs/closed-loop-ramp.toml --data /data --out proved")]
+    #[command(
+        hide = true,
+        after_help = "Exit codes: 0 every rule holds, 1 a rule does not hold, 2 could not run.\n\n\
+        Example:\n  sagnac prove proofs/closed-loop-ramp.toml --data /data --out proved"
+    )]
     Prove(prove::ProveArgs),
-    /// Find out whether a folder of results is still what was written, and who signed it
+    /// Simulate a recording from a model: noise, mean, effects and columns, reproducible to the bit
     #[command(
-        after_help = "Exit codes: 0 nothing differs, 1 something differs, 2 could not, 3 a check that was asked for could not be made.\n\n\
-        Examples:\n  sagnac verify reports/SN-0042 --signers allowed_signers\n  \
-        sagnac verify reports/SN-0042 --recording unit-0042.csv.gz"
+        after_help = "Examples:\n  sagnac simulate samples/model-static.toml --out static.csv --duration 10h --seed 7\n  \
+        sagnac simulate model.toml --out simulated.parquet --like unit-0042.csv\n  \
+        sagnac simulate model.toml --out next.csv --schedule next/schedule.toml"
     )]
-    Verify(verify::VerifyArgs),
-    /// Sign a folder of results, and let rows pass where there is a reason
+    Simulate(simulate::SimulateArgs),
+    /// Write the model of a recording, or of its result: noise, mean and effects with their uncertainties
+    #[command(after_help = "Examples:\n  sagnac model unit-0042.csv --out model.toml\n  \
+        sagnac model reports/SN-0042 --out model.toml\n  \
+        sagnac model unit-0042.csv --from 0s --to 5h --out first-half.toml")]
+    Model(model::ModelArgs),
+    /// List the effects known to models and explanations, or describe one
+    #[command(after_help = "Examples:\n  sagnac effects\n  sagnac effects bias_step")]
+    Effects(effects::EffectsArgs),
+    /// Write the data sheet of a lot from the results of its units, with limits that it can keep
+    #[command(after_help = "Examples:\n  sagnac datasheet reports/*/result.json --out sheet\n  \
+        sagnac datasheet 'samples/lot/*/result.json' --lang ru --out sheet\n  \
+        sagnac datasheet --store /srv/sagnac --model OIUS-501 --lot 2026-14")]
+    Datasheet(datasheet::DatasheetArgs),
+    /// Compare Russian and Allan figures and explain their ratio
     #[command(
-        after_help = "Examples:\n  sagnac sign reports/SN-0042 --key ~/.ssh/id_ed25519 --role tested --name \"A. Ivanova\"\n  \
-        sagnac sign reports/SN-0042 --key lead.pub --role approved --waive bias_instability --reason \"deviation permit 17\""
+        after_help = "Examples:\n  sagnac compare unit-0042.csv unit-0043.csv reports/SN-0044 --out comparison\n  \
+        sagnac compare --published"
     )]
-    Sign(sign::SignArgs),
-    /// Sign a folder of results that another has signed: `sign --role approved`
-    #[command(after_help = "Example:\n  sagnac approve reports/SN-0042 --key ~/.ssh/id_ed25519")]
-    Approve(sign::SignArgs),
+    Compare(compare::CompareArgs),
     /// Keep results: immutable, addressed by content, with an index of all attempts at a test
     #[command(after_help = "Exit codes: 0 done, 1 something is wrong in the store, 2 could not.\n\n\
         Examples:\n  sagnac store init /srv/sagnac\n  \
@@ -172,14 +160,30 @@ enum Verb {
     #[command(after_help = "Examples:\n  sagnac history SN-0042 --store /srv/sagnac\n  \
         sagnac history --model OIUS-501 --since 2026-01-01 --format html --out history.html")]
     History(history::HistoryArgs),
+    /// Sign a folder of results, and let rows pass where there is a reason
+    #[command(
+        after_help = "Examples:\n  sagnac sign reports/SN-0042 --key ~/.ssh/id_ed25519 --role tested --name \"A. Ivanova\"\n  \
+        sagnac sign reports/SN-0042 --key lead.pub --role approved --waive bias_instability --reason \"deviation permit 17\""
+    )]
+    Sign(sign::SignArgs),
+    /// Sign a folder of results that another has signed: `sign --role approved`
+    #[command(hide = true, after_help = "Example:\n  sagnac approve reports/SN-0042 --key ~/.ssh/id_ed25519")]
+    Approve(sign::SignArgs),
+    /// Find out whether a folder of results is still what was written, and who signed it
+    #[command(
+        after_help = "Exit codes: 0 nothing differs, 1 something differs, 2 could not, 3 a check that was asked for could not be made.\n\n\
+        Examples:\n  sagnac verify reports/SN-0042 --signers allowed_signers\n  \
+        sagnac verify reports/SN-0042 --recording unit-0042.csv.gz"
+    )]
+    Verify(verify::VerifyArgs),
+    /// Run a static test on an embedded sample recording
+    #[command(after_help = "Example:\n  sagnac demo --out sagnac-demo")]
+    Demo(demo::DemoArgs),
     /// List, print or save the shipped procedures and limits
     #[command(
         after_help = "Examples:\n  sagnac procedures\n  sagnac procedures show static-bias > mine.toml"
     )]
     Procedures(procedures::ProceduresArgs),
-    /// Run a static test on an embedded sample recording
-    #[command(after_help = "Example:\n  sagnac demo --out sagnac-demo")]
-    Demo(demo::DemoArgs),
     /// Print the completion script of a shell
     #[command(
         after_help = "Example:\n  sagnac completions bash > ~/.local/share/bash-completion/completions/sagnac"
@@ -189,10 +193,10 @@ enum Verb {
         shell: clap_complete::Shell,
     },
     /// Print the manual page
-    #[command(after_help = "Example:\n  sagnac man > sagnac.1")]
+    #[command(hide = true, after_help = "Example:\n  sagnac man > sagnac.1")]
     Man,
     /// Print the JSON Schema of a file format, for completion in editors
-    #[command(after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]
+    #[command(hide = true, after_help = "Example:\n  sagnac schema procedure > procedure.schema.json")]
     Schema(schema::SchemaArgs),
     /// Recompute published reference values on this machine and print the differences, for the QA file
     #[command(after_help = "Example:\n  sagnac selftest > selftest-2026-11-21.txt")]
