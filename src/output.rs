@@ -163,13 +163,9 @@ impl StagedFolder {
     /// Writes one file into the folder; `name` may hold sub-folders.
     ///
     /// # Errors
-    /// [`OutputError::Io`] when it cannot be written, [`OutputError::Unforeseen`] for a name that a later run would
-    /// not know as its own.
+    /// As [`StagedPart::write`].
     pub fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
-        if !self.kind.owns(name.split('/').next().unwrap_or_default()) {
-            return Err(OutputError::Unforeseen(name.to_owned()));
-        }
-        self.put(name, contents)
+        StagedPart::all_of(self).write(name, contents)
     }
 
     /// Writes one file whose name is known to be one of the folder.
@@ -187,18 +183,14 @@ impl StagedFolder {
         Ok(())
     }
 
-    /// The bytes of the record as [`StagedFolder::publish`] will write it once the files `still` are written too.
-    ///
-    /// # Errors
-    /// [`OutputError::Unwritable`] for a record that is no JSON.
-    pub fn record_with(&self, record: impl Serialize, still: &[&str]) -> Result<Vec<u8>, OutputError> {
-        let written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
-        let names = written.keys().map(String::as_str).chain(still.iter().copied());
-        let mut order = Cow::Borrowed(&self.order);
-        if !order.files.is_empty() {
-            order.to_mut().identify_files(&BTreeMap::new());
+    /// The identities of the inputs; files that were not read are hashed.
+    fn inputs(&self) -> Cow<'_, BTreeMap<String, String>> {
+        if self.order.files.is_empty() {
+            return Cow::Borrowed(&self.order.inputs);
         }
-        listed(record, &order.inputs, names, self.kind.record_file())
+        let mut order = self.order.clone();
+        order.identify_files(&BTreeMap::new());
+        Cow::Owned(order.inputs)
     }
 
     /// Writes the record with the list of everything that the folder holds, and the hashes of all of it; puts the folder in its place in one step
@@ -210,16 +202,8 @@ impl StagedFolder {
     pub fn publish(mut self, record: impl Serialize) -> Result<PathBuf, OutputError> {
         self.order.identify_files(&BTreeMap::new());
         let marks = self.kind.record_file();
-        let json = self.record_with(record, &[])?;
-        self.write(marks, &json)?;
-        let hashes = self.written.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        self.write(CHECKSUMS_FILE, checksums(&hashes).as_bytes())?;
+        let json = StagedPart::all_of(&self).finish(record)?;
         let quiet = partial::quiet();
-        let figures = self.staging.path().join("figures");
-        if figures.is_dir() {
-            sync_folder(&figures)?;
-        }
-        sync_folder(self.staging.path())?;
         let StagedFolder { mut target, staging, kind, order, .. } = self;
         let (folder, entry) = staging.into_parts();
         let staged = folder.keep();

@@ -18,41 +18,6 @@ pub struct Writer {
     lang: Lang,
 }
 
-/// A folder in the making.
-pub trait Target {
-    /// Writes a file; its name may hold sub-folders.
-    ///
-    /// # Errors
-    /// [`OutputError`] for a file that cannot be written.
-    fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError>;
-
-    /// The bytes of the record of the folder once the files `still` are written too.
-    ///
-    /// # Errors
-    /// [`OutputError`] for a record that is no JSON.
-    fn record_with(&self, document: &Document<'_>, still: &[&str]) -> Result<Vec<u8>, OutputError>;
-}
-
-impl Target for StagedFolder {
-    fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
-        StagedFolder::write(self, name, contents)
-    }
-
-    fn record_with(&self, document: &Document<'_>, still: &[&str]) -> Result<Vec<u8>, OutputError> {
-        StagedFolder::record_with(self, document.record(), still)
-    }
-}
-
-impl Target for StagedPart<'_> {
-    fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
-        StagedPart::write(self, name, contents)
-    }
-
-    fn record_with(&self, document: &Document<'_>, still: &[&str]) -> Result<Vec<u8>, OutputError> {
-        StagedPart::record_with(self, document.record(), still)
-    }
-}
-
 impl Writer {
     /// A writer of every form but PDF, and of that where pages of it are asked for.
     ///
@@ -86,23 +51,23 @@ impl Writer {
     ///
     /// # Errors
     /// The diagnostic, in words.
-    pub fn files(&self, results: &Results, target: &dyn Target) -> Result<(), String> {
+    pub fn files(&self, results: &Results, folder: &StagedPart<'_>) -> Result<(), String> {
         let whole = results.whole(self.lang);
-        self.part(&whole, "", target)?;
+        self.part(&whole, "", folder)?;
         for (below, part) in results.parts(self.lang) {
-            self.part(&part, &format!("{below}/"), target)?;
+            self.part(&part, &format!("{below}/"), folder)?;
         }
         if let Some(pages) = self.pdf {
             let name = whole.page("pdf");
-            let record = target.record_with(&whole, &[&name]).map_err(|e| self.refused(&e))?;
+            let record = folder.record_with(whole.record(), &[&name]).map_err(|e| self.refused(&e))?;
             let pdf = whole.pdf(&self.renderer, &record, pages).map_err(|e| self.said(&e.note()))?;
-            target.write(&name, &pdf).map_err(|e| self.refused(&e))?;
+            folder.write(&name, &pdf).map_err(|e| self.refused(&e))?;
         }
         Ok(())
     }
 
     /// Writes the files of a document below a part of the folder; the record of the whole comes last of all, with its list.
-    fn part(&self, document: &Document<'_>, below: &str, target: &dyn Target) -> Result<(), String> {
+    fn part(&self, document: &Document<'_>, below: &str, folder: &StagedPart<'_>) -> Result<(), String> {
         let whole = below.is_empty();
         let record_file = document.kind().record_file();
         let certificate = self.certificate.iter().map(|c| c as &dyn Exporter);
@@ -110,20 +75,20 @@ impl Writer {
         let files = export(document, &exporters, &self.renderer).map_err(|e| self.said(&e.note()))?;
         for (name, contents) in &files {
             if !whole || name != record_file {
-                target.write(&format!("{below}{name}"), contents).map_err(|e| self.refused(&e))?;
+                folder.write(&format!("{below}{name}"), contents).map_err(|e| self.refused(&e))?;
             }
         }
         // What the test was made by stays with its results in every form: it tells which signatures are asked for.
         for (name, text) in document.tables.iter().filter(|(name, _)| !files.contains_key(name)) {
             if matches!(name.as_str(), PROCEDURE_FILE | LIMITS_FILE) && document.kind() == Kind::Result {
-                target.write(&format!("{below}{name}"), text.as_bytes()).map_err(|e| self.refused(&e))?;
+                folder.write(&format!("{below}{name}"), text.as_bytes()).map_err(|e| self.refused(&e))?;
             }
         }
         // The hash on the pages of a part is that of its record; where no record is written, there is none to name.
         if let Some((pages, record)) = self.pdf.zip(files.get(record_file)).filter(|_| !whole) {
             let pdf = document.pdf(&self.renderer, record, pages).map_err(|e| self.said(&e.note()))?;
             let name = format!("{below}{}", document.page("pdf"));
-            target.write(&name, &pdf).map_err(|e| self.refused(&e))?;
+            folder.write(&name, &pdf).map_err(|e| self.refused(&e))?;
         }
         Ok(())
     }
@@ -134,7 +99,7 @@ impl Writer {
     /// The diagnostic, in words.
     pub fn publish(&self, results: &Results, mut folder: StagedFolder) -> Result<PathBuf, String> {
         folder.were_read(results.files_read());
-        self.files(results, &folder)?;
+        self.files(results, &StagedPart::all_of(&folder))?;
         inputs::publish(folder, results.whole(self.lang).record(), self.lang)
     }
 

@@ -4,7 +4,7 @@ use super::partial::{self, Partial};
 use super::{OutputError, io, outside_file, outside_stores, parent};
 use crate::i18n::Note;
 use std::fs::File;
-use std::io::Read;
+use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
 /// A file in the making. Dropped without [`StagedFile::publish`], it leaves nothing behind.
@@ -82,6 +82,15 @@ impl StagedFile {
     /// The error of writing into it.
     pub fn refused(&self, source: std::io::Error) -> OutputError {
         io("output_error.write", &self.target)(source)
+    }
+
+    /// Writes all of the file, and puts it in its place.
+    ///
+    /// # Errors
+    /// [`OutputError::Io`] when it cannot be written, or as [`StagedFile::publish`].
+    pub fn publish_with(self, contents: &[u8]) -> Result<PathBuf, OutputError> {
+        self.file()?.write_all(contents).map_err(|e| self.refused(e))?;
+        self.publish()
     }
 
     /// Puts the file in its place in one step.

@@ -1,65 +1,81 @@
-//! A result folder inside a folder in the making: it becomes visible together with the whole.
+//! A result folder in the making: the whole, or a part of it that becomes visible together with the whole.
 
-use super::checksums::{CHECKSUMS_FILE, checksums, sha256};
+use super::checksums::{CHECKSUMS_FILE, checksums};
 use super::kind::Kind;
 use super::{OutputError, StagedFolder, listed, sync_folder};
 use serde::Serialize;
+use std::borrow::Cow;
 use std::collections::BTreeMap;
-use std::sync::{Mutex, PoisonError};
+use std::sync::PoisonError;
 
-/// The result folder of one unit in the folder of a lot. Its files are those of a result on its own.
+/// A result folder in the making, of which the files are those of a result on its own.
 #[derive(Debug)]
 pub struct StagedPart<'a> {
     whole: &'a StagedFolder,
-    folder: String,
-    inputs: BTreeMap<String, String>,
-    written: Mutex<BTreeMap<String, String>>,
+    /// Beginning of its names in the whole: empty, or its folder with a slash.
+    below: String,
+    kind: Kind,
+    /// What its result is made from; `None`: as the whole.
+    inputs: Option<BTreeMap<String, String>>,
 }
 
 impl<'a> StagedPart<'a> {
-    /// Begins the folder `folder`, a plain name, within a whole. `inputs` are what its result is made from.
+    /// The whole folder.
+    pub fn all_of(whole: &'a StagedFolder) -> StagedPart<'a> {
+        StagedPart { whole, below: String::new(), kind: whole.kind, inputs: None }
+    }
+
+    /// Begins the folder `folder`, a plain name, of one unit in the folder of a lot. `inputs` are what its result is made from.
     pub fn begin(whole: &'a StagedFolder, folder: &str, inputs: BTreeMap<String, String>) -> StagedPart<'a> {
-        StagedPart { whole, folder: folder.to_owned(), inputs, written: Mutex::default() }
+        StagedPart { whole, below: format!("{folder}/"), kind: Kind::Result, inputs: Some(inputs) }
     }
 
     /// Writes one file into the folder; `name` may hold sub-folders.
     ///
     /// # Errors
-    /// As [`StagedFolder::write`].
+    /// [`OutputError::Io`] when it cannot be written, [`OutputError::Unforeseen`] for a name that a later run would
+    /// not know as its own.
     pub fn write(&self, name: &str, contents: &[u8]) -> Result<(), OutputError> {
-        if !Kind::Result.owns(name.split('/').next().unwrap_or_default()) {
+        if !self.kind.owns(name.split('/').next().unwrap_or_default()) {
             return Err(OutputError::Unforeseen(name.to_owned()));
         }
-        self.whole.put(&format!("{}/{name}", self.folder), contents)?;
-        self.written.lock().unwrap_or_else(PoisonError::into_inner).insert(name.to_owned(), sha256(contents));
-        Ok(())
+        self.whole.put(&format!("{}{name}", self.below), contents)
     }
 
-    /// The bytes of the record as [`StagedPart::finish`] will write it once the files `still` are written too.
+    /// The hashes of the files that were written, by their names in this folder.
+    fn written(&self) -> BTreeMap<String, String> {
+        let all = self.whole.written.lock().unwrap_or_else(PoisonError::into_inner);
+        let own = all.iter().filter_map(|(name, hash)| Some((name.strip_prefix(&self.below)?, hash)));
+        own.map(|(name, hash)| (name.to_owned(), hash.clone())).collect()
+    }
+
+    /// The bytes of the record as it will be written once the files `still` are written too.
     ///
     /// # Errors
     /// [`OutputError::Unwritable`] for a record that is no JSON.
     pub fn record_with(&self, record: impl Serialize, still: &[&str]) -> Result<Vec<u8>, OutputError> {
-        let written = self.written.lock().unwrap_or_else(PoisonError::into_inner);
-        let names = written.keys().map(String::as_str).chain(still.iter().copied());
-        listed(record, &self.inputs, names, Kind::Result.record_file())
+        let inputs = match &self.inputs {
+            Some(own) => Cow::Borrowed(own),
+            None => self.whole.inputs(),
+        };
+        let names = self.written().into_keys().chain(still.iter().copied().map(str::to_owned));
+        listed(record, &inputs, names, self.kind.record_file())
     }
 
-    /// Writes the record with the list of everything that the folder holds, and the hashes of all of it.
+    /// Writes the record with the list of everything that the folder holds, and the hashes of all of it; gives the bytes of the record.
     ///
     /// # Errors
-    /// As [`StagedFolder::write`].
-    pub fn finish(self, record: impl Serialize) -> Result<(), OutputError> {
-        let marks = Kind::Result.record_file();
+    /// As [`StagedPart::write`], and as [`StagedPart::record_with`].
+    pub fn finish(self, record: impl Serialize) -> Result<Vec<u8>, OutputError> {
         let json = self.record_with(record, &[])?;
-        self.write(marks, &json)?;
-        let hashes = self.written.lock().unwrap_or_else(PoisonError::into_inner).clone();
-        self.write(CHECKSUMS_FILE, checksums(&hashes).as_bytes())?;
-        let folder = self.whole.staging.path().join(&self.folder);
+        self.write(self.kind.record_file(), &json)?;
+        self.write(CHECKSUMS_FILE, checksums(&self.written()).as_bytes())?;
+        let folder = self.whole.staging.path().join(&self.below);
         let figures = folder.join("figures");
         if figures.is_dir() {
             sync_folder(&figures)?;
         }
-        sync_folder(&folder)
+        sync_folder(&folder)?;
+        Ok(json)
     }
 }

@@ -10,7 +10,6 @@ use crate::output::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
-use std::io::Write;
 use std::path::Path;
 
 /// Ending of the file of a signature, behind the name of its statement.
@@ -219,9 +218,7 @@ pub fn sign(
     // The statement comes last: a signature without one is none.
     for (name, bytes) in [(format!("{name}{SIGNATURE}"), signature.into_bytes()), (name.clone(), bytes)] {
         let staged = StagedFile::within_store(&at.join(&name)).map_err(|e| e.note())?;
-        let written = staged.file().map_err(|e| e.note())?.write_all(&bytes);
-        written.map_err(|e| staged.refused(e).note())?;
-        staged.publish().map_err(|e| e.note())?;
+        staged.publish_with(&bytes).map_err(|e| e.note())?;
     }
     Ok(name)
 }

@@ -11,7 +11,6 @@ use crate::record::read::{MAX_BYTES, ReadError};
 use crate::signing;
 use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
-use std::io::Write;
 use std::path::Path;
 
 /// What came of a folder.
@@ -126,9 +125,7 @@ fn add_signatures(result: &Path, signatures: &BTreeMap<String, Vec<u8>>) -> Resu
             Some(there) if there == *bytes => {}
             Some(_) => return Err(StoreError::OtherSignatures(result.join(name))),
             None => {
-                let staged = StagedFile::within_store(&result.join(name))?;
-                staged.file()?.write_all(bytes).map_err(|e| staged.refused(e))?;
-                staged.publish()?;
+                StagedFile::within_store(&result.join(name))?.publish_with(bytes)?;
             }
         }
     }
