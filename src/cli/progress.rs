@@ -75,7 +75,8 @@ impl Progress {
             Display::Never => None,
             Display::Terminal => Some((PATIENCE, ProgressDrawTarget::stderr())),
             Display::Lines => {
-                Some((Duration::ZERO, ProgressDrawTarget::term_like_with_hz(Box::new(Lines), 2)))
+                let log = Box::new(Log(std::io::stderr()));
+                Some((Duration::ZERO, ProgressDrawTarget::term_like_with_hz(log, 2)))
             }
         };
         Progress::shown(pending, lang)
@@ -222,9 +223,13 @@ fn clock(seconds: u64) -> String {
 
 /// A log in place of a terminal: every state is a line of its own, and nothing is cleared.
 #[derive(Debug)]
-struct Lines;
+struct Log<W>(W);
 
-impl TermLike for Lines {
+impl<W> TermLike for Log<W>
+where
+    W: std::fmt::Debug + Send + Sync,
+    for<'a> &'a W: Write,
+{
     fn width(&self) -> u16 {
         100
     }
@@ -252,7 +257,7 @@ impl TermLike for Lines {
     fn write_str(&self, text: &str) -> std::io::Result<()> {
         match text.trim() {
             "" => Ok(()),
-            line => writeln!(std::io::stderr().lock(), "{line}"),
+            line => writeln!(&self.0, "{line}"),
         }
     }
 
@@ -261,7 +266,7 @@ impl TermLike for Lines {
     }
 
     fn flush(&self) -> std::io::Result<()> {
-        std::io::stderr().lock().flush()
+        (&self.0).flush()
     }
 }
 
@@ -270,49 +275,26 @@ mod tests {
     use super::*;
     use std::sync::{Arc, Mutex};
 
-    /// A terminal that remembers what was drawn.
+    /// Text that was drawn.
     #[derive(Debug, Clone, Default)]
-    struct Fake(Arc<Mutex<String>>);
+    struct Drawn(Arc<Mutex<Vec<u8>>>);
 
-    impl TermLike for Fake {
-        fn width(&self) -> u16 {
-            100
+    impl Write for &Drawn {
+        fn write(&mut self, bytes: &[u8]) -> std::io::Result<usize> {
+            self.0.lock().unwrap().write(bytes)
         }
-        fn move_cursor_up(&self, _: usize) -> std::io::Result<()> {
-            Ok(())
-        }
-        fn move_cursor_down(&self, _: usize) -> std::io::Result<()> {
-            Ok(())
-        }
-        fn move_cursor_right(&self, _: usize) -> std::io::Result<()> {
-            Ok(())
-        }
-        fn move_cursor_left(&self, _: usize) -> std::io::Result<()> {
-            Ok(())
-        }
-        fn write_line(&self, line: &str) -> std::io::Result<()> {
-            self.write_str(line)
-        }
-        fn write_str(&self, text: &str) -> std::io::Result<()> {
-            self.0.lock().unwrap().push_str(text);
-            self.0.lock().unwrap().push('\n');
-            Ok(())
-        }
-        fn clear_line(&self) -> std::io::Result<()> {
-            Ok(())
-        }
-        fn flush(&self) -> std::io::Result<()> {
+        fn flush(&mut self) -> std::io::Result<()> {
             Ok(())
         }
     }
 
     fn drawn(patience: Duration, lang: Lang, work: impl FnOnce(&mut Progress)) -> String {
-        let fake = Fake::default();
-        let target = ProgressDrawTarget::term_like_with_hz(Box::new(fake.clone()), 100);
+        let drawn = Drawn::default();
+        let target = ProgressDrawTarget::term_like_with_hz(Box::new(Log(drawn.clone())), 100);
         let mut progress = Progress::shown(Some((patience, target)), lang);
         work(&mut progress);
         progress.finish();
-        fake.0.lock().unwrap().clone()
+        String::from_utf8(drawn.0.lock().unwrap().clone()).unwrap()
     }
 
     fn reading(progress: &mut Progress) {
