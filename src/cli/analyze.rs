@@ -1,23 +1,23 @@
 //! `sagnac analyze`: the noise of a recording without a procedure.
 
 use super::columns::ColumnArgs;
-use super::finish::run_and_finish;
-use super::inputs::Inputs;
+use super::evaluate::evaluate;
+use super::job::{Frame, Job, Made, execute};
 use super::join::JoinArgs;
 use super::next_step;
 use super::options::{GridArgs, OutputArgs};
 use super::place::{self, OutputPlace};
-use super::printer::Printer;
 use super::read::ReadArgs;
 use crate::acceptance::Request;
 use crate::acceptance::analysis::Prepared;
 use crate::acceptance::column_choice::{channels, unit_contradictions};
 use crate::config::procedure::EffectiveLimits;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::open_recording;
-use crate::moment;
-use crate::output::Kind;
+use crate::noise::tau_grid::TauGrid;
+use crate::output::{Kind, StagedFolder};
 use crate::record::UnitUnderTest;
+use crate::report::Results;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -42,23 +42,27 @@ pub struct AnalyzeArgs {
 }
 
 pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
-    let say = |note: Note| place::error(&note, lang);
-    args.join.check(&args.recording, "join.help.other", lang)?;
-    let taus = args.grid.grid(lang)?;
-    if !(args.columns.warm_up >= 0.0 && args.columns.warm_up.is_finite()) {
-        return Err(say(Note::new("cli.warm_up").with("given", args.columns.warm_up.to_string())));
-    }
-    let writer = args.output.writer(lang)?;
-    let now = moment::now();
-    let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-    let stem = stem.split('.').next().unwrap_or_default().to_owned();
-    let out = OutputPlace::new(args.out.as_deref(), "analysis", Some(&stem), now);
-    let printer = Printer::new(&args.output, lang);
-    let mut progress = printer.progress();
-    progress.stage("progress.inputs");
-    let folder = Inputs::new(args.output.force)
-        .recording_as_read(&args.recording, &args.read.options())
-        .options(&(
+    execute(&args.output, lang, |_| {
+        args.join.check(&args.recording, "join.help.other", lang)?;
+        let taus = args.grid.grid(lang)?;
+        args.columns.check(lang)?;
+        Ok(Analysis { args, taus })
+    })
+}
+
+/// The analysis of a recording.
+struct Analysis<'a> {
+    args: &'a AnalyzeArgs,
+    taus: Option<TauGrid>,
+}
+
+impl Job for Analysis<'_> {
+    fn begin(&self, frame: &Frame<'_>) -> Result<StagedFolder, String> {
+        let args = self.args;
+        let stem = named(args).file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
+        let stem = stem.split('.').next().unwrap_or_default();
+        let out = OutputPlace::new(args.out.as_deref(), "analysis", Some(stem), frame.now);
+        let inputs = frame.inputs().recording_as_read(&args.recording, &args.read.options()).options(&(
             (
                 &args.columns.rate,
                 &args.columns.angle,
@@ -67,28 +71,36 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
                 &args.columns.time,
             ),
             (args.columns.sample_rate, args.columns.warm_up, &args.grid, &args.read),
-        ))
-        .beside(args.output.templates.as_deref())
-        .begin(&out, Kind::Result, lang)?;
-    let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
-    let (source, manifest) = (recording.source, recording.manifest);
-    let choice = args.columns.choice();
-    let channels = channels(&choice, named(args), &source).map_err(say)?;
-    for note in unit_contradictions(&channels, &source) {
-        progress.beside(|| place::eprint_diagnostic(&place::warning(&note, lang)));
+        ));
+        inputs.begin(&out, Kind::Result, frame.lang)
     }
-    let prepared = Prepared::new(channels, &choice, named(args), &source).map_err(say)?;
-    let limits = EffectiveLimits::default();
-    let request = Request {
-        unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },
-        taus,
-        exact: args.grid.exact,
-        ..prepared.request(&source, &limits, now)
-    };
-    let code = run_and_finish(&request, folder, &writer, printer, progress)?;
-    let options = format!("{}{}", args.columns.as_typed(), args.read.as_typed());
-    printer.next_step(next_step::init(&args.recording, &options).as_ref());
-    Ok(code)
+
+    fn run(&self, _: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
+        let (args, lang) = (self.args, frame.lang);
+        let say = |note: Note| place::error(&note, lang);
+        let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
+        let (source, manifest) = (recording.source, recording.manifest);
+        let choice = args.columns.choice();
+        let channels = channels(&choice, named(args), &source).map_err(say)?;
+        for note in unit_contradictions(&channels, &source) {
+            frame.warn(&note);
+        }
+        let prepared = Prepared::new(channels, &choice, named(args), &source).map_err(say)?;
+        let limits = EffectiveLimits::default();
+        let request = Request {
+            unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },
+            taus: self.taus.clone(),
+            exact: args.grid.exact,
+            ..prepared.request(&source, &limits, frame.now)
+        };
+        let reading = Note::new("cli.reading").say(lang);
+        Ok(evaluate(&request, None, &reading, &mut frame.progress).made(lang))
+    }
+
+    fn next_step(&self, _: &Results, _: &Path) -> Option<Note> {
+        let options = format!("{}{}", self.args.columns.as_typed(), self.args.read.as_typed());
+        next_step::init(&self.args.recording, &options)
+    }
 }
 
 /// The recording as it was named first.

@@ -1,7 +1,8 @@
 //! The options that name the columns of a recording without a procedure.
 
-use super::place::for_shell;
+use super::place::{self, for_shell};
 use crate::acceptance::column_choice::ColumnChoice;
+use crate::i18n::{Lang, Note};
 use clap::Args;
 
 /// Choice of the columns.
@@ -50,6 +51,17 @@ impl ColumnArgs {
             add("--warm-up", &self.warm_up.to_string());
         }
         typed
+    }
+
+    /// Refuses a warm-up that is no length of time.
+    ///
+    /// # Errors
+    /// The diagnostic, in words.
+    pub fn check(&self, lang: Lang) -> Result<(), String> {
+        if self.warm_up >= 0.0 && self.warm_up.is_finite() {
+            return Ok(());
+        }
+        Err(place::error(&Note::new("cli.warm_up").with("given", self.warm_up.to_string()), lang))
     }
 
     /// The choice that they make.

@@ -1,14 +1,12 @@
 //! `sagnac compare`: Russian against Allan figures of any units, or the published tables.
 
 use super::columns::ColumnArgs;
-use super::finish::with_progress;
-use super::inputs::Inputs;
+use super::evaluate::with_progress;
+use super::job::{Frame, Job, Made, execute};
 use super::options::OutputArgs;
-use super::printer::Printer;
+use super::place::{self, OutputPlace};
 use super::progress::Progress;
 use super::read::ReadArgs;
-use super::writer::Writer;
-use super::{exit, place};
 use crate::acceptance::Request;
 use crate::acceptance::analysis::Prepared;
 use crate::acceptance::column_choice::{channels, unit_contradictions};
@@ -18,14 +16,12 @@ use crate::acceptance::compare::{
 };
 use crate::config::procedure::limits::LimitSpec;
 use crate::config::procedure::{EffectiveLimits, load_limits};
-use crate::i18n::{Lang, Localize, Note, visible_lines};
+use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{RecordingError, each_of, open_recording};
-use crate::moment;
 use crate::output::{Kind, StagedFolder};
 use crate::record::{RunRecord, UnitUnderTest, read};
 use crate::report::Results;
-use crate::report::compare::{CompareView, table};
-use chrono::{DateTime, SecondsFormat, Utc};
+use chrono::{DateTime, Utc};
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -52,61 +48,60 @@ pub struct CompareArgs {
 }
 
 pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
-    let say = |note: Note| place::error(&note, lang);
-    if !(args.columns.warm_up >= 0.0 && args.columns.warm_up.is_finite()) {
-        return Err(say(Note::new("cli.warm_up").with("given", args.columns.warm_up.to_string())));
-    }
-    if args.published && !args.recording.is_empty() {
-        return Err(say("compare.error.published_alone".into()));
-    }
-    let writer = args.output.writer(lang)?;
-    let printer = Printer::new(&args.output, lang);
-    let now = moment::now();
-    let stamp = now.to_rfc3339_opts(SecondsFormat::Secs, true);
-    let first = args.recording.first().map_or_else(|| "published".to_owned(), |p| stem(p));
-    let out = place::OutputPlace::new(args.out.as_deref(), "comparison", Some(&first), now);
-    let mut progress = printer.progress();
-    progress.stage("progress.inputs");
-    let folder = Inputs::new(args.output.force)
-        .recording(&read_for(&args.recording), &args.read.options())
-        .file("limits", args.limits.as_deref())
-        .options(&(
+    execute(&args.output, lang, |_| {
+        args.columns.check(lang)?;
+        if args.published && !args.recording.is_empty() {
+            return Err(place::error(&"compare.error.published_alone".into(), lang));
+        }
+        Ok(args)
+    })
+}
+
+impl Job for &CompareArgs {
+    fn begin(&self, frame: &Frame<'_>) -> Result<StagedFolder, String> {
+        let first = self.recording.first().map_or_else(|| "published".to_owned(), |p| stem(p));
+        let out = OutputPlace::new(self.out.as_deref(), "comparison", Some(&first), frame.now);
+        let inputs = frame.inputs().recording(&read_for(&self.recording), &self.read.options());
+        let inputs = inputs.file("limits", self.limits.as_deref()).options(&(
             (
-                &args.columns.rate,
-                &args.columns.angle,
-                &args.columns.unit,
-                &args.columns.counter,
-                &args.columns.time,
+                &self.columns.rate,
+                &self.columns.angle,
+                &self.columns.unit,
+                &self.columns.counter,
+                &self.columns.time,
             ),
-            (args.columns.sample_rate, args.columns.warm_up, args.published, &args.read),
-        ))
-        .beside(args.output.templates.as_deref())
-        .begin(&out, Kind::Comparison, lang)?;
-    if args.published {
-        let checked = checked().ok_or_else(|| say("compare.error.tables".into()))?;
-        return finish(Comparison::of_published(checked, stamp), folder, &writer, printer);
+            (self.columns.sample_rate, self.columns.warm_up, self.published, &self.read),
+        ));
+        inputs.begin(&out, Kind::Comparison, frame.lang)
     }
-    let limits = match args.limits.as_deref().map(load_limits).transpose() {
-        Ok(file) => EffectiveLimits {
-            set: file.map(|f| f.value.set).unwrap_or_default(),
-            ..EffectiveLimits::default()
-        },
-        Err(problems) => return Err(problems.say(lang)),
-    };
-    // Each file of a pattern is a unit; one recording in several files is a manifest.
-    let mut paths: Vec<PathBuf> = vec![];
-    for given in &args.recording {
-        paths.extend(each_of(given).map_err(|e| RecordingError::from(e).say(lang))?);
+
+    fn run(&self, _: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
+        let (lang, now, stamp) = (frame.lang, frame.now, frame.stamp());
+        if self.published {
+            let checked = checked().ok_or_else(|| place::error(&"compare.error.tables".into(), lang))?;
+            return Ok(Results::of_comparison(Comparison::of_published(checked, stamp)).into());
+        }
+        let limits = match self.limits.as_deref().map(load_limits).transpose() {
+            Ok(file) => EffectiveLimits {
+                set: file.map(|f| f.value.set).unwrap_or_default(),
+                ..EffectiveLimits::default()
+            },
+            Err(problems) => return Err(problems.say(lang)),
+        };
+        // Each file of a pattern is a unit; one recording in several files is a manifest.
+        let mut paths: Vec<PathBuf> = vec![];
+        for given in &self.recording {
+            paths.extend(each_of(given).map_err(|e| RecordingError::from(e).say(lang))?);
+        }
+        let mut units: Vec<Unit> = vec![];
+        for (i, path) in paths.iter().enumerate() {
+            let label = Note::new("progress.of_unit").with("n", i + 1).with("all", paths.len()).say(lang);
+            units.extend(read_units(self, path, &limits, now, (&label, &mut frame.progress))?);
+        }
+        name_apart(&mut units);
+        mark_repeated(&mut units);
+        Ok(Results::of_comparison(Comparison::of_units(units, stamp)).into())
     }
-    let mut units: Vec<Unit> = vec![];
-    for (i, path) in paths.iter().enumerate() {
-        let label = Note::new("progress.of_unit").with("n", i + 1).with("all", paths.len()).say(lang);
-        units.extend(read_units(args, path, &limits, now, (&label, &mut progress))?);
-    }
-    drop(progress);
-    name_apart(&mut units);
-    mark_repeated(&mut units);
-    finish(Comparison::of_units(units, stamp), folder, &writer, printer)
 }
 
 /// The name of a file or folder without its endings.
@@ -211,18 +206,4 @@ fn analysed(
     };
     let outcome = with_progress(&request, label, progress).map_err(|e| say(e.note()))?;
     Ok(Analysed { record: outcome.record, name: stem(path), otherwise })
-}
-
-/// Writes the folder and prints the table.
-fn finish(
-    comparison: Comparison,
-    folder: StagedFolder,
-    writer: &Writer,
-    printer: Printer,
-) -> Result<u8, String> {
-    let lang = printer.lang;
-    let table = table(&CompareView::new(&comparison, &[], lang), lang);
-    let folder = writer.publish(&Results::of_comparison(comparison), folder)?;
-    printer.outcome(&folder, Kind::Comparison, |_| visible_lines(&table).into_owned())?;
-    Ok(exit::PASS)
 }

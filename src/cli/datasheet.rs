@@ -1,23 +1,20 @@
 //! `sagnac datasheet`: what the results of some units promise of the population that they come from.
 
-use super::inputs::Inputs;
+use super::job::{Frame, Job, Made, execute};
 use super::keep::StoreArgs;
 use super::options::OutputArgs;
 use super::place::OutputPlace;
-use super::printer::Printer;
-use super::{exit, place, store};
+use super::{place, store};
 use crate::acceptance::datasheet::{Refusal, TestedUnit, apply, datasheet, select};
 use crate::config::sheet;
 use crate::i18n::{Lang, Note};
 use crate::ingest::each_of;
 use crate::ingest::result_table::{TableResult, results_in, tables_at};
 use crate::lot::tolerance::Promise;
-use crate::moment;
-use crate::output::Kind;
-use crate::report::datasheet::SheetView;
-use crate::report::{Results, terminal};
+use crate::output::{Kind, StagedFolder};
+use crate::record::DataSheet;
+use crate::report::Results;
 use crate::store::Filter;
-use chrono::SecondsFormat;
 use clap::Args;
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
@@ -56,53 +53,67 @@ pub struct DatasheetArgs {
 }
 
 pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
-    let say = |note: Note| place::error(&note, lang);
-    let promise = Promise { proportion: args.proportion, confidence: args.confidence };
-    for (option, given) in [("--proportion", args.proportion), ("--confidence", args.confidence)] {
-        // Beyond this neither the sample nor the arithmetic tells anything.
-        if !(0.5..=0.9999).contains(&given) {
-            return Err(say(Note::new("datasheet.refused.probability")
-                .with("option", option)
-                .with("given", given.to_string())));
-        }
-    }
-    let rows = args.sheet.as_deref().map(sheet::load).transpose().map_err(|p| p.say(lang))?;
-    let writer = args.output.writer(lang)?;
-    let printer = Printer::new(&args.output, lang);
-    let now = moment::now();
-    let (files, mut broken) = args.files(lang)?;
-    let mut read_units = vec![];
-    let read: Vec<Vec<Result<TestedUnit, Note>>> = files.par_iter().map(|file| units_in(file)).collect();
-    for unit in read.into_iter().flatten() {
-        match unit {
-            Ok(unit) => read_units.push(unit),
-            Err(note) => {
-                place::eprint_diagnostic(&place::warning(&note, lang));
-                broken.push(note);
+    execute(&args.output, lang, |frame| Sheet::load(args, frame))
+}
+
+/// The data sheet of some results.
+struct Sheet<'a> {
+    args: &'a DatasheetArgs,
+    /// The results that are read.
+    files: Vec<PathBuf>,
+    sheet: DataSheet,
+}
+
+impl<'a> Sheet<'a> {
+    fn load(args: &'a DatasheetArgs, frame: &Frame<'_>) -> Result<Sheet<'a>, String> {
+        let lang = frame.lang;
+        let say = |note: Note| place::error(&note, lang);
+        let promise = Promise { proportion: args.proportion, confidence: args.confidence };
+        for (option, given) in [("--proportion", args.proportion), ("--confidence", args.confidence)] {
+            // Beyond this neither the sample nor the arithmetic tells anything.
+            if !(0.5..=0.9999).contains(&given) {
+                return Err(say(Note::new("datasheet.refused.probability")
+                    .with("option", option)
+                    .with("given", given.to_string())));
             }
         }
+        let rows = args.sheet.as_deref().map(sheet::load).transpose().map_err(|p| p.say(lang))?;
+        let (files, mut broken) = args.files(lang)?;
+        let mut read_units = vec![];
+        let read: Vec<Vec<Result<TestedUnit, Note>>> = files.par_iter().map(|file| units_in(file)).collect();
+        for unit in read.into_iter().flatten() {
+            match unit {
+                Ok(unit) => read_units.push(unit),
+                Err(note) => {
+                    frame.warn(&note);
+                    broken.push(note);
+                }
+            }
+        }
+        let mut selected = select(read_units).map_err(|refusal| match refusal {
+            Refusal::None => say("datasheet.refused.none".into()),
+            Refusal::Mixed(note) => say(note),
+        })?;
+        selected.notes.extend(broken);
+        let mut sheet = datasheet(selected, promise, frame.stamp());
+        if let Some(rows) = &rows {
+            apply(&mut sheet, rows);
+        }
+        Ok(Sheet { args, files, sheet })
     }
-    let mut selected = select(read_units).map_err(|refusal| match refusal {
-        Refusal::None => say("datasheet.refused.none".into()),
-        Refusal::Mixed(note) => say(note),
-    })?;
-    selected.notes.extend(broken);
-    let mut sheet = datasheet(selected, promise, now.to_rfc3339_opts(SecondsFormat::Secs, true));
-    if let Some(rows) = &rows {
-        apply(&mut sheet, rows);
+}
+
+impl Job for Sheet<'_> {
+    fn begin(&self, frame: &Frame<'_>) -> Result<StagedFolder, String> {
+        let Sheet { args, files, sheet } = self;
+        let out = OutputPlace::new(args.out.as_deref(), "datasheet", sheet.model.as_deref(), frame.now);
+        let inputs = frame.inputs().files("results", files).file("sheet", args.sheet.as_deref());
+        inputs.options(&(args.proportion, args.confidence)).begin(&out, Kind::DataSheet, frame.lang)
     }
-    let out = OutputPlace::new(args.out.as_deref(), "datasheet", sheet.model.as_deref(), now);
-    let folder = Inputs::new(args.output.force)
-        .files("results", &files)
-        .file("sheet", args.sheet.as_deref())
-        .options(&(args.proportion, args.confidence))
-        .beside(args.output.templates.as_deref())
-        .begin(&out, Kind::DataSheet, lang)?;
-    let view = SheetView::new(&sheet, &[], lang);
-    let results = Results::of_datasheet(sheet);
-    let place = writer.publish(&results, folder)?;
-    printer.outcome(&place, Kind::DataSheet, |t| terminal::datasheet(&view, lang, t))?;
-    Ok(exit::PASS)
+
+    fn run(&self, _: &StagedFolder, _: &mut Frame<'_>) -> Result<Made, String> {
+        Ok(Results::of_datasheet(self.sheet.clone()).into())
+    }
 }
 
 impl DatasheetArgs {

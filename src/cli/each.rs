@@ -1,7 +1,7 @@
 //! `sagnac run --each`: every recording is a unit of its own.
 
-use super::exit;
-use super::inputs::{Inputs, publish};
+use super::inputs::Inputs;
+use super::job::{Frame, Job, Made, execute};
 use super::keep::Keeper;
 use super::phased_test::{PhasedTest, belong};
 use super::place::{self, OutputPlace};
@@ -18,26 +18,27 @@ use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::lot::{LotError, Member, members};
 use crate::ingest::serial::SerialPattern;
 use crate::ingest::{ReadOptions, RecordingError, files_read};
-use crate::moment;
 use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::{LotUnit, ProcedureRecord, SerialSource, Session};
 use crate::report::export::{EXPORTERS, export};
 use crate::report::lot::unit_done;
-use crate::report::{Documented, Results, RunResults, page};
-use chrono::{DateTime, SecondsFormat, Utc};
+use crate::report::{Results, RunResults, page};
 use std::collections::{BTreeMap, BTreeSet};
 use std::num::NonZeroUsize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
 use std::sync::mpsc::channel;
 
-/// Most complaints of one kind that are said.
-const SAID: usize = 5;
+/// Most diagnostics of units without a serial number that are printed.
+const MAX_PRINTED_DIAGNOSTICS: usize = 5;
 
 /// A test that is run on one unit after another.
 trait UnitTest: Sync {
     /// Id of the procedure, for the name of the folder.
     fn procedure(&self) -> ProcedureRecord;
+
+    /// The people, the station and the moment.
+    fn session(&self) -> Session;
 
     /// What the whole lot is made from, but for the recordings.
     fn common_inputs(&self) -> Inputs;
@@ -61,7 +62,11 @@ fn given(member: &Member) -> Option<&str> {
 
 impl UnitTest for SingleTest<'_> {
     fn procedure(&self) -> ProcedureRecord {
-        self.procedure.record(self.limits.as_ref())
+        self.by().record()
+    }
+
+    fn session(&self) -> Session {
+        self.setup.session()
     }
 
     fn common_inputs(&self) -> Inputs {
@@ -78,7 +83,7 @@ impl UnitTest for SingleTest<'_> {
 
     fn run(&self, member: &Member, progress: &mut Progress) -> (RunResults, Option<Problems>) {
         let recording = std::slice::from_ref(&member.recording);
-        let evaluated = self.evaluate(recording, self.open(recording), given(member), progress);
+        let evaluated = self.evaluate(recording, &self.open(recording), given(member), progress);
         (evaluated.results, evaluated.problems)
     }
 }
@@ -92,6 +97,10 @@ struct PhasedUnits<'a> {
 impl UnitTest for PhasedUnits<'_> {
     fn procedure(&self) -> ProcedureRecord {
         self.test.phased.identity.clone()
+    }
+
+    fn session(&self) -> Session {
+        self.test.setup.session()
     }
 
     fn common_inputs(&self) -> Inputs {
@@ -126,70 +135,72 @@ impl UnitTest for PhasedUnits<'_> {
 /// # Errors
 /// The diagnostic, in words, where the lot as a whole cannot be tested or written.
 pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
-    let now = moment::now();
-    if is_phased(&args.procedure) {
-        let test = PhasedTest::load(args, now, lang)?;
-        if let Some(odd) = args.recording.iter().find(|r| !is_manifest(r) && r.exists()) {
-            let note = Note::new("lot.needs_manifests").with("path", odd.display().to_string());
-            return Err(place::error(&note, lang));
-        }
-        test_lot(args, &PhasedUnits { test, options: ReadOptions::default() }, now, lang)
-    } else {
-        test_lot(args, &SingleTest::load(args, now, lang)?, now, lang)
+    execute(&args.output, lang, |frame| {
+        let test: Box<dyn UnitTest + '_> = if is_phased(&args.procedure) {
+            let test = PhasedTest::load(args, frame.now, lang)?;
+            if let Some(odd) = args.recording.iter().find(|r| !is_manifest(r) && r.exists()) {
+                let note = Note::new("lot.needs_manifests").with("path", odd.display().to_string());
+                return Err(place::error(&note, lang));
+            }
+            Box::new(PhasedUnits { test, options: ReadOptions::default() })
+        } else {
+            Box::new(SingleTest::load(args, frame.now, lang)?)
+        };
+        LotRun::load(args, test, frame)
+    })
+}
+
+/// A test of every unit of a lot.
+struct LotRun<'a> {
+    args: &'a RunArgs,
+    test: Box<dyn UnitTest + 'a>,
+    keeper: Keeper,
+    members: Vec<Member>,
+    /// What the result of each unit is made from.
+    inputs: Vec<BTreeMap<String, String>>,
+}
+
+impl<'a> LotRun<'a> {
+    fn load(
+        args: &'a RunArgs,
+        test: Box<dyn UnitTest + 'a>,
+        frame: &mut Frame<'_>,
+    ) -> Result<LotRun<'a>, String> {
+        let lang = frame.lang;
+        let error = |note: Note| place::error(&note, lang);
+        let keeper = Keeper::new(&args.store, lang)?;
+        // What is wrong with a template is said before the first unit is tested.
+        let none = Results::of_lot(lot::lot(test.procedure(), test.session(), vec![]));
+        export(&none.whole(lang), EXPORTERS, &frame.writer.renderer).map_err(|e| error(e.note()))?;
+        frame.progress.stage("progress.inputs");
+        let pattern =
+            args.each.serial_from.as_deref().map(SerialPattern::parse).transpose().map_err(error)?;
+        let members =
+            members(&args.recording, test.options(), pattern.as_ref()).map_err(|e| refused(&e, lang))?;
+        let inputs = members.iter().map(|m| test.inputs(m).identities()).collect();
+        Ok(LotRun { args, test, keeper, members, inputs })
     }
 }
 
-fn test_lot(args: &RunArgs, test: &dyn UnitTest, now: DateTime<Utc>, lang: Lang) -> Result<u8, String> {
-    let error = |note: Note| place::error(&note, lang);
-    let writer = args.output.writer(lang)?;
-    let keeper = Keeper::new(&args.store, lang)?;
-    let printer = Printer::new(&args.output, lang);
-    let mut progress = printer.progress();
-    let session = Session {
-        operator: args.operator.clone(),
-        station: args.station.clone(),
-        evaluated_at: now.to_rfc3339_opts(SecondsFormat::Secs, true),
-    };
-    // What is wrong with a template is said before the first unit is tested.
-    let none = Results::of_lot(lot::lot(test.procedure(), session.clone(), vec![]));
-    export(&none.whole(lang), EXPORTERS, &writer.renderer).map_err(|e| error(e.note()))?;
-    progress.stage("progress.inputs");
-    let pattern = args.each.serial_from.as_deref().map(SerialPattern::parse).transpose().map_err(error)?;
-    let members =
-        members(&args.recording, test.options(), pattern.as_ref()).map_err(|e| refused(&e, lang))?;
-    let inputs: Vec<BTreeMap<String, String>> = members.iter().map(|m| test.inputs(m).identities()).collect();
-    let recordings: Vec<PathBuf> = members.iter().map(|m| m.recording.clone()).collect();
-    let out = OutputPlace::new(args.out.as_deref(), &test.procedure().id, Some("lot"), now);
-    let folder = test.common_inputs().lot(&inputs, files_read(&recordings, test.options())).begin(
-        &out,
-        Kind::Lot,
-        lang,
-    )?;
-    let work = Work {
-        test,
-        members: &members,
-        inputs: &inputs,
-        folder: &folder,
-        keeper: &keeper,
-        writer: &writer,
-        lang,
-    };
-    let jobs =
-        args.each.jobs.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
-    let units = work.run(jobs, printer, &mut progress)?;
-    progress.stage("progress.writing");
-    let record = lot::lot(test.procedure(), session, units);
-    let code = exit::code(record.verdict);
-    let outcome = record.on_terminal(lang);
-    let results = Results::of_lot(record);
-    writer.files(&results, &folder)?;
-    let place = publish(folder, results.whole(lang).record(), lang)?;
-    drop(progress);
-    printer.outcome(&place, Kind::Lot, |t| format!("\n{}", page::terminal(&outcome, t)))?;
-    for member in &members {
-        keeper.keep(&place.join(&member.folder), printer)?;
+impl Job for LotRun<'_> {
+    fn begin(&self, frame: &Frame<'_>) -> Result<StagedFolder, String> {
+        let recordings: Vec<PathBuf> = self.members.iter().map(|m| m.recording.clone()).collect();
+        let read = files_read(&recordings, self.test.options());
+        let id = self.test.procedure().id;
+        let out = OutputPlace::new(self.args.out.as_deref(), &id, Some("lot"), frame.now);
+        self.test.common_inputs().lot(&self.inputs, read).begin(&out, Kind::Lot, frame.lang)
     }
-    Ok(code)
+
+    fn run(&self, folder: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
+        let jobs = self.args.each.jobs.or_else(|| std::thread::available_parallelism().ok());
+        let work = Work { lot: self, folder, writer: &frame.writer, lang: frame.lang };
+        let units = work.run(jobs.map_or(1, NonZeroUsize::get), frame.printer, &mut frame.progress)?;
+        Ok(Results::of_lot(lot::lot(self.test.procedure(), self.test.session(), units)).into())
+    }
+
+    fn keep(&self, place: &Path, printer: Printer) -> Result<(), String> {
+        self.members.iter().try_for_each(|member| self.keeper.keep(&place.join(&member.folder), printer))
+    }
 }
 
 /// The diagnostic of units that cannot be identified.
@@ -197,9 +208,10 @@ fn refused(error: &LotError, lang: Lang) -> String {
     match error {
         LotError::Recording(e) => e.say(lang),
         LotError::Serial { notes, help } => {
-            let mut said: String = notes.iter().take(SAID).map(|note| place::error(note, lang)).collect();
-            if notes.len() > SAID {
-                let more = Note::new("lot.more").with("n", notes.len() - SAID).say(lang);
+            let mut said: String =
+                notes.iter().take(MAX_PRINTED_DIAGNOSTICS).map(|note| place::error(note, lang)).collect();
+            if notes.len() > MAX_PRINTED_DIAGNOSTICS {
+                let more = Note::new("lot.more").with("n", notes.len() - MAX_PRINTED_DIAGNOSTICS).say(lang);
                 said.push_str(&format!("  {more}\n"));
             }
             format!("{said}  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang))
@@ -218,13 +230,10 @@ fn unsaid(problems: Problems, said: &mut BTreeSet<(String, usize, String)>) -> O
     (!new.list.is_empty()).then_some(new)
 }
 
-/// The units of a lot and where their results go.
+/// The units of a lot in work, and the folder that their results go to.
 struct Work<'a> {
-    test: &'a dyn UnitTest,
-    members: &'a [Member],
-    inputs: &'a [BTreeMap<String, String>],
+    lot: &'a LotRun<'a>,
     folder: &'a StagedFolder,
-    keeper: &'a Keeper,
     writer: &'a Writer,
     lang: Lang,
 }
@@ -238,12 +247,12 @@ impl Work<'_> {
         let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
         let (send, receive) = channel();
         let testing = Note::new("progress.testing").say(self.lang);
-        let total = self.members.len() as u64;
+        let total = self.lot.members.len() as u64;
         let mut units: BTreeMap<usize, LotUnit> = BTreeMap::new();
         let mut failed = None;
         let mut said = BTreeSet::new();
         std::thread::scope(|scope| {
-            for _ in 0..jobs.min(self.members.len()) {
+            for _ in 0..jobs.min(self.lot.members.len()) {
                 let send = send.clone();
                 scope.spawn(|| {
                     let send = send;
@@ -277,9 +286,9 @@ impl Work<'_> {
 
     /// Tests one unit and writes its folder; `None` after the last.
     fn unit(&self, i: usize) -> Option<Result<(LotUnit, Option<Problems>), String>> {
-        let (member, inputs) = (self.members.get(i)?, self.inputs.get(i)?);
-        let (mut results, problems) = self.test.run(member, &mut Progress::silent(self.lang));
-        if let Err(why) = self.keeper.place_among_others(&mut results.outcome.record) {
+        let (member, inputs) = (self.lot.members.get(i)?, self.lot.inputs.get(i)?);
+        let (mut results, problems) = self.lot.test.run(member, &mut Progress::silent(self.lang));
+        if let Err(why) = self.lot.keeper.place_among_others(&mut results.outcome.record) {
             return Some(Err(why));
         }
         let unit = lot::unit(member, &results.outcome.record);

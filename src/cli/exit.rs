@@ -1,6 +1,10 @@
 //! Exit codes, as the README documents them.
 
 use crate::estimate::Verdict;
+use crate::mismatch::finding::MismatchVerdict;
+use crate::plan::record::PlanOutcome;
+use crate::record::ProofOutcome;
+use crate::report::{Record, Results};
 
 /// Every row passed, or there were no limits.
 pub const PASS: u8 = 0;
@@ -11,12 +15,38 @@ pub const ERROR: u8 = 2;
 /// Neither pass nor fail.
 pub const INDETERMINATE: u8 = 3;
 
-/// The exit code of a verdict.
-pub fn code(verdict: Verdict) -> u8 {
+/// The exit code of results.
+pub fn of(results: &Results) -> u8 {
+    match results.record().record() {
+        Record::Run(run) => of_verdict(run.verdict),
+        Record::Lot(lot) => of_verdict(lot.verdict),
+        Record::Explanation(one) => of_mismatch(one.explanation.verdict),
+        Record::Joint(several) => of_mismatch(several.explanation.verdict),
+        Record::Plan(file) => match file.plan.outcome {
+            PlanOutcome::Decides | PlanOutcome::NothingToDecide => PASS,
+            PlanOutcome::TooShort | PlanOutcome::Undecidable => INDETERMINATE,
+        },
+        Record::Proof(proof) => match proof.outcome {
+            ProofOutcome::Holds => PASS,
+            ProofOutcome::Fails => FAIL,
+        },
+        Record::Comparison(_) | Record::DataSheet(_) => PASS,
+    }
+}
+
+fn of_verdict(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::None | Verdict::Pass => PASS,
         Verdict::Fail => FAIL,
         Verdict::Indeterminate => INDETERMINATE,
         Verdict::Error => ERROR,
+    }
+}
+
+fn of_mismatch(verdict: MismatchVerdict) -> u8 {
+    match verdict {
+        MismatchVerdict::Consistent => PASS,
+        MismatchVerdict::Mismatch => FAIL,
+        MismatchVerdict::UnknownMismatch => INDETERMINATE,
     }
 }

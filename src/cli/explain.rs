@@ -1,21 +1,19 @@
 //! `sagnac explain`: where, and because of what, a recording differs from its simulation.
 
-use super::explain_args::{ExplainArgs, options, read, shown};
-use super::inputs::Inputs;
+use super::explain_args::{ExplainArgs, inputs, options, read, shown};
+use super::job::{Frame, Job, Made, execute};
 use super::place::{self, OutputPlace};
-use super::printer::Printer;
-use super::{exit, explain_jointly, next_step};
+use super::{explain_jointly, next_step};
+use crate::claim::Claim;
 use crate::config::model;
 use crate::effect::Column;
 use crate::i18n::{Arg, EffectText, Lang, Note, effect_key};
 use crate::ingest::{ReadOptions, are_several, files_read};
-use crate::mismatch;
-use crate::mismatch::finding::MismatchVerdict;
-use crate::moment;
-use crate::output::Kind;
-use crate::report::explain::{Context, ExplainView};
-use crate::report::{ExplanationResults, Results, terminal};
-use chrono::SecondsFormat;
+use crate::mismatch::{self, Options, Outcome};
+use crate::output::{Kind, StagedFolder};
+use crate::report::explain::Context;
+use crate::report::{ExplanationResults, Results};
+use crate::series::Series;
 use std::path::{Path, PathBuf};
 
 /// Explains a recording, or several together.
@@ -29,88 +27,114 @@ pub fn main(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
             return explain_jointly::main(args, files, lang);
         }
     }
-    single(args, lang)
+    execute(&args.output, lang, |_| {
+        args.join.check(args.simulation.as_slice(), "join.help.other", lang)?;
+        let options = options(args).map_err(|note| place::error(&note, lang))?;
+        // A mistake in the model is said before a long recording is read.
+        let stated = args.model.as_deref().map(model::load).transpose().map_err(|p| p.say(lang))?;
+        Ok(Explaining { args, options, stated })
+    })
 }
 
-fn single(args: &ExplainArgs, lang: Lang) -> Result<u8, String> {
-    let say = |note: Note| place::error(&note, lang);
-    let simulation: Vec<PathBuf> = args.simulation.clone().into_iter().collect();
-    args.join.check(&simulation, "join.help.other", lang)?;
-    let options = options(args).map_err(say)?;
-    let writer = args.output.writer(lang)?;
-    // What is wrong with the model is said before a long recording is read.
-    let stated = args.model.as_deref().map(model::load).transpose().map_err(|p| p.say(lang))?;
-    let now = moment::now();
-    let name = args.recording.first().map(|p| stem(p));
-    let out = OutputPlace::new(args.out.as_deref(), "explain", name.as_deref(), now);
-    let printer = Printer::new(&args.output, lang);
-    let mut progress = printer.progress();
-    progress.stage("progress.inputs");
-    let folder = Inputs::new(args.output.force)
-        .recording(&args.recording, &args.read.options())
-        .file("model", args.model.as_deref())
-        .files("simulation", &files_read(&simulation, &ReadOptions::default()))
-        .options(&(
-            (&args.rate, &args.unit, args.sample_rate, &args.read),
-            (&args.hide, &args.without, args.alpha, args.max_effects),
-        ))
-        .beside(args.output.templates.as_deref())
-        .begin(&out, Kind::Explanation, lang)?;
+/// The explanation of one recording.
+struct Explaining<'a> {
+    args: &'a ExplainArgs,
+    options: Options,
+    /// The claim of the model; `None` where it is identified from a simulation.
+    stated: Option<Claim>,
+}
 
-    let recording = read(args, &args.recording, &mut progress, lang)?;
-    if let Some(given) = options.hide.iter().find(|c| c.is_other() && !recording.columns.contains_key(c)) {
-        let others = recording.columns.keys().copied().filter(|c| c.is_other());
-        let known: Vec<&str> = Column::KNOWN.into_iter().chain(others).map(Column::name).collect();
-        let note = Note::new("explain.error.column").with("given", given.name());
-        return Err(say(note.with("known", known.join(", "))));
+/// A recording beside a claim.
+struct Explained {
+    claim: Claim,
+    /// The file that the claim comes from.
+    claim_file: String,
+    /// True where the claim was identified from a simulated recording.
+    identified: bool,
+    outcome: Outcome,
+}
+
+impl Job for Explaining<'_> {
+    fn begin(&self, frame: &Frame<'_>) -> Result<StagedFolder, String> {
+        let args = self.args;
+        let name = args.recording.first().map(|p| stem(p));
+        let out = OutputPlace::new(args.out.as_deref(), "explain", name.as_deref(), frame.now);
+        let simulation = files_read(args.simulation.as_slice(), &ReadOptions::default());
+        let inputs = inputs(args, &args.recording, frame).files("simulation", &simulation);
+        inputs.begin(&out, Kind::Explanation, frame.lang)
     }
-    let mut notes = recording.remarks();
-    let (claim, outcome, named, identified) = match (stated, args.simulation.as_deref()) {
-        (Some(claim), _) => {
-            let path = args.model.as_deref().map(shown).unwrap_or_default();
-            let outcome = mismatch::explain(recording, &claim, &options, &mut |p| progress.explaining(p));
-            (claim, outcome.map_err(say)?, path, false)
-        }
-        (None, Some(simulation)) => {
-            let series = read(args, &[simulation.to_owned()], &mut progress, lang)?;
-            let taken =
-                mismatch::explain_simulation(&recording, series, &options, &mut |p| progress.explaining(p));
-            let taken = taken.map_err(say)?;
-            if taken.same {
-                notes.push("explain.note.same_samples".into());
-            }
-            if !taken.shared.is_empty() {
-                let titles = taken.shared.iter().map(|e| Arg::Key(effect_key(e.kind(), EffectText::Title)));
-                let titles = Arg::Several(titles.collect(), ", ".into());
-                notes.push(Note::new("explain.note.shared").with("effects", titles));
-            }
-            (taken.claim, taken.outcome, shown(simulation), true)
-        }
-        (None, None) => return Err(say("explain.error.both".into())),
-    };
-    progress.stage("progress.writing");
 
-    let context = Context {
-        recording: args.recording.iter().map(|p| shown(p)).collect::<Vec<_>>().join(", "),
-        claim: named,
-        identified,
-        description: Some(claim.description.clone()),
-        explained_at: now.to_rfc3339_opts(SecondsFormat::Secs, true),
-        correction: outcome.correction.is_some(),
-        notes,
-    };
-    let view = ExplainView::new(&outcome.explanation, &[], &context, lang);
-    let results = Results::Explanation(Box::new(ExplanationResults::new(&outcome, context)));
-    let folder = writer.publish(&results, folder)?;
-    drop(progress);
-    printer.outcome(&folder, Kind::Explanation, |t| terminal::explanation(&view, lang, t))?;
-    let named = view.effects.iter().find(|e| !e.unknown);
-    printer.next_step(named.map(|e| next_step::after_effect(&e.kind)).as_ref());
-    Ok(match outcome.explanation.verdict {
-        MismatchVerdict::Consistent => exit::PASS,
-        MismatchVerdict::Mismatch => exit::FAIL,
-        MismatchVerdict::UnknownMismatch => exit::INDETERMINATE,
-    })
+    fn run(&self, _: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
+        let (args, lang) = (self.args, frame.lang);
+        let recording = read(args, &args.recording, frame)?;
+        let hidden = &self.options.hide;
+        if let Some(given) = hidden.iter().find(|c| c.is_other() && !recording.columns.contains_key(c)) {
+            let others = recording.columns.keys().copied().filter(|c| c.is_other());
+            let known: Vec<&str> = Column::KNOWN.into_iter().chain(others).map(Column::name).collect();
+            let note = Note::new("explain.error.column").with("given", given.name());
+            return Err(place::error(&note.with("known", known.join(", ")), lang));
+        }
+        let mut notes = recording.remarks();
+        let explained = match (&self.stated, &args.simulation) {
+            (Some(claim), _) => self.by_model(recording, claim, frame)?,
+            (None, Some(simulation)) => self.by_simulation(&recording, simulation, &mut notes, frame)?,
+            (None, None) => return Err(place::error(&"explain.error.both".into(), lang)),
+        };
+        let outcome = explained.outcome;
+        let context = Context {
+            recording: args.recording.iter().map(|p| shown(p)).collect::<Vec<_>>().join(", "),
+            claim: explained.claim_file,
+            identified: explained.identified,
+            description: Some(explained.claim.description),
+            explained_at: frame.stamp(),
+            correction: outcome.correction.is_some(),
+            notes,
+        };
+        Ok(Results::Explanation(Box::new(ExplanationResults::new(&outcome, context))).into())
+    }
+
+    fn next_step(&self, results: &Results, _: &Path) -> Option<Note> {
+        let Results::Explanation(results) = results else { return None };
+        let named = results.file.explanation.effects.iter().find(|e| !e.is_unnamed());
+        named.map(|e| next_step::after_effect(&e.kind))
+    }
+}
+
+impl Explaining<'_> {
+    fn by_model(&self, recording: Series, claim: &Claim, frame: &mut Frame<'_>) -> Result<Explained, String> {
+        let progress = &mut |p| frame.progress.explaining(p);
+        let outcome = mismatch::explain(recording, claim, &self.options, progress);
+        Ok(Explained {
+            claim: claim.clone(),
+            claim_file: self.args.model.as_deref().map(shown).unwrap_or_default(),
+            identified: false,
+            outcome: outcome.map_err(|note| place::error(&note, frame.lang))?,
+        })
+    }
+
+    /// Identifies the claim from a simulated recording; `notes` gets what must be known of the two.
+    fn by_simulation(
+        &self,
+        recording: &Series,
+        simulation: &PathBuf,
+        notes: &mut Vec<Note>,
+        frame: &mut Frame<'_>,
+    ) -> Result<Explained, String> {
+        let series = read(self.args, std::slice::from_ref(simulation), frame)?;
+        let progress = &mut |p| frame.progress.explaining(p);
+        let taken = mismatch::explain_simulation(recording, series, &self.options, progress);
+        let taken = taken.map_err(|note| place::error(&note, frame.lang))?;
+        if taken.same {
+            notes.push("explain.note.same_samples".into());
+        }
+        if !taken.shared.is_empty() {
+            let titles = taken.shared.iter().map(|e| Arg::Key(effect_key(e.kind(), EffectText::Title)));
+            let titles = Arg::Several(titles.collect(), ", ".into());
+            notes.push(Note::new("explain.note.shared").with("effects", titles));
+        }
+        let (claim, outcome) = (taken.claim, taken.outcome);
+        Ok(Explained { claim, claim_file: shown(simulation), identified: true, outcome })
+    }
 }
 
 /// The name of a file without its endings.

@@ -1,13 +1,14 @@
 //! Command-line arguments of `sagnac explain`, for one recording and for several.
 
+use super::inputs::Inputs;
+use super::job::Frame;
 use super::join::JoinArgs;
 use super::options::OutputArgs;
-use super::progress::Progress;
 use super::read::ReadArgs;
 use crate::effect::{Column, EFFECTS, find};
-use crate::i18n::{Lang, Note};
-use crate::mismatch::{self, Options};
-use crate::series::{Series, SeriesOptions, load_series};
+use crate::i18n::Note;
+use crate::mismatch::Options;
+use crate::series::{Series, SeriesOptions};
 use clap::Args;
 use sagnac_core::spelling::nearest;
 use std::path::{Path, PathBuf};
@@ -93,12 +94,7 @@ pub(super) fn options(args: &ExplainArgs) -> Result<Options, Note> {
 }
 
 /// Reads a recording.
-pub(super) fn read(
-    args: &ExplainArgs,
-    paths: &[PathBuf],
-    progress: &mut Progress,
-    lang: Lang,
-) -> Result<Series, String> {
+pub(super) fn read(args: &ExplainArgs, paths: &[PathBuf], frame: &mut Frame<'_>) -> Result<Series, String> {
     let options = SeriesOptions {
         read: args.read.options(),
         rate: args.rate.clone(),
@@ -107,11 +103,14 @@ pub(super) fn read(
         channels: vec![],
         sample_rate_hz: args.sample_rate,
     };
-    let series = load_series(paths, &options, &mut |done, total| {
-        progress.explaining(mismatch::Progress { doing: "explain.progress.reading", done, total });
-    });
-    series.map_err(|e| {
-        progress.finish();
-        e.say(lang)
-    })
+    frame.series(paths, &options)
+}
+
+/// The inputs of an explanation: its recordings, the model and the options.
+pub(super) fn inputs(args: &ExplainArgs, recordings: &[PathBuf], frame: &Frame<'_>) -> Inputs {
+    let inputs = frame.inputs().recording(recordings, &args.read.options());
+    inputs.file("model", args.model.as_deref()).options(&(
+        (&args.rate, &args.unit, args.sample_rate, &args.read),
+        (&args.hide, &args.without, args.alpha, args.max_effects),
+    ))
 }

@@ -1,22 +1,20 @@
 //! `sagnac explain A B ...`: what several recordings of one unit share, and what each shows besides.
 
-use super::explain_args::{ExplainArgs, options, read, shown};
-use super::inputs::Inputs;
+use super::explain_args::{ExplainArgs, inputs, options, read, shown};
+use super::job::{Frame, Job, Made, execute};
+use super::next_step;
 use super::place::{self, OutputPlace};
-use super::printer::Printer;
-use super::progress::Progress;
-use super::{exit, next_step};
+use super::progress::{Measure, Progress};
+use crate::claim::Claim;
 use crate::config::model;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{RecordingError, each_of};
-use crate::mismatch::finding::MismatchVerdict;
+use crate::mismatch::Options;
 use crate::mismatch::joint::{JointOutcome, JointProgress, Recording, explain_jointly};
-use crate::moment;
-use crate::output::Kind;
+use crate::output::{Kind, StagedFolder};
 use crate::report::explain::Context;
 use crate::report::joint::{JointContext, JointFile};
-use crate::report::{Documented, ExplanationResults, JointResults, Results, page};
-use chrono::SecondsFormat;
+use crate::report::{ExplanationResults, JointResults, Results};
 use std::path::{Path, PathBuf};
 
 /// The files of the recordings that are named, patterns among them.
@@ -36,60 +34,56 @@ pub fn files(args: &ExplainArgs, lang: Lang) -> Result<Vec<PathBuf>, String> {
 /// # Errors
 /// The diagnostic, in words; it names the recording.
 pub fn main(args: &ExplainArgs, files: Vec<PathBuf>, lang: Lang) -> Result<u8, String> {
-    let say = |note: Note| place::error(&note, lang);
-    let Some(path) = args.model.as_deref() else {
-        return Err(say("explain.error.several_need_model".into()));
-    };
-    let options = options(args).map_err(say)?;
-    let writer = args.output.writer(lang)?;
-    let claim = model::load(path).map_err(|p| p.say(lang))?;
-    let now = moment::now();
-    let out = OutputPlace::new(
-        args.out.as_deref(),
-        "explain",
-        Some(claim.case.as_str()).filter(|c| !c.is_empty()),
-        now,
-    );
-    let printer = Printer::new(&args.output, lang);
-    let mut progress = printer.progress();
-    progress.stage("progress.inputs");
-    let folder = Inputs::new(args.output.force)
-        .recording(&files, &args.read.options())
-        .file("model", Some(path))
-        .options(&(
-            (&args.rate, &args.unit, args.sample_rate, &args.read),
-            (&args.hide, &args.without, args.alpha, args.max_effects),
-        ))
-        .beside(args.output.templates.as_deref())
-        .begin(&out, Kind::Joint, lang)?;
-
-    let mut recordings = vec![];
-    for (i, file) in files.iter().enumerate() {
-        let series = read(args, std::slice::from_ref(file), &mut progress, lang)?;
-        let folder = format!("recordings/{:02}-{}", i + 1, folder_name(file));
-        recordings.push(Recording { name: shown(file), folder, series });
-    }
-    let remarks: Vec<Vec<Note>> = recordings.iter().map(|r| r.series.remarks()).collect();
-    let count = files.len();
-    let outcome = explain_jointly(recordings, &claim, &options, &mut |p| tell(p, count, &mut progress, lang));
-    let outcome = outcome.map_err(|e| {
-        let file = files.get(e.recording).map(|f| shown(f)).unwrap_or_default();
-        say(Note::new("explain.error.of_recording").with("file", file).with("reason", e.note))
-    })?;
-    progress.stage("progress.writing");
-    let explained_at = now.to_rfc3339_opts(SecondsFormat::Secs, true);
-    let results = results(&outcome, shown(path), explained_at, remarks);
-    let told = results.file.on_terminal(lang);
-    let folder = writer.publish(&Results::Joint(Box::new(results)), folder)?;
-    drop(progress);
-    printer.outcome(&folder, Kind::Joint, |t| page::terminal(&told, t))?;
-    let named = outcome.explanation.shared.first().map(|s| next_step::after_effect(&s.kind));
-    printer.next_step(named.as_ref());
-    Ok(match outcome.explanation.verdict {
-        MismatchVerdict::Consistent => exit::PASS,
-        MismatchVerdict::Mismatch => exit::FAIL,
-        MismatchVerdict::UnknownMismatch => exit::INDETERMINATE,
+    execute(&args.output, lang, |_| {
+        let say = |note: Note| place::error(&note, lang);
+        let model = args.model.clone().ok_or_else(|| say("explain.error.several_need_model".into()))?;
+        let options = options(args).map_err(say)?;
+        let claim = model::load(&model).map_err(|p| p.say(lang))?;
+        Ok(ExplainingJointly { args, files, options, model, claim })
     })
+}
+
+/// The explanation of several recordings together.
+struct ExplainingJointly<'a> {
+    args: &'a ExplainArgs,
+    files: Vec<PathBuf>,
+    options: Options,
+    model: PathBuf,
+    claim: Claim,
+}
+
+impl Job for ExplainingJointly<'_> {
+    fn begin(&self, frame: &Frame<'_>) -> Result<StagedFolder, String> {
+        let case = Some(self.claim.case.as_str()).filter(|c| !c.is_empty());
+        let out = OutputPlace::new(self.args.out.as_deref(), "explain", case, frame.now);
+        inputs(self.args, &self.files, frame).begin(&out, Kind::Joint, frame.lang)
+    }
+
+    fn run(&self, _: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
+        let lang = frame.lang;
+        let mut recordings = vec![];
+        for (i, file) in self.files.iter().enumerate() {
+            let series = read(self.args, std::slice::from_ref(file), frame)?;
+            let folder = format!("recordings/{:02}-{}", i + 1, folder_name(file));
+            recordings.push(Recording { name: shown(file), folder, series });
+        }
+        let remarks: Vec<Vec<Note>> = recordings.iter().map(|r| r.series.remarks()).collect();
+        let count = self.files.len();
+        let progress = &mut |p| tell(p, count, &mut frame.progress, lang);
+        let outcome = explain_jointly(recordings, &self.claim, &self.options, progress);
+        let outcome = outcome.map_err(|e| {
+            let file = self.files.get(e.recording).map(|f| shown(f)).unwrap_or_default();
+            let note = Note::new("explain.error.of_recording").with("file", file);
+            place::error(&note.with("reason", e.note), lang)
+        })?;
+        let results = results(&outcome, shown(&self.model), frame.stamp(), remarks);
+        Ok(Results::Joint(Box::new(results)).into())
+    }
+
+    fn next_step(&self, results: &Results, _: &Path) -> Option<Note> {
+        let Results::Joint(results) = results else { return None };
+        results.file.explanation.shared.first().map(|s| next_step::after_effect(&s.kind))
+    }
 }
 
 fn results(
@@ -127,7 +121,7 @@ fn tell(p: JointProgress, recordings: usize, progress: &mut Progress, lang: Lang
         .with("doing", Note::new(p.of.doing).say(lang))
         .with("k", recording + 1)
         .with("n", recordings);
-    progress.update(&doing.say(lang), super::progress::Measure::Steps, p.of.done, p.of.total);
+    progress.update(&doing.say(lang), Measure::Steps, p.of.done, p.of.total);
 }
 
 /// The name of a file as a folder may have it.

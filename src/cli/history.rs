@@ -2,7 +2,7 @@
 
 use super::keep::StoreArgs;
 use super::options::{Pages, pdf_pages, renderer};
-use super::printer::terminal as standard_output;
+use super::printer::standard_output;
 use super::{exit, place, stdout, store};
 use crate::acceptance::history::history;
 use crate::i18n::{Lang, Note};
@@ -15,8 +15,7 @@ use crate::report::pdf::of_history;
 use crate::report::terminal::{self, Terminal};
 use crate::store::{Attempt, Filter};
 use clap::{Args, ValueEnum};
-use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Width of text in a file.
 const FILE_WIDTH: usize = 120;
@@ -111,7 +110,8 @@ pub fn main(args: &HistoryArgs, lang: Lang) -> Result<u8, String> {
     let text = String::from_utf8_lossy(&bytes);
     match &args.out {
         Some(out) => {
-            write(out, &bytes, args.force).map_err(say)?;
+            let staged = StagedFile::begin(out, &[], args.force).map_err(|e| say(e.note()))?;
+            staged.publish_with(&bytes).map_err(|e| say(e.note()))?;
             place::print(&format!("{}\n", place::shown(out)));
         }
         None if args.format == HistoryFormat::Table => stdout::write_styled(&text),
@@ -170,12 +170,4 @@ fn json(record: &HistoryRecord, lang: Lang) -> Result<String, String> {
     let json = serde_json::to_string_pretty(record)
         .map_err(|e| place::error(&Note::new("system.other").with("reason", e.to_string()), lang))?;
     Ok(format!("{json}\n"))
-}
-
-fn write(out: &Path, bytes: &[u8], force: bool) -> Result<(), Note> {
-    let staged = StagedFile::begin(out, &[], force).map_err(|e| e.note())?;
-    let written = staged.file().map_err(|e| e.note())?.write_all(bytes);
-    written.map_err(|e| staged.refused(e).note())?;
-    staged.publish().map_err(|e| e.note())?;
-    Ok(())
 }

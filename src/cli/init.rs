@@ -1,7 +1,7 @@
 //! `sagnac init`: a procedure, limits and a job for continuous integration from what a recording holds.
 
 use super::columns::ColumnArgs;
-use super::finish::with_progress;
+use super::evaluate::with_progress;
 use super::join::JoinArgs;
 use super::progress::{Display, Progress};
 use super::read::ReadArgs;

@@ -61,11 +61,6 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    /// Keeps nothing.
-    pub fn none(lang: Lang) -> Keeper {
-        Keeper { path: None, recordings: false, lang, numbers: Mutex::default() }
-    }
-
     /// What the options ask for. A store that cannot be used is found now, before any work is done.
     ///
     /// # Errors

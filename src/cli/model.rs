@@ -13,7 +13,6 @@ use crate::output::StagedFile;
 use crate::record::{self, RunRecord};
 use crate::series::{SeriesOptions, load_series};
 use clap::Args;
-use std::io::Write as _;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
@@ -66,10 +65,7 @@ pub fn main(args: &ModelArgs, lang: Lang) -> Result<u8, String> {
     for note in notes {
         place::eprint_diagnostic(&place::warning(&note, lang));
     }
-    let text = model::write(&claim);
-    let written = staged.file().map_err(|e| say(e.note()))?.write_all(text.as_bytes());
-    written.map_err(|e| say(staged.refused(e).note()))?;
-    staged.publish().map_err(|e| say(e.note()))?;
+    staged.publish_with(model::write(&claim).as_bytes()).map_err(|e| say(e.note()))?;
     place::print(&format!("{}\n", place::shown(&args.out)));
     if !args.quiet {
         place::print(&format!("{}\n", next_step::after_model(&args.out).say(lang)));
@@ -112,11 +108,7 @@ fn of_recording(args: &ModelArgs, lang: Lang) -> Result<Claim, String> {
     let series = load_series(std::slice::from_ref(&args.from_what), &options, &mut |done, total| {
         progress.reading(&reading, done, total);
     });
-    let series = series.map_err(|e| {
-        progress.finish();
-        e.say(lang)
-    })?;
-    let series = series.between(from.unwrap_or(0.0), to.unwrap_or(f64::INFINITY));
+    let series = series.map_err(|e| e.say(lang))?.between(from.unwrap_or(0.0), to.unwrap_or(f64::INFINITY));
     let claim = mismatch::identify(&series, &mut |p| progress.explaining(p));
     let claim = claim.and_then(|claim| {
         let found = mismatch::explain(series, &claim, &Options::default(), &mut |p| progress.explaining(p));

@@ -49,6 +49,13 @@ pub fn after_model(model: &Path) -> Note {
     Note::new("next_step.model").with("model", for_shell(&model.display().to_string()))
 }
 
+/// After a test was planned: its recording, simulated.
+pub fn after_plan(model: &Path, schedule: &Path) -> Note {
+    Note::new("next_step.plan")
+        .with("model", for_shell(&model.display().to_string()))
+        .with("schedule", for_shell(&schedule.display().to_string()))
+}
+
 /// After the demonstration.
 pub fn after_demo() -> Note {
     Note::new("next_step.own_recording")

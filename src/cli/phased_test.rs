@@ -1,36 +1,33 @@
 //! A procedure of several phases, ready to be run on manifests: each phase on its files.
 
-use super::finish::{not_run, with_progress};
-use super::inputs::{Inputs, Serial, completed};
+use super::evaluate::Evaluated;
+use super::inputs::{Inputs, Serial};
 use super::place;
 use super::procedures::say_which;
 use super::progress::Progress;
 use super::run_args::RunArgs;
-use super::single_test::kept_texts;
+use super::test_setup::{ProcedureWithLimits, Setup, Test};
+use crate::acceptance::Outcome;
 use crate::acceptance::phases::{Done, combine};
-use crate::acceptance::{Outcome, Request, session};
 use crate::config::manifest::{Manifest, ManifestFile};
-use crate::config::procedure::missing_columns::missing_columns;
 use crate::config::procedure::phases::{Phase, Phased, load_phased};
 use crate::config::procedure::{EffectiveLimits, effective};
 use crate::estimate::Verdict;
 use crate::i18n::{Lang, Localize, Note};
-use crate::ingest::unit_data::UnitData;
-use crate::ingest::{IngestError, ReadOptions, Source, open_files};
-use crate::noise::tau_grid::TauGrid;
-use crate::record::{RunKind, Session, UnitUnderTest};
+use crate::ingest::{ReadOptions, Source, open_files};
+use crate::record::UnitUnderTest;
 use crate::report::RunResults;
-use chrono::{DateTime, SecondsFormat, Utc};
+use chrono::{DateTime, Utc};
 use std::path::PathBuf;
 
 /// A procedure of several phases.
 pub struct PhasedTest<'a> {
     args: &'a RunArgs,
+    /// The procedure.
     pub phased: Phased,
     limits: Vec<EffectiveLimits>,
-    taus: Option<TauGrid>,
-    units: UnitData,
-    now: DateTime<Utc>,
+    /// The options of the command line.
+    pub setup: Setup<'a>,
 }
 
 impl<'a> PhasedTest<'a> {
@@ -40,6 +37,7 @@ impl<'a> PhasedTest<'a> {
     /// The diagnostics, in words.
     pub fn load(args: &'a RunArgs, now: DateTime<Utc>, lang: Lang) -> Result<PhasedTest<'a>, String> {
         let error = |note: Note| place::error(&note, lang);
+        let setup = Setup::load(args, now, lang)?;
         say_which(&[&args.procedure], lang);
         let phased = load_phased(&args.procedure).map_err(|p| p.say(lang))?;
         if args.limits.is_some() {
@@ -48,7 +46,6 @@ impl<'a> PhasedTest<'a> {
         if let Some(odd) = phased.phases.iter().find(|p| p.procedure.value.explain.is_some()) {
             return Err(error(Note::new("phases.explain").with("id", odd.id.as_str())));
         }
-        let taus = args.grid.grid(lang)?;
         let limits: Vec<EffectiveLimits> =
             phased.phases.iter().map(|p| effective(&p.procedure, p.limits.as_ref())).collect();
         for (phase, limits) in phased.phases.iter().zip(&limits) {
@@ -56,8 +53,7 @@ impl<'a> PhasedTest<'a> {
                 place::eprint_diagnostic(&format!("{}\n", warning.say(lang)));
             }
         }
-        let units = args.units(lang)?;
-        Ok(PhasedTest { args, phased, limits, taus, units, now })
+        Ok(PhasedTest { args, phased, limits, setup })
     }
 
     /// What a result of this test is made from, but for the recording and its unit.
@@ -71,13 +67,8 @@ impl<'a> PhasedTest<'a> {
         let layouts: Vec<PathBuf> = phases()
             .filter_map(|p| p.procedure.value.recording.read.layout.as_ref().map(|l| l.path.clone()))
             .collect();
-        Inputs::new(self.args.output.force)
-            .files("procedure", &procedures)
-            .files("limits", &limits)
-            .files("layout", &layouts)
-            .file("unit_data", self.args.unit_data.as_deref())
-            .options(&(&self.args.grid.taus, self.args.grid.exact))
-            .beside(self.args.output.templates.as_deref())
+        let inputs = self.setup.inputs().files("procedure", &procedures);
+        inputs.files("limits", &limits).files("layout", &layouts)
     }
 
     /// What the result of a recording is made from.
@@ -87,59 +78,51 @@ impl<'a> PhasedTest<'a> {
 
     /// Runs every phase on its files.
     pub fn evaluate(&self, manifest: &Manifest, serial: Serial, progress: &mut Progress) -> PhasesEvaluated {
-        let of_recording = serial.of_recording;
+        let lang = progress.lang();
         let unit = self.unit(serial.number, Some(manifest));
         let mut done: Vec<Done<'_>> = Vec::new();
-        let mut who = None;
         let mut explained = vec![];
         for (phase, limits) in self.phased.phases.iter().zip(&self.limits) {
             let files = files(phase, manifest);
-            let outcome = (!files.is_empty()).then(|| {
-                self.run(
-                    phase,
-                    limits,
-                    manifest,
-                    &files,
-                    (&unit, of_recording, &mut who, &mut explained),
-                    progress,
-                )
+            let evaluated = (!files.is_empty()).then(|| {
+                let unit = unit.clone();
+                self.run(PhaseRun { phase, limits, files, unit }, manifest, serial.of_recording, progress)
             });
-            done.push(Done { phase, outcome });
+            if let Some(problems) = evaluated.as_ref().and_then(|e| e.problems.as_ref()) {
+                progress.beside(|| place::eprint_diagnostic(&problems.say(lang)));
+                explained.push(phase.id.clone());
+            }
+            done.push(Done { phase, outcome: evaluated.map(|e| e.results.outcome) });
         }
-        let record = combine(&self.phased, &done, unit, who.unwrap_or_default());
-        let phases = done.into_iter().map(|d| d.outcome).collect();
-        let outcome = Outcome { record, figures: vec![], tables: vec![] };
-        PhasesEvaluated { results: RunResults { outcome, phases, explanation: None }, explained }
+        PhasesEvaluated { results: self.combined(done, unit), explained }
     }
 
     /// The results where no phase could be run, with the reason.
     pub fn not_run(&self, why: Note, serial: Option<String>) -> RunResults {
-        let done: Vec<Done<'_>> =
-            self.phased.phases.iter().map(|phase| Done { phase, outcome: None }).collect();
-        let session = Session {
-            operator: self.args.operator.clone(),
-            station: self.args.station.clone(),
-            evaluated_at: self.now.to_rfc3339_opts(SecondsFormat::Secs, true),
-        };
-        let mut record = combine(&self.phased, &done, self.unit(serial, None), session);
+        let done = self.phased.phases.iter().map(|phase| Done { phase, outcome: None }).collect();
+        let mut results = self.combined(done, self.unit(serial, None));
+        let record = &mut results.outcome.record;
         record.verdict = Verdict::Error;
         record.errors.push(Note::new("error.not_evaluated").with("reason", why).into());
         record.summary = record.errors.clone();
+        results
+    }
+
+    /// The results of the whole from those of the phases.
+    fn combined(&self, done: Vec<Done<'_>>, unit: UnitUnderTest) -> RunResults {
+        let record = combine(&self.phased, &done, unit, self.setup.session());
         let phases = done.into_iter().map(|d| d.outcome).collect();
         RunResults { outcome: Outcome { record, figures: vec![], tables: vec![] }, phases, explanation: None }
     }
 
-    /// What is known of the unit: from the command line, else the manifest, else the table of units.
     fn unit(&self, serial: Option<String>, manifest: Option<&Manifest>) -> UnitUnderTest {
-        let unit = UnitUnderTest {
-            serial,
+        let described = UnitUnderTest {
             family: self.phased.family.clone(),
             part: self.phased.part.clone(),
             revision: self.phased.part_revision.clone(),
-            lot: self.args.lot.clone(),
             ..UnitUnderTest::default()
         };
-        completed(unit, manifest, &self.units)
+        self.setup.unit(described, serial, manifest)
     }
 
     /// The serial number of the unit: as given, or else by the manifest, or else by the files of the phases.
@@ -161,66 +144,49 @@ impl<'a> PhasedTest<'a> {
         Serial::of(given, Some(manifest), &sources.iter().collect::<Vec<_>>())
     }
 
-    /// Runs one phase on its files; `who` gets who evaluates, by the first, and `explained` the phase whose missing columns were
-    /// printed.
     fn run(
         &self,
-        phase: &Phase,
-        limits: &EffectiveLimits,
+        run: PhaseRun<'_>,
         manifest: &Manifest,
-        files: &[ManifestFile],
-        (unit, of_recording, who, explained): (&UnitUnderTest, bool, &mut Option<Session>, &mut Vec<String>),
+        serial_of_recording: bool,
         progress: &mut Progress,
-    ) -> Outcome {
+    ) -> Evaluated {
+        let PhaseRun { phase, limits, files, unit } = run;
         let options = manifest.options_over(&phase.procedure.value.recording.read);
         let name = files.first().map_or_else(|| manifest.path.clone(), |f| f.path.clone());
-        let (source, refused) = match open_files(&name, files, manifest.contiguous, &options) {
+        let (source, refused) = match open_files(&name, &files, manifest.contiguous, &options) {
             Ok(source) => (source, None),
-            Err(e) => (Source::unopened(&name), Some(e)),
+            Err(e) => (Source::unopened(&name), Some(e.into())),
         };
-        let request = Request {
-            kind: RunKind::Run,
-            procedure: &phase.procedure.value,
-            procedure_record: Some(phase.procedure.record(phase.limits.as_ref())),
-            limits,
-            source: &source,
-            use_stamps: true,
-            unit: unit.clone(),
-            serial_of_recording: of_recording,
-            operator: self.args.operator.clone(),
-            station: self.args.station.clone(),
-            now: self.now,
-            taus: self.taus.clone(),
-            exact: self.args.grid.exact,
-        };
-        who.get_or_insert_with(|| session(&request));
         let lang = progress.lang();
-        let label = format!("{}: {}", phase.title.say(lang), Note::new("cli.reading").say(lang));
-        let missing = if refused.is_none() { missing_column(phase, &source, progress) } else { None };
-        explained.extend(missing.as_ref().map(|_| phase.id.clone()));
-        let mut outcome = match refused.or(missing) {
-            Some(e) => not_run(&request, &e.into()),
-            None => with_progress(&request, &label, progress).unwrap_or_else(|e| not_run(&request, &e)),
+        let (procedure, effective) = (&phase.procedure, limits);
+        let test = Test {
+            by: ProcedureWithLimits { procedure, limits: phase.limits.as_ref(), effective },
+            source: &source,
+            refused,
+            unit,
+            serial_of_recording,
+            against: None,
+            label: &format!("{}: {}", phase.title.say(lang), Note::new("cli.reading").say(lang)),
         };
-        outcome.tables.extend(kept_texts(&phase.procedure, phase.limits.as_ref()));
-        outcome
+        self.setup.evaluate(test, progress)
     }
 }
 
-/// What came of all phases.
+/// A phase with its recording.
+struct PhaseRun<'a> {
+    phase: &'a Phase,
+    limits: &'a EffectiveLimits,
+    files: Vec<ManifestFile>,
+    unit: UnitUnderTest,
+}
+
+/// The results of all phases.
 pub struct PhasesEvaluated {
     /// Record, figures and tables.
     pub results: RunResults,
     /// Ids of the phases whose failure was printed with all its reasons.
     pub explained: Vec<String>,
-}
-
-/// The first column that the recording of a phase lacks; all of them are printed.
-fn missing_column(phase: &Phase, source: &Source, progress: &mut Progress) -> Option<IngestError> {
-    let (problems, first) = missing_columns(&phase.procedure, source)?;
-    let lang = progress.lang();
-    progress.beside(|| place::eprint_diagnostic(&problems.say(lang)));
-    Some(first)
 }
 
 /// What a file's phase leaves when the id of a phase is taken off; `None` when it is not of that phase.

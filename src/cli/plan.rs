@@ -1,11 +1,10 @@
 //! `sagnac plan`: the schedule of the next test, which tells the explanations of a recording apart.
 
-use super::inputs::Inputs;
+use super::job::{Frame, Job, Made, execute};
 use super::options::OutputArgs;
-use super::place::OutputPlace;
-use super::printer::Printer;
-use super::progress::{Measure, Progress};
-use super::{exit, place, simulate};
+use super::place::{self, OutputPlace};
+use super::progress::Measure;
+use super::{next_step, simulate};
 use crate::claim::Claim;
 use crate::config::alternatives;
 use crate::config::model::load_model;
@@ -13,15 +12,12 @@ use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::ReadOptions;
 use crate::mismatch::finding::Finding;
 use crate::mismatch::{self, Alternative, Options};
-use crate::moment;
-use crate::output::Kind;
-use crate::plan::record::PlanOutcome;
+use crate::output::{Kind, StagedFolder};
 use crate::plan::{Limits, plan};
 use crate::record::explanation::Explanation;
 use crate::report::plan::{PlanContext, PlanFile};
-use crate::report::{ALTERNATIVES_FILE, Documented, Results, StoredResults, page};
-use crate::series::{SeriesOptions, load_series};
-use chrono::SecondsFormat;
+use crate::report::{ALTERNATIVES_FILE, Record, Results, SCHEDULE_FILE, StoredResults};
+use crate::series::SeriesOptions;
 use clap::Args;
 use std::path::{Path, PathBuf};
 
@@ -59,57 +55,51 @@ pub struct PlanArgs {
 }
 
 pub fn main(args: &PlanArgs, lang: Lang) -> Result<u8, String> {
-    let limits = limits(args, lang)?;
-    let writer = args.output.writer(lang)?;
-    let claim = load_model(&args.model).map_err(|p| p.say(lang))?.claim;
-    let now = moment::now();
-    let printer = Printer::new(&args.output, lang);
-    let mut progress = printer.progress();
-    progress.stage("progress.inputs");
-    let case = Some(claim.case.as_str()).filter(|c| !c.is_empty());
-    let out = OutputPlace::new(args.out.as_deref(), "plan", case, now);
-    let read =
-        if args.explained.is_dir() { args.explained.join(ALTERNATIVES_FILE) } else { args.explained.clone() };
-    let folder = Inputs::new(args.output.force)
-        .file("explanation", Some(&read))
-        .beside(Some(&args.explained))
-        .file("model", Some(&args.model))
-        .options(&limits)
-        .beside(args.output.templates.as_deref())
-        .begin(&out, Kind::Plan, lang)?;
-    let Explained { alternatives, named } = explained(args, &claim, &mut progress, lang)?;
-    let label = Note::new("plan.progress").say(lang);
-    let plan = plan(&claim, &alternatives, &limits, &mut |done, total| {
-        progress.update(&label, Measure::Steps, done, total);
-    });
-    progress.stage("progress.writing");
-    let context = PlanContext {
-        explained: args.explained.display().to_string(),
-        model: args.model.display().to_string(),
-        planned_at: now.to_rfc3339_opts(SecondsFormat::Secs, true),
-        notes: unplanned(&named, &alternatives).into_iter().collect(),
-    };
-    let outcome = plan.outcome;
-    let file = PlanFile { plan, context };
-    let told = file.on_terminal(lang);
-    let is_scheduled = file.plan.schedule.as_ref().is_some_and(|s| !s.schedule.steps.is_empty());
-    let folder = writer.publish(&Results::of_plan(file), folder)?;
-    drop(progress);
-    printer.outcome(&folder, Kind::Plan, |t| page::terminal(&told, t))?;
-    if !is_scheduled {
-        return Ok(code(outcome));
-    }
-    let next = Note::new("next_step.plan")
-        .with("model", place::for_shell(&args.model.display().to_string()))
-        .with("schedule", place::for_shell(&folder.join("schedule.toml").display().to_string()));
-    printer.next_step(Some(&next));
-    Ok(code(outcome))
+    execute(&args.output, lang, |_| {
+        let limits = limits(args, lang)?;
+        let claim = load_model(&args.model).map_err(|p| p.say(lang))?.claim;
+        Ok(Planning { args, limits, claim })
+    })
 }
 
-fn code(outcome: PlanOutcome) -> u8 {
-    match outcome {
-        PlanOutcome::Decides | PlanOutcome::NothingToDecide => exit::PASS,
-        PlanOutcome::TooShort | PlanOutcome::Undecidable => exit::INDETERMINATE,
+/// The plan of the next test.
+struct Planning<'a> {
+    args: &'a PlanArgs,
+    limits: Limits,
+    claim: Claim,
+}
+
+impl Job for Planning<'_> {
+    fn begin(&self, frame: &Frame<'_>) -> Result<StagedFolder, String> {
+        let Planning { args, limits, claim } = self;
+        let case = Some(claim.case.as_str()).filter(|c| !c.is_empty());
+        let out = OutputPlace::new(args.out.as_deref(), "plan", case, frame.now);
+        let explained = &args.explained;
+        let read = if explained.is_dir() { explained.join(ALTERNATIVES_FILE) } else { explained.clone() };
+        let inputs = frame.inputs().file("explanation", Some(&read)).beside(Some(explained));
+        inputs.file("model", Some(&args.model)).options(limits).begin(&out, Kind::Plan, frame.lang)
+    }
+
+    fn run(&self, _: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
+        let args = self.args;
+        let Explained { alternatives, named } = explained(args, &self.claim, frame)?;
+        let label = Note::new("plan.progress").say(frame.lang);
+        let plan = plan(&self.claim, &alternatives, &self.limits, &mut |done, total| {
+            frame.progress.update(&label, Measure::Steps, done, total);
+        });
+        let context = PlanContext {
+            explained: args.explained.display().to_string(),
+            model: args.model.display().to_string(),
+            planned_at: frame.stamp(),
+            notes: unplanned(&named, &alternatives).into_iter().collect(),
+        };
+        Ok(Results::of_plan(PlanFile { plan, context }).into())
+    }
+
+    fn next_step(&self, results: &Results, place: &Path) -> Option<Note> {
+        let Record::Plan(file) = results.record().record() else { return None };
+        file.plan.schedule.as_ref().filter(|planned| !planned.schedule.steps.is_empty())?;
+        Some(next_step::after_plan(&self.args.model, &place.join(SCHEDULE_FILE)))
     }
 }
 
@@ -121,14 +111,9 @@ struct Explained {
 }
 
 /// The alternatives of an explanation, or of a recording that is explained first.
-fn explained(
-    args: &PlanArgs,
-    claim: &Claim,
-    progress: &mut Progress,
-    lang: Lang,
-) -> Result<Explained, String> {
+fn explained(args: &PlanArgs, claim: &Claim, frame: &mut Frame<'_>) -> Result<Explained, String> {
     let is_record = args.explained.extension().is_some_and(|e| e == "json") || args.explained.is_dir();
-    if is_record { of_folder(&args.explained, lang) } else { of_recording(args, claim, progress, lang) }
+    if is_record { of_folder(&args.explained, frame.lang) } else { of_recording(args, claim, frame) }
 }
 
 fn of_folder(path: &Path, lang: Lang) -> Result<Explained, String> {
@@ -153,26 +138,16 @@ fn of_folder(path: &Path, lang: Lang) -> Result<Explained, String> {
     Ok(Explained { alternatives, named })
 }
 
-fn of_recording(
-    args: &PlanArgs,
-    claim: &Claim,
-    progress: &mut Progress,
-    lang: Lang,
-) -> Result<Explained, String> {
+fn of_recording(args: &PlanArgs, claim: &Claim, frame: &mut Frame<'_>) -> Result<Explained, String> {
     let options = SeriesOptions {
         read: ReadOptions::default(),
         sample_rate_hz: Some(claim.sample_rate_hz),
         ..SeriesOptions::default()
     };
-    let series = load_series(std::slice::from_ref(&args.explained), &options, &mut |done, total| {
-        progress.explaining(mismatch::Progress { doing: "explain.progress.reading", done, total });
-    });
-    let series = series.map_err(|e| {
-        progress.finish();
-        e.say(lang)
-    })?;
-    let outcome = mismatch::explain(series, claim, &Options::default(), &mut |p| progress.explaining(p));
-    let outcome = outcome.map_err(|note| place::error(&note, lang))?;
+    let series = frame.series(std::slice::from_ref(&args.explained), &options)?;
+    let progress = &mut |p| frame.progress.explaining(p);
+    let outcome = mismatch::explain(series, claim, &Options::default(), progress);
+    let outcome = outcome.map_err(|note| place::error(&note, frame.lang))?;
     Ok(Explained { named: equivalents(&outcome.explanation), alternatives: outcome.alternatives })
 }
 

@@ -1,12 +1,12 @@
-//! What a verb prints of its result on standard output.
+//! Results on standard output.
 
 use super::options::{OutputArgs, PrintFormat};
 use super::place;
 use super::progress::{Display, Progress};
 use super::stdout;
 use crate::i18n::{Lang, Localize, Note};
-use crate::output::Kind;
-use crate::report::terminal::Terminal;
+use crate::report::Results;
+use crate::report::terminal::{self, Terminal};
 use anstream::ColorChoice;
 use std::path::Path;
 
@@ -38,21 +38,16 @@ impl Printer {
     /// Prints a part of the outcome while the work goes on, where the outcome is printed as text.
     pub fn line(self, text: impl FnOnce(Terminal) -> String) {
         if !self.quiet && self.format != PrintFormat::Json {
-            stdout::write_styled(&text(terminal()));
+            stdout::write_styled(&text(standard_output()));
         }
     }
 
-    /// Prints the outcome of which the results stand in a folder.
+    /// Prints results that stand in a folder.
     ///
     /// # Errors
     /// The diagnostic, in words, where the record cannot be read back for JSON.
-    pub fn outcome(
-        self,
-        folder: &Path,
-        kind: Kind,
-        text: impl FnOnce(Terminal) -> String,
-    ) -> Result<(), String> {
-        let page = folder.join(format!("{}.html", kind.page_stem()));
+    pub fn outcome(self, folder: &Path, results: &Results) -> Result<(), String> {
+        let kind = results.kind();
         if self.format == PrintFormat::Json {
             let record = folder.join(kind.record_file());
             let contents = std::fs::read(&record).map_err(|e| {
@@ -64,15 +59,17 @@ impl Printer {
             stdout::write(&contents);
             return Ok(());
         }
-        let terminal = terminal();
+        let page = folder.join(format!("{}.html", kind.page_stem()));
         let place = Note::new("terminal.report").with("place", place::shown(&page)).say(self.lang);
-        let said = if self.quiet { format!("{place}\n") } else { format!("{}\n{place}\n", text(terminal)) };
-        stdout::write_styled(&said);
+        let text = if self.quiet {
+            String::new()
+        } else {
+            format!("{}\n", terminal::results(results, self.lang, standard_output()))
+        };
+        stdout::write_styled(&format!("{text}{place}\n"));
         Ok(())
     }
-}
 
-impl Printer {
     /// Prints what to do next, unless only the result was asked for.
     pub fn next_step(self, step: Option<&Note>) {
         if let Some(step) = step.filter(|_| !self.quiet && self.format != PrintFormat::Json) {
@@ -81,8 +78,8 @@ impl Printer {
     }
 }
 
-/// What standard output is.
-pub fn terminal() -> Terminal {
+/// The width of standard output, and whether it shows colours.
+pub fn standard_output() -> Terminal {
     let columns = || std::env::var("COLUMNS").ok()?.parse::<usize>().ok();
     let real = || terminal_size::terminal_size_of(std::io::stdout()).map(|(width, _)| usize::from(width.0));
     let width = columns().or_else(real).unwrap_or(DEFAULT_WIDTH).max(LEAST_WIDTH);

@@ -1,44 +1,33 @@
 //! A procedure with its limits, ready to be run on recordings.
 
-use super::finish::{Against, Evaluated, evaluate};
-use super::inputs::{Inputs, Serial, completed};
+use super::evaluate::{Against, Evaluated};
+use super::inputs::{Inputs, Serial};
 use super::place;
 use super::procedures::say_which;
 use super::progress::Progress;
 use super::run_args::RunArgs;
-use crate::acceptance::{Request, RunError, Table, explained};
-use crate::config::manifest::Manifest;
+use super::test_setup::{ProcedureWithLimits, Setup, Test};
+use crate::acceptance::{RunError, explained};
 use crate::config::model::Claim;
-use crate::config::procedure::missing_columns::missing_columns;
 use crate::config::procedure::{
     EffectiveLimits, LimitsFile, Loaded, Procedure, effective, load, load_limits,
 };
-use crate::i18n::Lang;
-use crate::ingest::unit_data::UnitData;
+use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{Recording, RecordingError, Source, open_recording};
-use crate::noise::tau_grid::TauGrid;
-use crate::output::{LIMITS_FILE, PROCEDURE_FILE};
-use crate::record::{RunKind, UnitUnderTest};
+use crate::record::UnitUnderTest;
 use chrono::{DateTime, Utc};
 use std::path::{Path, PathBuf};
-
-/// The texts that a test was made by, as files of its result.
-pub fn kept_texts(procedure: &Loaded<Procedure>, limits: Option<&Loaded<LimitsFile>>) -> Vec<Table> {
-    let procedure = (PROCEDURE_FILE.to_owned(), procedure.text());
-    let limits = limits.map(|limits| (LIMITS_FILE.to_owned(), limits.text()));
-    std::iter::once(procedure).chain(limits).collect()
-}
 
 /// A procedure of one phase, with its limits and the model that it names.
 pub struct SingleTest<'a> {
     args: &'a RunArgs,
+    /// The procedure.
     pub procedure: Loaded<Procedure>,
-    pub limits: Option<Loaded<LimitsFile>>,
+    limits: Option<Loaded<LimitsFile>>,
     effective: EffectiveLimits,
     model: Option<Claim>,
-    taus: Option<TauGrid>,
-    units: UnitData,
-    now: DateTime<Utc>,
+    /// The options of the command line.
+    pub setup: Setup<'a>,
 }
 
 impl<'a> SingleTest<'a> {
@@ -47,7 +36,7 @@ impl<'a> SingleTest<'a> {
     /// # Errors
     /// The diagnostics, in words.
     pub fn load(args: &'a RunArgs, now: DateTime<Utc>, lang: Lang) -> Result<SingleTest<'a>, String> {
-        let taus = args.grid.grid(lang)?;
+        let setup = Setup::load(args, now, lang)?;
         let named: Vec<&Path> =
             std::iter::once(args.procedure.as_path()).chain(args.limits.as_deref()).collect();
         say_which(&named, lang);
@@ -67,19 +56,22 @@ impl<'a> SingleTest<'a> {
         for warning in procedure.warnings.iter().chain(&effective.warnings) {
             place::eprint_diagnostic(&format!("{}\n", warning.say(lang)));
         }
-        let units = args.units(lang)?;
-        Ok(SingleTest { args, procedure, limits, effective, model, taus, units, now })
+        Ok(SingleTest { args, procedure, limits, effective, model, setup })
+    }
+
+    /// The procedure and its limits.
+    pub fn by(&self) -> ProcedureWithLimits<'_> {
+        let SingleTest { procedure, limits, effective, .. } = self;
+        ProcedureWithLimits { procedure, limits: limits.as_ref(), effective }
     }
 
     /// What a result of this test is made from, but for the recording and its unit.
     pub fn common_inputs(&self) -> Inputs {
-        Inputs::new(self.args.output.force)
+        self.setup
+            .inputs()
             .file("procedure", Some(&self.args.procedure))
             .file("limits", self.args.limits.as_deref())
-            .file("unit_data", self.args.unit_data.as_deref())
             .file("model", self.procedure.value.explain.as_ref().map(|e| e.model.as_path()))
-            .options(&(&self.args.grid.taus, self.args.grid.exact))
-            .beside(self.args.output.templates.as_deref())
     }
 
     /// What the result of a recording is made from.
@@ -96,78 +88,45 @@ impl<'a> SingleTest<'a> {
         open_recording(recording, &self.procedure.value.recording.read)
     }
 
-    /// What is known of the unit: from the command line, else the manifest, else the table of units.
-    fn unit(&self, serial: Option<String>, manifest: Option<&Manifest>) -> UnitUnderTest {
+    /// The unit as procedure and limits describe it.
+    fn described(&self) -> UnitUnderTest {
         let spec = &self.procedure.value.unit_under_test;
         let family = self.limits.as_ref().and_then(|l| l.value.family.clone());
-        let unit = UnitUnderTest {
-            serial,
+        UnitUnderTest {
             family: spec.family.clone().or(family),
             part: spec.part.clone(),
             revision: spec.revision.clone(),
-            lot: self.args.lot.clone(),
             ..UnitUnderTest::default()
-        };
-        completed(unit, manifest, &self.units)
+        }
     }
 
-    /// Runs the test, and keeps the procedure and the limits with its results. A recording that could not be opened gives a
-    /// record that says so.
+    /// Runs the test. A recording that could not be opened gives a record that says so.
     pub fn evaluate(
         &self,
         recording: &[PathBuf],
-        opened: Result<Recording, RecordingError>,
-        given: Option<&str>,
-        progress: &mut Progress,
-    ) -> Evaluated {
-        let mut evaluated = self.run(recording, opened, given, progress);
-        evaluated.results.outcome.tables.extend(kept_texts(&self.procedure, self.limits.as_ref()));
-        evaluated
-    }
-
-    fn run(
-        &self,
-        recording: &[PathBuf],
-        opened: Result<Recording, RecordingError>,
+        opened: &Result<Recording, RecordingError>,
         given: Option<&str>,
         progress: &mut Progress,
     ) -> Evaluated {
         let name = recording.first().map_or(Path::new(""), PathBuf::as_path);
+        let unopened = Source::unopened(name);
         let (source, manifest, mut refused) = match opened {
-            Ok(opened) => (opened.source, opened.manifest, None),
-            Err(error) => (Source::unopened(name), None, Some(RunError::from(error.into_ingest(name)))),
+            Ok(opened) => (&opened.source, opened.manifest.as_ref(), None),
+            Err(error) => (&unopened, None, Some(RunError::from(error.clone().into_ingest(name)))),
         };
-        let serial = Serial::of(given, manifest.as_ref(), &[&source]).unwrap_or_else(|note| {
+        let serial = Serial::of(given, manifest, &[source]).unwrap_or_else(|note| {
             refused = Some(RunError::Nothing(note));
             Serial { number: given.map(str::to_owned), of_recording: false }
         });
-        let procedure = &self.procedure.value;
-        let request = Request {
-            kind: RunKind::Run,
-            procedure,
-            procedure_record: Some(self.procedure.record(self.limits.as_ref())),
-            limits: &self.effective,
-            source: &source,
-            use_stamps: true,
-            unit: self.unit(serial.number, manifest.as_ref()),
+        let test = Test {
+            by: self.by(),
+            source,
+            refused,
+            unit: self.setup.unit(self.described(), serial.number, manifest),
             serial_of_recording: serial.of_recording,
-            operator: self.args.operator.clone(),
-            station: self.args.station.clone(),
-            now: self.now,
-            taus: self.taus.clone(),
-            exact: self.args.grid.exact,
+            against: self.model.clone().map(|claim| Against { claim, recording }),
+            label: &Note::new("cli.reading").say(progress.lang()),
         };
-        if refused.is_none()
-            && let Some((problems, first)) = missing_columns(&self.procedure, &source)
-        {
-            return Evaluated { problems: Some(problems), ..Evaluated::refused(&request, &first.into()) };
-        }
-        match refused {
-            None => {
-                let against = self.model.clone().map(|claim| Against { claim, recording });
-                evaluate(&request, against, progress)
-            }
-            Some(error) => Evaluated::refused(&request, &error),
-        }
+        self.setup.evaluate(test, progress)
     }
 }

@@ -33,7 +33,8 @@ pub use document::{Contents, Document, Documented, PageForm, Record};
 pub use figure_file::FIGURES_FILE;
 pub use render::{Renderer, ReportError, render_html, render_markdown};
 pub use results::{
-    ALTERNATIVES_FILE, ExplanationResults, JointResults, OtherResults, Results, RunResults, StoredResults,
+    ALTERNATIVES_FILE, ExplanationResults, JointResults, OtherResults, Results, RunResults, SCHEDULE_FILE,
+    StoredResults,
 };
 
 use crate::figure::Figure;

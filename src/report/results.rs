@@ -29,7 +29,7 @@ use std::path::{Component, Path, PathBuf};
 /// What would explain a recording as well, beside `explain.json`.
 pub const ALTERNATIVES_FILE: &str = "alternatives.toml";
 /// The schedule beside `plan.json`.
-const SCHEDULE_FILE: &str = "schedule.toml";
+pub const SCHEDULE_FILE: &str = "schedule.toml";
 /// Version of `explain.json`.
 const EXPLAIN_FORMAT: &str = "explain/1";
 

@@ -5,6 +5,7 @@
 mod datasheet;
 mod explanation;
 mod history;
+mod results;
 mod run;
 mod screen;
 pub(super) mod table;
@@ -13,6 +14,7 @@ mod wrap;
 pub use datasheet::datasheet;
 pub use explanation::explanation;
 pub use history::history;
+pub use results::results;
 pub use run::run;
 pub use screen::Terminal;
 pub(super) use screen::verdict_style;
