@@ -9,7 +9,6 @@ use serde::{Deserialize, Serialize};
 #[serde(rename_all = "snake_case")]
 pub enum Rule {
     /// The value itself is compared; the risk of a wrong decision is shared (ILAC-G8). Up to 50 % at the limit.
-    #[default]
     Simple,
     /// The one-sided bound at the stated risk is compared (JCGM 106, ISO 14253-1).
     #[default]
