@@ -10,7 +10,7 @@ mod system;
 pub use effect_text::{EffectText, effect_key, effect_text};
 pub use lang::Lang;
 pub use sagnac_core::local_text::LocalText;
-pub use sagnac_core::message::{Arg, Note};
+pub use sagnac_core::message::{Arg, Note, note};
 use sagnac_core::render;
 pub use sagnac_core::render::{fill, significant, with_decimals};
 pub use sagnac_core::visible::{steers, visible, visible_lines};
@@ -68,7 +68,7 @@ pub fn decimal(ascii: &str, lang: Lang) -> String {
     render::decimal(ascii, &|key| lookup(lang, key))
 }
 
-/// What can be said in a language.
+/// A message or a text that can be said in a language.
 pub trait Localize {
     /// The words, with the decimal mark of the language.
     fn say(&self, lang: Lang) -> String;

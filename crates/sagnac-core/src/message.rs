@@ -190,3 +190,31 @@ impl From<&'static str> for Note {
         Note::new(id)
     }
 }
+
+/// A message by its key and its arguments: `note!("plan.note.unplanned", n, kinds = kinds.join(", "))`. An argument without a value is
+/// the variable of its name.
+#[macro_export]
+macro_rules! note {
+    (@value $name:ident) => { $name };
+    (@value $name:ident = $value:expr) => { $value };
+    ($key:literal $(, $name:ident $(= $value:expr)?)* $(,)?) => {
+        $crate::message::Note::new($key)
+            $(.with(stringify!($name), $crate::message::note!(@value $name $(= $value)?)))*
+    };
+}
+
+pub use note;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_macro_names_the_arguments_of_a_note() {
+        let n = 3_usize;
+        let made = note!("table.key", n, value = -2.5_f64.abs(), inner = note!("table.inner", n));
+        let inner = Note::new("table.inner").with("n", 3_usize);
+        assert_eq!(made, Note::new("table.key").with("n", 3_usize).with("value", -2.5).with("inner", inner));
+        assert_eq!(note!("table.key"), Note::new("table.key"));
+    }
+}

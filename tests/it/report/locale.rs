@@ -172,6 +172,13 @@ fn is_key(text: &str, tables: &BTreeSet<String>) -> bool {
     plain && !file && text.contains('.') && !text.ends_with('.') && tables.contains(first)
 }
 
+/// The keys of the notes that a source makes, tests left out.
+fn keys_of_notes(text: &str) -> impl Iterator<Item = &str> {
+    let product = text.split("#[cfg(test)]\nmod tests").next().unwrap_or(text);
+    let made = ["note!(", "Note::new("].into_iter().flat_map(|call| product.split(call).skip(1));
+    made.filter_map(|rest| rest.trim_start().strip_prefix('"')?.split('"').next())
+}
+
 /// All keys that templates and sources name in full, and all short texts of the sources.
 fn used() -> (BTreeSet<String>, BTreeSet<String>) {
     let tables: BTreeSet<String> =
@@ -185,6 +192,7 @@ fn used() -> (BTreeSet<String>, BTreeSet<String>) {
     sources(&root.join("tests/it/report/fixture"), &mut fixtures);
     let mut keys = BTreeSet::new();
     for text in &code {
+        keys.extend(keys_of_notes(text).map(str::to_owned));
         keys.extend(quoted(text, '"').filter(|k| is_key(k, &tables)).map(str::to_owned));
     }
     for (_, text) in TEMPLATES {
