@@ -49,7 +49,7 @@ use std::path::{Component, Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
 /// Attempts to put a folder in place while other runs put theirs there.
-const ATTEMPTS: usize = 100;
+const RENAME_ATTEMPTS: usize = 100;
 
 /// A folder in the making. Dropped without [`StagedFolder::publish`], it leaves nothing behind.
 #[derive(Debug)]
@@ -63,7 +63,7 @@ pub struct StagedFolder {
     written: Mutex<BTreeMap<String, String>>,
 }
 
-/// What a folder is made from, and whether it may replace a result of other inputs.
+/// The inputs of a folder, and whether it may replace a result of other inputs.
 #[derive(Debug, Clone, Default)]
 pub struct Order {
     /// The inputs: their names, such as `recording`, and what tells each from others, such as a hash.
@@ -320,7 +320,7 @@ fn put_in_place(staged: &Path, target: &Path, kind: Kind, order: &Order) -> Resu
     use rustix::fs::{CWD, RenameFlags, renameat_with};
     use rustix::io::Errno;
     let rename = |flags| renameat_with(CWD, staged, CWD, target, flags);
-    for _ in 0..ATTEMPTS {
+    for _ in 0..RENAME_ATTEMPTS {
         match rename(RenameFlags::NOREPLACE) {
             Ok(()) => return Ok(()),
             Err(Errno::EXIST) => {}

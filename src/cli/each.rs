@@ -40,13 +40,13 @@ trait UnitTest: Sync {
     /// The people, the station and the moment.
     fn session(&self) -> Session;
 
-    /// What the whole lot is made from, but for the recordings.
+    /// The inputs of the whole lot, so far without the recordings.
     fn common_inputs(&self) -> Inputs;
 
-    /// What the result of one unit is made from.
+    /// The inputs of the result of one unit.
     fn inputs(&self, member: &Member) -> Inputs;
 
-    /// How recordings are read.
+    /// The options by which recordings are read.
     fn options(&self) -> &ReadOptions;
 
     /// Tests one unit. What keeps it from being tested is in the result; what is to be said of it at the lines of the
@@ -156,7 +156,7 @@ struct LotRun<'a> {
     test: Box<dyn UnitTest + 'a>,
     keeper: Keeper,
     members: Vec<Member>,
-    /// What the result of each unit is made from.
+    /// The inputs of the result of each unit, by their names.
     inputs: Vec<BTreeMap<String, String>>,
 }
 

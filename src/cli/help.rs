@@ -12,7 +12,7 @@ use std::ffi::OsString;
 use std::process::ExitCode;
 
 /// Headings of the list of verbs: the first verb below a heading, and the heading. Verbs stand in the order of their declaration.
-const HEADINGS: &[(&str, &str)] = &[
+const VERB_HEADINGS: &[(&str, &str)] = &[
     ("inspect", "Look"),
     ("init", "Test"),
     ("explain", "Understand"),
@@ -59,7 +59,7 @@ fn verbs_below_headings(command: &Command, heading: &dyn Fn(&str) -> String) -> 
         // A line that goes on with the text of a verb is indented further.
         let plain = strip_str(line).to_string();
         let verb = plain.strip_prefix("  ").and_then(|rest| rest.split(' ').next());
-        if let Some((_, text)) = HEADINGS.iter().find(|(first, _)| verb == Some(first)) {
+        if let Some((_, text)) = VERB_HEADINGS.iter().find(|(first, _)| verb == Some(first)) {
             let before = if out.is_empty() { "" } else { "\n" };
             out.push_str(&format!("{before}{}\n", heading(text)));
         }

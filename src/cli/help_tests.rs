@@ -24,7 +24,7 @@ fn english_texts() -> BTreeSet<String> {
     let added = ["Usage", "OPTIONS", "COMMAND", "Commands", "Arguments", "Options", "Print help"];
     let added = added.into_iter().chain(["Print version", "possible values", "default"]);
     let mut texts: BTreeSet<String> =
-        added.chain(HEADINGS.iter().map(|(_, heading)| *heading)).map(str::to_owned).collect();
+        added.chain(VERB_HEADINGS.iter().map(|(_, heading)| *heading)).map(str::to_owned).collect();
     for (_, command) in all(Lang::En) {
         texts.extend(command.get_about().map(ToString::to_string));
         let after = command.get_after_help().map(ToString::to_string).unwrap_or_default();
@@ -66,7 +66,7 @@ fn every_text_of_the_command_has_a_translation_and_none_is_left_over() {
 #[test]
 fn every_heading_stands_above_its_verb() {
     let text = all(Lang::Ru)[0].1.clone().render_help().to_string();
-    for (verb, heading) in HEADINGS {
+    for (verb, heading) in VERB_HEADINGS {
         let above = format!("{}:\n  {verb} ", translation(heading, Lang::Ru));
         assert!(text.contains(&above), "`{above}` is not in {text}");
     }

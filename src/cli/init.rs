@@ -41,8 +41,8 @@ pub struct InitArgs {
     read: ReadArgs,
 }
 
-/// What a limit is proposed for.
-const PROPOSED: &[&str] = &[
+/// Ids of the measurands that a limit is proposed for.
+const PROPOSED_LIMITS: &[&str] = &[
     ANGLE_RANDOM_WALK.id,
     BIAS_INSTABILITY.id,
     RATE_RANDOM_WALK.id,
@@ -51,8 +51,8 @@ const PROPOSED: &[&str] = &[
     RUSSIAN_ARW_10S.id,
 ];
 
-/// What a test over temperature is drafted with.
-const OVER_TEMPERATURE: &[&str] = &[
+/// Ids of the measurands in the draft of a test over temperature.
+const TEMPERATURE_MEASURANDS: &[&str] = &[
     BIAS_OVER_TEMPERATURE_PEAK_TO_PEAK.id,
     BIAS_OVER_TEMPERATURE_RMS.id,
     BIAS_TEMPERATURE_SENSITIVITY.id,
@@ -103,7 +103,7 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     Ok(exit::PASS)
 }
 
-/// What the recording gives without a procedure; the sample rate where there is no time column.
+/// The analysis of the recording without a procedure; the sample rate where there is no time column.
 fn analysed(
     args: &InitArgs,
     channels: &[Channel],
@@ -125,7 +125,7 @@ fn analysed(
 struct Layout {
     /// Path relative to the folder of the procedure.
     name: String,
-    /// Where it is copied to, if it does not lie in that folder.
+    /// Path of its copy, if it does not lie in that folder.
     copy: Option<PathBuf>,
 }
 
@@ -154,8 +154,8 @@ fn written(
     let stem = args.recording.file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let usable_s = record.window.usable_s;
     let sweep = swept(record);
-    let at_rest = || [QUANTIZATION.id].into_iter().chain(PROPOSED.iter().copied()).collect();
-    let ids: Vec<&str> = if sweep.is_some() { OVER_TEMPERATURE.to_vec() } else { at_rest() };
+    let at_rest = || [QUANTIZATION.id].into_iter().chain(PROPOSED_LIMITS.iter().copied()).collect();
+    let ids: Vec<&str> = if sweep.is_some() { TEMPERATURE_MEASURANDS.to_vec() } else { at_rest() };
     let measurands: Vec<_> = ids.iter().map(|id| context! { id => *id, name => title(id) }).collect();
     let channel_ids = ids_of(channels);
     let is_temperature = |(c, _): &(&Channel, &String)| c.role == Role::Temperature;
@@ -232,7 +232,7 @@ fn limits(record: &RunRecord) -> Vec<minijinja::Value> {
         let max = toml_text(&format!("{} {unit}", rounded_up(1.5 * largest)));
         (largest > 0.0).then(|| context! { id => *id, name => title(id), measured, max })
     };
-    PROPOSED.iter().filter_map(proposal).collect()
+    PROPOSED_LIMITS.iter().filter_map(proposal).collect()
 }
 
 /// Two significant digits, upwards.

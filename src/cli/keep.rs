@@ -61,7 +61,7 @@ pub struct Keeper {
 }
 
 impl Keeper {
-    /// What the options ask for. A store that cannot be used is found now, before any work is done.
+    /// The keeper that the options ask for. A store that cannot be used is found now, before any work is done.
     ///
     /// # Errors
     /// The diagnostic, in words.

@@ -1,4 +1,4 @@
-//! What to do after a verb: one sentence and, below it, the command.
+//! The advice after a verb: one sentence and, below it, the command.
 
 use super::place::for_shell;
 use crate::config::procedure::Procedure;

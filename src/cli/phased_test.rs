@@ -56,7 +56,7 @@ impl<'a> PhasedTest<'a> {
         Ok(PhasedTest { args, phased, limits, setup })
     }
 
-    /// What a result of this test is made from, but for the recording and its unit.
+    /// The inputs of a result of this test, so far without the recording and its unit.
     pub fn common_inputs(&self) -> Inputs {
         let phases = || self.phased.phases.iter();
         let procedures = phases().map(|p| PathBuf::from(&p.procedure.path));
@@ -71,7 +71,7 @@ impl<'a> PhasedTest<'a> {
         inputs.files("limits", &limits).files("layout", &layouts)
     }
 
-    /// What the result of a recording is made from.
+    /// The inputs of the result of a recording.
     pub fn inputs(&self, recording: &[PathBuf], serial: Option<&str>) -> Inputs {
         self.common_inputs().recording(recording, &ReadOptions::default()).text("unit", serial)
     }
@@ -189,7 +189,7 @@ pub struct PhasesEvaluated {
     pub explained: Vec<String>,
 }
 
-/// What a file's phase leaves when the id of a phase is taken off; `None` when it is not of that phase.
+/// The rest of a file's phase behind the id of a phase; `None` when it is not of that phase.
 fn rest<'a>(phase: &Phase, of: &'a str) -> Option<Option<&'a str>> {
     let rest = of.strip_prefix(phase.id.as_str())?;
     if rest.is_empty() { Some(None) } else { rest.strip_prefix('.').map(Some) }

@@ -103,7 +103,7 @@ impl Job for Planning<'_> {
     }
 }
 
-/// What was explained.
+/// The alternatives to choose between.
 struct Explained {
     alternatives: Vec<Alternative>,
     /// Effects that the explanation names as equivalents.
@@ -164,7 +164,7 @@ fn unplanned(named: &[String], alternatives: &[Alternative]) -> Option<Note> {
     (!left.is_empty()).then(|| Note::new("plan.note.unplanned").with("kinds", left.join(", ")))
 }
 
-/// What the laboratory can do, of the options.
+/// The limits of the laboratory that the options state.
 fn limits(args: &PlanArgs, lang: Lang) -> Result<Limits, String> {
     let usual = Limits::usual(simulate::duration("--budget", &args.budget, lang)?);
     let chosen = |option: &'static str, text: &Option<String>, lowest: f64, default: [f64; 2]| match text {

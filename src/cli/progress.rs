@@ -9,14 +9,14 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// Work that is done sooner shows no progress.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// Time after which progress is shown; work that is done sooner shows none.
+const SHOWN_AFTER: Duration = Duration::from_secs(1);
 /// Time between two states of a bar to which nothing was reported.
-const TICK: Duration = Duration::from_millis(250);
+const REDRAW_INTERVAL: Duration = Duration::from_millis(250);
 /// The variable that turns progress off (`never`), or on for a log (`always`).
-const VARIABLE: &str = "SAGNAC_PROGRESS";
+const PROGRESS_VARIABLE: &str = "SAGNAC_PROGRESS";
 
-/// Where progress is shown.
+/// The place that progress is shown in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Display {
     /// Nowhere.
@@ -28,9 +28,9 @@ pub enum Display {
 }
 
 impl Display {
-    /// Where progress is shown unless the user wants quiet: by `SAGNAC_PROGRESS`, and by what standard error is.
+    /// The place where progress is shown, unless the user wants quiet: by `SAGNAC_PROGRESS`, and by what standard error is.
     pub fn unless(quiet: bool) -> Display {
-        let asked = std::env::var(VARIABLE).unwrap_or_default();
+        let asked = std::env::var(PROGRESS_VARIABLE).unwrap_or_default();
         let terminal = std::io::stderr().is_terminal();
         match asked.as_str() {
             _ if quiet => Display::Never,
@@ -42,7 +42,7 @@ impl Display {
     }
 }
 
-/// What work is counted in.
+/// The unit that work is counted in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measure {
     /// Bytes of files.
@@ -62,7 +62,7 @@ pub struct Progress {
     bar: ProgressBar,
     lang: Lang,
     doing: Option<(Measure, String)>,
-    /// Where the bar is shown, and after what time; taken when the work begins.
+    /// The time after which the bar is shown, and its place; taken when the work begins.
     pending: Option<(Duration, ProgressDrawTarget)>,
     /// Ends the thread that shows the bar.
     reveal: Option<(Sender<()>, JoinHandle<()>)>,
@@ -73,7 +73,7 @@ impl Progress {
     pub fn new(display: Display, lang: Lang) -> Progress {
         let pending = match display {
             Display::Never => None,
-            Display::Terminal => Some((PATIENCE, ProgressDrawTarget::stderr())),
+            Display::Terminal => Some((SHOWN_AFTER, ProgressDrawTarget::stderr())),
             Display::Lines => {
                 let log = Box::new(Log(std::io::stderr()));
                 Some((Duration::ZERO, ProgressDrawTarget::term_like_with_hz(log, 2)))
@@ -99,7 +99,7 @@ impl Progress {
         let show = move || {
             bar.set_draw_target(target);
             bar.tick();
-            bar.enable_steady_tick(TICK);
+            bar.enable_steady_tick(REDRAW_INTERVAL);
         };
         if patience.is_zero() {
             return show();
@@ -198,7 +198,7 @@ fn style(measure: Measure, lang: Lang) -> ProgressStyle {
         })
 }
 
-/// How fast the work goes.
+/// The speed of the work.
 fn rate(per_second: f64, measure: Measure, lang: Lang) -> String {
     let (key, value) = match measure {
         Measure::Bytes => ("progress.bytes", per_second / 1e6),

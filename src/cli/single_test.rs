@@ -65,7 +65,7 @@ impl<'a> SingleTest<'a> {
         ProcedureWithLimits { procedure, limits: limits.as_ref(), effective }
     }
 
-    /// What a result of this test is made from, but for the recording and its unit.
+    /// The inputs of a result of this test, so far without the recording and its unit.
     pub fn common_inputs(&self) -> Inputs {
         self.setup
             .inputs()
@@ -74,7 +74,7 @@ impl<'a> SingleTest<'a> {
             .file("model", self.procedure.value.explain.as_ref().map(|e| e.model.as_path()))
     }
 
-    /// What the result of a recording is made from.
+    /// The inputs of the result of a recording.
     pub fn inputs(&self, recording: &[PathBuf], serial: Option<&str>) -> Inputs {
         let read = &self.procedure.value.recording.read;
         self.common_inputs().recording_as_read(recording, read).text("unit", serial)

@@ -55,7 +55,7 @@ pub struct Test<'a> {
     pub serial_of_recording: bool,
     /// The model that the recording is explained against.
     pub against: Option<Against<'a>>,
-    /// What is read, for the progress.
+    /// The label of the progress while the recording is read.
     pub label: &'a str,
 }
 

@@ -1,4 +1,4 @@
-//! How results become files: forms, templates, language.
+//! Results as files: forms, templates, language.
 
 use super::{inputs, place};
 use crate::i18n::{Lang, Note};

@@ -66,12 +66,12 @@ impl StagedFile {
         Ok(StagedFile { target: target.to_owned(), staging, force })
     }
 
-    /// Where the file will appear.
+    /// The path that the file will have.
     pub fn target(&self) -> &Path {
         &self.target
     }
 
-    /// Where the bytes go.
+    /// The file that the bytes go to.
     ///
     /// # Errors
     /// [`OutputError::Io`] when the file cannot be opened once more.

@@ -15,7 +15,7 @@ pub struct StagedPart<'a> {
     /// Beginning of its names in the whole: empty, or its folder with a slash.
     below: String,
     kind: Kind,
-    /// What its result is made from; `None`: as the whole.
+    /// The inputs of its result; `None`: those of the whole.
     inputs: Option<BTreeMap<String, String>>,
 }
 

@@ -13,7 +13,7 @@ use std::fs::{self, File};
 use std::path::Path;
 
 /// Ending of the file of a signature, behind the name of its statement.
-const SIGNATURE: &str = ".sig";
+const SIGNATURE_ENDING: &str = ".sig";
 
 /// Ending of the file of a statement.
 const STATEMENT_ENDING: &str = ".json";
@@ -26,16 +26,16 @@ const MAX_BYTES: u64 = 64 << 20;
 pub struct Link {
     /// File of the statement.
     pub name: String,
-    /// What it says; `None` where it cannot be read.
+    /// Its statement; `None` where it cannot be read.
     pub statement: Option<Statement>,
     /// The key that signed it; `None` where the signature does not hold.
     pub key: Option<ssh_key::PublicKey>,
-    /// What is wrong with it.
+    /// Its faults.
     pub broken: Vec<Broken>,
     sha256: String,
 }
 
-/// What is wrong with a link.
+/// A fault of a link.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Broken {
     /// It is no statement of this kind.
@@ -76,7 +76,7 @@ pub fn chain(folder: &Path, files: &BTreeMap<String, String>) -> Vec<Link> {
         let bytes = read_below(&at, &name, MAX_BYTES).unwrap_or_default();
         let mut broken = vec![];
         let statement = statement(&bytes);
-        let signature = read_below(&at, &format!("{name}{SIGNATURE}"), MAX_BYTES).ok();
+        let signature = read_below(&at, &format!("{name}{SIGNATURE_ENDING}"), MAX_BYTES).ok();
         let key = match signature.and_then(|bytes| String::from_utf8(bytes).ok()) {
             Some(signature) => match key::verify(&bytes, &signature) {
                 Ok(key) => Some(key),
@@ -109,7 +109,7 @@ pub fn chain(folder: &Path, files: &BTreeMap<String, String>) -> Vec<Link> {
     links
 }
 
-/// What the folder of signatures holds: the names of statements in their order, and everything that is neither a statement nor the
+/// The content of the folder of signatures: the names of statements in their order, and everything that is neither a statement nor the
 /// signature of one.
 fn contents(folder: &Path) -> (Vec<String>, Vec<String>) {
     let found = found_below(&folder.join(SIGNATURES_FOLDER)).unwrap_or_default();
@@ -118,7 +118,7 @@ fn contents(folder: &Path) -> (Vec<String>, Vec<String>) {
     };
     let statements: Vec<String> = found.iter().filter(is_statement).map(|(name, _)| name.clone()).collect();
     let own: BTreeSet<String> =
-        statements.iter().flat_map(|name| [name.clone(), format!("{name}{SIGNATURE}")]).collect();
+        statements.iter().flat_map(|name| [name.clone(), format!("{name}{SIGNATURE_ENDING}")]).collect();
     let others = found.into_iter().filter(|(name, kind)| *kind != Found::File || !own.contains(name));
     // What a killed process was writing goes with the next signature.
     let others = others.filter(|(name, kind)| *kind != Found::File || !is_partial(name));
@@ -129,10 +129,10 @@ fn contents(folder: &Path) -> (Vec<String>, Vec<String>) {
 /// it is written.
 pub fn files(folder: &Path) -> Vec<String> {
     let (statements, _) = contents(folder);
-    statements.into_iter().flat_map(|name| [format!("{name}{SIGNATURE}"), name]).collect()
+    statements.into_iter().flat_map(|name| [format!("{name}{SIGNATURE_ENDING}"), name]).collect()
 }
 
-/// What stands among the signatures of a folder and is none, by its name in the folder.
+/// The entries among the signatures of a folder that are none, by their names in the folder.
 pub fn strays(folder: &Path) -> Vec<String> {
     contents(folder).1.into_iter().map(|name| format!("{SIGNATURES_FOLDER}/{name}")).collect()
 }
@@ -140,7 +140,7 @@ pub fn strays(folder: &Path) -> Vec<String> {
 /// True for a signature without its statement, which a process that is killed between the two leaves behind.
 pub fn is_leftover(stray: &str, statements: usize) -> bool {
     let beginning = format!("{SIGNATURES_FOLDER}/{:02}-", statements + 1);
-    let ending = format!("{STATEMENT_ENDING}{SIGNATURE}");
+    let ending = format!("{STATEMENT_ENDING}{SIGNATURE_ENDING}");
     stray
         .strip_prefix(&beginning)
         .and_then(|rest| rest.strip_suffix(&ending))
@@ -216,7 +216,9 @@ pub fn sign(
         let _ = fs::remove_file(folder.join(stray));
     }
     // The statement comes last: a signature without one is none.
-    for (name, bytes) in [(format!("{name}{SIGNATURE}"), signature.into_bytes()), (name.clone(), bytes)] {
+    for (name, bytes) in
+        [(format!("{name}{SIGNATURE_ENDING}"), signature.into_bytes()), (name.clone(), bytes)]
+    {
         let staged = StagedFile::within_store(&at.join(&name)).map_err(|e| e.note())?;
         staged.publish_with(&bytes).map_err(|e| e.note())?;
     }

@@ -13,7 +13,7 @@ use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-/// What came of a folder.
+/// A folder that was added.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Added {
     /// Its address.
