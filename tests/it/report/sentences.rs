@@ -24,7 +24,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/syntax.rs", "what the TOML parser says, to be recognised"),
     ("crates/sagnac-core/src/temperature/compensation.rs", "declarations of a header in C"),
     ("src/report/methods.rs", "formulas and names of sources"),
-    ("src/cli/mod.rs", "the help in English; a test holds it against the tables"),
+    ("src/cli/mod.rs", "the help in English, which other languages translate"),
     ("src/lib.rs", "documentation"),
     ("src/config/recording_keys.rs", "meanings of words of keys: documentation, as of procedures"),
     ("src/config/layout/tables.rs", "meanings of words of keys of layouts: documentation, as of procedures"),
