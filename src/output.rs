@@ -35,7 +35,7 @@ pub use partial::{abandon_all, is_partial, remove_abandoned};
 pub use stores::{STORE_MARKER, outside_stores};
 pub use transfer::{ProvenCopy, TransferError};
 
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use earlier::{Earlier, starts_with_format};
 use error::io;
 use partial::Partial;
@@ -151,7 +151,7 @@ impl StagedFolder {
     pub fn replaces(&self) -> Option<Note> {
         let what = self.replaces.clone()?;
         let path = self.target.display().to_string();
-        Some(Note::new("output_error.replaces").with("path", path).with("what", what))
+        Some(note!("output_error.replaces", path, what))
     }
 
     /// Takes the hashes of files that were read, as they were read, for those of the inputs.

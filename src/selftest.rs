@@ -1,7 +1,7 @@
 //! Published oracles re-run on this machine: what a QA auditor files with the report.
 
 use crate::estimate::{Spread, chi_square_quantile, normal_quantile};
-use crate::i18n::{Lang, Localize, Note, decimal};
+use crate::i18n::{Lang, Localize, Note, decimal, note};
 use crate::noise::allan::{AllanAccumulator, AllanPlan};
 use crate::noise::data::NoiseType;
 use crate::noise::family::Estimator;
@@ -55,10 +55,12 @@ impl SelfTest {
     pub fn text(&self, lang: Lang) -> String {
         let words = |key: &'static str| Note::new(key).say(lang);
         let number = |ascii: String| decimal(&ascii, lang);
-        let title = Note::new("selftest.title")
-            .with("version", env!("CARGO_PKG_VERSION"))
-            .with("system", std::env::consts::OS)
-            .with("machine", std::env::consts::ARCH);
+        let title = note!(
+            "selftest.title",
+            version = env!("CARGO_PKG_VERSION"),
+            system = std::env::consts::OS,
+            machine = std::env::consts::ARCH
+        );
         let mut out = format!(
             "{}\n\n{:<52} {:>16} {:>20} {:>9} {:>9}  {}\n",
             title.say(lang),
@@ -82,7 +84,7 @@ impl SelfTest {
             ));
         }
         let failed = self.checks.iter().filter(|c| !c.passed()).count();
-        let sum = Note::new("selftest.sum").with("n", self.checks.len()).with("failed", failed);
+        let sum = note!("selftest.sum", n = self.checks.len(), failed);
         out.push_str(&format!("\n{}\n", sum.say(lang)));
         out
     }
@@ -116,7 +118,7 @@ fn deviation(values: &[f64], m: u64, estimator: Estimator) -> f64 {
 }
 
 fn points(name: &'static str, n: u64, m: u64) -> Note {
-    Note::new("selftest.points").with("name", Note::new(name)).with("n", n).with("m", m)
+    note!("selftest.points", name = Note::new(name), n, m)
 }
 
 /// Runs every oracle.
@@ -171,21 +173,21 @@ fn noise(add: Add<'_>) {
     for (n, published) in [(36, 11.4), (100, 18.3), (360, 29.5), (864, 38.8)] {
         let flicker = NoiseModel { b: 1.0, ..NoiseModel::default() };
         let edf = edf_of_window_std(n, 100.0, |t| flicker.mean_variance(t)).unwrap_or(f64::NAN);
-        add(Note::new("selftest.degrees").with("n", n), "selftest.from.quadratic_form", published, edf, 5e-3);
+        add(note!("selftest.degrees", n), "selftest.from.quadratic_form", published, edf, 5e-3);
     }
     let sigma_100 = white.mean_variance(100.0).sqrt();
-    add(Note::new("selftest.sigma_100"), "selftest.from.closed_form", 6.0, sigma_100, 1e-12);
+    add(note!("selftest.sigma_100"), "selftest.from.closed_form", 6.0, sigma_100, 1e-12);
     let floor = unit_allan_variance(NoiseType::Flicker, 1.0).sqrt();
-    add(Note::new("selftest.flicker_floor"), "selftest.from.ieee_952", 0.6642824703, floor, 1e-10);
+    add(note!("selftest.flicker_floor"), "selftest.from.ieee_952", 0.6642824703, floor, 1e-10);
 }
 
 /// Quantiles and guard bands.
 fn decisions(add: Add<'_>) {
     let chi_square = chi_square_quantile(0.975, 10.0);
-    add(Note::new("selftest.chi_square"), "selftest.from.sematech", 20.483, chi_square, 3e-5);
-    add(Note::new("selftest.normal"), "selftest.from.iso_14253", 1.645, normal_quantile(0.95), 1e-4);
+    add(note!("selftest.chi_square"), "selftest.from.sematech", 20.483, chi_square, 3e-5);
+    add(note!("selftest.normal"), "selftest.from.iso_14253", 1.645, normal_quantile(0.95), 1e-4);
     let guard = Spread::Normal { standard_uncertainty: 1.0 }.bound(0.0, 0.95).unwrap_or(f64::NAN);
-    add(Note::new("selftest.guard_band"), "selftest.from.iso_14253", 1.645, guard, 1e-4);
+    add(note!("selftest.guard_band"), "selftest.from.iso_14253", 1.645, guard, 1e-4);
 }
 
 /// Earth rate and units of rate.
@@ -195,14 +197,14 @@ fn rates(add: Add<'_>) {
         Orientation { latitude_deg: exact(56.0), heading_deg: exact(0.0), elevation_deg: exact(90.0) };
     let north = Orientation { elevation_deg: exact(0.0), ..vertical };
     let upward = earth_rate(&vertical).value;
-    add(Note::new("selftest.earth_vertical"), "selftest.from.geometry", 12.47, upward, 5e-4);
-    add(Note::new("selftest.earth_north"), "selftest.from.geometry", 8.41, earth_rate(&north).value, 6e-4);
+    add(note!("selftest.earth_vertical"), "selftest.from.geometry", 12.47, upward, 5e-4);
+    add(note!("selftest.earth_north"), "selftest.from.geometry", 8.41, earth_rate(&north).value, 6e-4);
     let factor = |a: &str, b: &str| {
         Unit::parse(a).and_then(|a| Unit::parse(b).and_then(|b| a.factor_to(&b))).unwrap_or(f64::NAN)
     };
     let rad_s = factor("rad/s", "deg/h");
-    add(Note::new("selftest.rad_s"), "selftest.from.definition", 206_264.806_247_096_36, rad_s, 1e-14);
-    add(Note::new("selftest.arcsec_s"), "selftest.from.definition", 1.0, factor("arcsec/s", "deg/h"), 1e-15);
+    add(note!("selftest.rad_s"), "selftest.from.definition", 206_264.806_247_096_36, rad_s, 1e-14);
+    add(note!("selftest.arcsec_s"), "selftest.from.definition", 1.0, factor("arcsec/s", "deg/h"), 1e-15);
 }
 
 #[cfg(test)]

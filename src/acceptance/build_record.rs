@@ -9,7 +9,7 @@ use super::verdict;
 use crate::config::procedure::unit_facts::unknown;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::record::{
     ClauseRecord, ColumnRecord, ConditionRecord, FaultText, FigureRecord, MeasurandRecord, OptionRecord,
     Program, RESULT_FORMAT, RecordingFile, RunRecord,
@@ -54,7 +54,7 @@ pub(super) fn build_record(
 /// The record of a run whose recording could not be evaluated.
 pub(super) fn failed(request: &Request<'_>, own_checks: &[&str], error: &RunError) -> RunRecord {
     let mut errors = errors(request);
-    errors.push(Note::new("error.not_evaluated").with("reason", error.note()));
+    errors.push(note!("error.not_evaluated", reason = error.note()));
     RunRecord {
         verdict: Verdict::Error,
         summary: errors.clone().into_iter().map(Into::into).collect(),

@@ -4,7 +4,7 @@ use super::verdict::contradicted;
 use crate::claim::{Claim, Coefficient, Stated, Uncertainty};
 use crate::effect::{ClaimedMean, Model, SpectrumAct};
 use crate::estimate::normal_quantile;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::measurand;
 use crate::noise::model::NoiseModel;
 use crate::record::{MeasurandRecord, RunRecord};
@@ -20,7 +20,7 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
         (Some(asked), known) if known.contains(&asked) => asked,
         (None, [only]) => *only,
         (_, []) => return Err("model_verb.no_noise".into()),
-        (_, known) => return Err(Note::new("model_verb.channels").with("known", known.join(", "))),
+        (_, known) => return Err(note!("model_verb.channels", known = known.join(", "))),
     };
     let row = |id: &str| record.measurands.iter().find(|m| m.id == id && m.channel == channel);
     let [n, b, k, q] = [
@@ -42,7 +42,7 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
     let model = record.noise_models.iter().find(|m| m.channel == channel);
     let processes = model.map_or(0, |m| m.markov.len() + m.quasi_periodic.len());
     if processes > 0 {
-        notes.push(Note::new("model_verb.processes").with("n", processes));
+        notes.push(note!("model_verb.processes", n = processes));
     }
     if bias.is_none() {
         notes.push("model_verb.no_bias".into());

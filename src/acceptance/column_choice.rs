@@ -1,6 +1,6 @@
 //! The columns of a recording without a procedure: as named, else as their names tell.
 
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::ingest::Source;
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::Unit;
@@ -36,8 +36,7 @@ pub fn about(path: &Path, key: &'static str) -> Note {
 /// A sentence about what is not there, not told, or named twice.
 pub fn channels(args: &ColumnChoice, path: &Path, source: &Source) -> Result<Vec<Channel>, Note> {
     let unit = args.unit.as_deref().map(Unit::parse).transpose();
-    let unit =
-        unit.map_err(|e| Note::new("cli.of_option").with("option", "--unit").with("what", e.note()))?;
+    let unit = unit.map_err(|e| note!("cli.of_option", option = "--unit", what = e.note()))?;
     let mut channels = Vec::new();
     match args.time.as_deref() {
         Some("none") => {}
@@ -116,10 +115,12 @@ pub fn unit_contradictions(channels: &[Channel], source: &Source) -> Vec<Note> {
         let stated = column.inferred();
         let factor = stated.unit.factor_to(&channel.unit).unwrap_or(f64::NAN);
         (stated.unit_is_named && factor != 1.0).then(|| {
-            Note::new("cli.unit_otherwise")
-                .with("column", column.name.as_str())
-                .with("stated", stated.unit.text())
-                .with("unit", channel.unit.text())
+            note!(
+                "cli.unit_otherwise",
+                column = column.name.as_str(),
+                stated = stated.unit.text(),
+                unit = channel.unit.text()
+            )
         })
     })
     .collect()

@@ -8,7 +8,7 @@ use crate::config::procedure::phases::{Phase, Phased};
 use crate::config::procedure::unit_facts::unknown;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{
     CheckRecord, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT, RunKind, RunRecord,
     Session, UnitUnderTest, Window,
@@ -35,12 +35,12 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
     let of_phase = |p: &PhaseRecord| {
         let verdict = Arg::key("verdict", p.verdict.id());
         match failure(p) {
-            Some(why) => Note::new("phases.failed").with("verdict", verdict).with("why", why.clone()),
-            None => Note::new("phases.verdict").with("verdict", verdict),
+            Some(why) => note!("phases.failed", verdict, why = why.clone()),
+            None => note!("phases.verdict", verdict),
         }
         .with("title", p.title.clone())
     };
-    let declared = Note::new("summary.influence_declared");
+    let declared = note!("summary.influence_declared");
     let said = phases.iter().any(|p| p.summary.iter().any(|s| **s == declared)).then_some(declared);
     let summary =
         errors.iter().cloned().chain(phases.iter().map(of_phase)).chain(said).map(Into::into).collect();
@@ -112,7 +112,7 @@ fn of(done: &Done<'_>) -> PhaseRecord {
             title: phase.title.clone(),
             procedure: Some(phase.procedure.record(phase.limits.as_ref())),
             verdict: Verdict::Error,
-            summary: vec![Note::new("phases.not_recorded").with("id", phase.id.as_str()).into()],
+            summary: vec![note!("phases.not_recorded", id = phase.id.as_str()).into()],
             ..PhaseRecord::default()
         };
     };

@@ -5,7 +5,7 @@
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::power::{PowerQuestion, TypicalNoise};
 use crate::estimate::Limit;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand::{GyroEvidence, Measurand, PowerModel};
 use crate::noise::expected::{Power, bias_power, decision_power, deviation_power};
 use crate::noise::model::NoiseModel;
@@ -89,11 +89,11 @@ pub fn records(limits: &EffectiveLimits, gyros: &[GyroEvidence]) -> Vec<PowerRec
 
 fn message(power: &Power, hours: f64) -> Note {
     if power.is_enough() {
-        return Note::new("power.enough").with("hours", hours);
+        return note!("power.enough", hours);
     }
     match power.needed_duration_h {
-        Some(needed) => Note::new("power.too_short").with("hours", hours).with("needed_h", needed),
-        None => Note::new("power.never").with("hours", hours),
+        Some(needed) => note!("power.too_short", hours, needed_h = needed),
+        None => note!("power.never", hours),
     }
 }
 
@@ -125,8 +125,8 @@ pub fn warning(question: &PowerQuestion) -> Option<(Note, Option<Note>)> {
         .with("fail", Arg::fixed(power.fail_probability_at_1_5, 2))
         .with("pass", Arg::fixed(power.pass_probability_at_half, 2));
     let help = match power.needed_duration_h {
-        Some(h) => Note::new("check.power.needed").with("hours", format!("{h:.0}")),
-        None => Note::new("check.power.never"),
+        Some(h) => note!("check.power.needed", hours = format!("{h:.0}")),
+        None => note!("check.power.never"),
     };
     Some((message, Some(help)))
 }

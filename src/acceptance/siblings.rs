@@ -1,7 +1,7 @@
 //! A unit beside the other units of its lot: noise coefficients, temperature coefficients and the curve σ(τ) together.
 
 use super::datasheet::TestedUnit;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::lot::siblings::{SIBLINGS_A_QUANTITY, Unlike, are_independent, unlike};
 use crate::measurand;
 use crate::record::{Message, RunRecord, SiblingQuantity, SiblingsRecord};
@@ -148,11 +148,13 @@ fn record(model: &str, lot: &str, units: usize, chosen: &[Quantity], found: &Unl
 
 /// That the unit is unlike the others, and in what.
 fn notes(lot: &str, units: usize, p_value: f64, quantities: &[SiblingQuantity]) -> Vec<Note> {
-    let unlike = Note::new("siblings.unlike")
-        .with("lot", Arg::from(lot))
-        .with("units", units as u64)
-        .with("p", format!("{:.2}", 100.0 * p_value))
-        .with("rate", 100.0 * FALSE_ALARM_RATE);
+    let unlike = note!(
+        "siblings.unlike",
+        lot = Arg::from(lot),
+        units = units as u64,
+        p = format!("{:.2}", 100.0 * p_value),
+        rate = 100.0 * FALSE_ALARM_RATE
+    );
     let mut order: Vec<&SiblingQuantity> =
         quantities.iter().filter(|q| q.deviation.abs() >= MIN_NAMED_DEVIATION).collect();
     order.sort_by(|a, b| b.deviation.abs().total_cmp(&a.deviation.abs()));
@@ -170,9 +172,9 @@ fn notes(lot: &str, units: usize, p_value: f64, quantities: &[SiblingQuantity]) 
     };
     let list: Vec<Arg> = order.iter().take(MAX_NAMED_QUANTITIES).map(one).collect();
     let second = if list.is_empty() {
-        Note::new("siblings.together")
+        note!("siblings.together")
     } else {
-        Note::new("siblings.furthest").with("list", Arg::Several(list, "; ".into()))
+        note!("siblings.furthest", list = Arg::Several(list, "; ".into()))
     };
     vec![unlike, second]
 }

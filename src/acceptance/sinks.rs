@@ -3,7 +3,7 @@
 
 use super::condition::stability_track::{Band, StabilityFacts, StabilityKey, StabilityTrack};
 use crate::config::procedure::Procedure;
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::noise::envelope::{Envelope, EnvelopeAccumulator};
 use crate::recording::integrity::Fault;
 use crate::recording::{Channel, Role, SampleBlock, Sink};
@@ -106,7 +106,7 @@ impl Overview {
             .iter()
             .filter_map(|r| {
                 let (row, time_s) = r.first?;
-                let note = Note::new("fault_note.declared_rails").with("count", r.count);
+                let note = note!("fault_note.declared_rails", count = r.count);
                 Some(Fault {
                     kind: "saturated".into(),
                     channel: Some(r.channel.clone()),

@@ -2,7 +2,7 @@
 
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::estimate::{Estimate, Holds, Verdict, judge};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{
     ConditionRecord, ConditionStatus, Evidence, LimitRecord, MeasurandRecord, ObjectionRecord,
 };
@@ -27,9 +27,7 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
         judged
     });
     let mut notes = estimate.notes.clone();
-    notes.extend(
-        other.map(|unit| Note::new("note.limit_other_unit").with("given", unit).with("unit", estimate.unit)),
-    );
+    notes.extend(other.map(|unit| note!("note.limit_other_unit", given = unit, unit = estimate.unit)));
     let reference = limits
         .reference(estimate.id, &estimate.channel)
         .filter(|_| procedure.report.show_reference)
@@ -78,15 +76,17 @@ pub fn whole(
     let mut reasons = contradicted(rows);
     if !invalid.is_empty() {
         reasons.push(match invalid.len() {
-            1 => Note::new("summary.one_condition_invalid").with("n", 1_usize),
-            n => Note::new("summary.conditions_invalid").with("n", n),
+            1 => note!("summary.one_condition_invalid", n = 1_usize),
+            n => note!("summary.conditions_invalid", n),
         });
     }
     reasons.extend(invalid.iter().map(|c| {
         let why = c.message.clone().map_or_else(|| Arg::Text(c.note.clone()), Arg::from);
-        Note::new("summary.condition_invalid")
-            .with("condition", Arg::key("condition", c.id.split('.').next().unwrap_or(&c.id)))
-            .with("why", why)
+        note!(
+            "summary.condition_invalid",
+            condition = Arg::key("condition", c.id.split('.').next().unwrap_or(&c.id)),
+            why
+        )
     }));
     let several = rows.iter().any(|r| Some(&r.channel) != rows.first().map(|f| &f.channel));
     for verdict in [Verdict::Fail, Verdict::Indeterminate] {
@@ -111,17 +111,17 @@ pub fn whole(
     let verdict = if invalid.is_empty() { worst } else { Verdict::Indeterminate };
     match verdict {
         Verdict::Pass if judged == 1 && bounded == 1 => reasons.push("summary.one_passed_by_limit".into()),
-        Verdict::Pass if judged == 1 => reasons.push(Note::new("summary.one_passed").with("n", judged)),
+        Verdict::Pass if judged == 1 => reasons.push(note!("summary.one_passed", n = judged)),
         Verdict::Pass if bounded > 0 => {
-            reasons.push(Note::new("summary.passed_by_limits").with("n", judged).with("bounded", bounded));
+            reasons.push(note!("summary.passed_by_limits", n = judged, bounded));
         }
-        Verdict::Pass => reasons.push(Note::new("summary.all_passed").with("n", judged)),
-        Verdict::None => reasons.push(Note::new("summary.no_limits")),
+        Verdict::Pass => reasons.push(note!("summary.all_passed", n = judged)),
+        Verdict::None => reasons.push(note!("summary.no_limits")),
         _ => {}
     }
     let declared = |c: &&ConditionRecord| c.id == "influence_acted" && c.evidence == Some(Evidence::Declared);
     if judged > 0 && conditions.iter().any(|c| declared(&c)) {
-        reasons.push(Note::new("summary.influence_declared"));
+        reasons.push(note!("summary.influence_declared"));
     }
     (verdict, reasons)
 }
@@ -143,11 +143,13 @@ pub fn contradicted<'a>(rows: impl IntoIterator<Item = &'a MeasurandRecord>) -> 
                 names.push(name);
             }
         }
-        Note::new("summary.contradicted")
-            .with("check", Arg::key("criticism", &objection.check))
-            .with("found", objection.found.clone())
-            .with("advice", objection.advice.clone())
-            .with("measurands", Arg::Several(names, "; ".into()))
+        note!(
+            "summary.contradicted",
+            check = Arg::key("criticism", &objection.check),
+            found = objection.found.clone(),
+            advice = objection.advice.clone(),
+            measurands = Arg::Several(names, "; ".into())
+        )
     };
     told.into_iter().map(note).collect()
 }
@@ -199,6 +201,6 @@ mod tests {
         assert_eq!(whole(&rows(&[None]), &ok, &[]).0, None);
         assert_eq!(whole(&rows(&[Pass]), &bad, &[]).0, Indeterminate);
         assert_eq!(whole(&rows(&[Fail]), &bad, &[]).0, Indeterminate);
-        assert_eq!(whole(&rows(&[Pass]), &ok, &[Note::new("error.serial_missing")]).0, Error);
+        assert_eq!(whole(&rows(&[Pass]), &ok, &[note!("error.serial_missing")]).0, Error);
     }
 }

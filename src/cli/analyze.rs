@@ -12,7 +12,7 @@ use crate::acceptance::Request;
 use crate::acceptance::analysis::Prepared;
 use crate::acceptance::column_choice::{channels, unit_contradictions};
 use crate::config::procedure::EffectiveLimits;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::open_recording;
 use crate::noise::tau_grid::TauGrid;
 use crate::output::{Kind, StagedFolder};
@@ -93,7 +93,7 @@ impl Job for Analysis<'_> {
             exact: args.grid.exact,
             ..prepared.request(&source, &limits, frame.now)
         };
-        let reading = Note::new("cli.reading").say(lang);
+        let reading = note!("cli.reading").say(lang);
         Ok(evaluate(&request, None, &reading, &mut frame.progress).made(lang))
     }
 

@@ -2,7 +2,7 @@
 
 use super::place::{self, for_shell};
 use crate::acceptance::column_choice::ColumnChoice;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, note};
 use clap::Args;
 
 /// Choice of the columns.
@@ -61,7 +61,7 @@ impl ColumnArgs {
         if self.warm_up >= 0.0 && self.warm_up.is_finite() {
             return Ok(());
         }
-        Err(place::error(&Note::new("cli.warm_up").with("given", self.warm_up.to_string()), lang))
+        Err(place::error(&note!("cli.warm_up", given = self.warm_up.to_string()), lang))
     }
 
     /// The choice that they make.

@@ -16,7 +16,7 @@ use crate::acceptance::compare::{
 };
 use crate::config::procedure::limits::LimitSpec;
 use crate::config::procedure::{EffectiveLimits, load_limits};
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::{RecordingError, each_of, open_recording};
 use crate::output::{Kind, StagedFolder};
 use crate::record::{RunRecord, UnitUnderTest, read};
@@ -95,7 +95,7 @@ impl Job for &CompareArgs {
         }
         let mut units: Vec<Unit> = vec![];
         for (i, path) in paths.iter().enumerate() {
-            let label = Note::new("progress.of_unit").with("n", i + 1).with("all", paths.len()).say(lang);
+            let label = note!("progress.of_unit", n = i + 1, all = paths.len()).say(lang);
             units.extend(read_units(self, path, &limits, now, (&label, &mut frame.progress))?);
         }
         name_apart(&mut units);
@@ -140,7 +140,7 @@ fn read_units(
             (record, by, Origin::Result)
         }
         None if path.is_dir() => {
-            return Err(say(Note::new("result_error.no_result_in").with("path", shown)));
+            return Err(say(note!("result_error.no_result_in", path = shown)));
         }
         None => {
             let analysed = analysed(args, path, limits, now, watch)?;

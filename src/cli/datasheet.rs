@@ -7,7 +7,7 @@ use super::place::OutputPlace;
 use super::{place, store};
 use crate::acceptance::datasheet::{Refusal, TestedUnit, apply, datasheet, select};
 use crate::config::sheet;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, Note, note};
 use crate::ingest::each_of;
 use crate::ingest::result_table::{TableResult, results_in, tables_at};
 use crate::lot::tolerance::Promise;
@@ -72,9 +72,7 @@ impl<'a> Sheet<'a> {
         for (option, given) in [("--proportion", args.proportion), ("--confidence", args.confidence)] {
             // Beyond this neither the sample nor the arithmetic tells anything.
             if !(0.5..=0.9999).contains(&given) {
-                return Err(say(Note::new("datasheet.refused.probability")
-                    .with("option", option)
-                    .with("given", given.to_string())));
+                return Err(say(note!("datasheet.refused.probability", option, given = given.to_string())));
             }
         }
         let rows = args.sheet.as_deref().map(sheet::load).transpose().map_err(|p| p.say(lang))?;
@@ -148,7 +146,7 @@ impl DatasheetArgs {
         let folder = |address: &String| opened.layout().result(address).join(Kind::Result.record_file());
         let mut notes = vec![];
         if found.left_out > 0 {
-            notes.push(Note::new("datasheet.note.left_out").with("n", found.left_out));
+            notes.push(note!("datasheet.note.left_out", n = found.left_out));
         }
         Ok((found.addresses.iter().map(folder).collect(), notes))
     }
@@ -176,7 +174,7 @@ fn units_in(file: &Path) -> Vec<Result<TestedUnit, Note>> {
     };
     let unit = |row: Result<TableResult, Note>| {
         let TableResult { name, record } = row?;
-        let nothing = || Note::new("result_table.no_result").with("recording", name.as_str());
+        let nothing = || note!("result_table.no_result", recording = name.as_str());
         TestedUnit::in_memory(record.ok_or_else(nothing)?.as_bytes(), Path::new(&name), &[])
     };
     rows.map(unit).collect()

@@ -7,7 +7,7 @@ use super::printer::Printer;
 use super::run;
 use super::run_args::{EachArgs, RunArgs};
 use super::{next_step, options::GridArgs, place};
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, note};
 use clap::Args;
 use sagnac_ingest::read_file;
 use std::path::{Path, PathBuf};
@@ -59,12 +59,12 @@ pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
 /// Writes the recording where none is; another file of its name is not replaced.
 fn write(recording: &Path, lang: Lang) -> Result<(), String> {
     let failed = |reason: String| {
-        let note = Note::new("procedures.not_saved").with("path", place::shown(recording));
+        let note = note!("procedures.not_saved", path = place::shown(recording));
         place::error(&note.with("reason", reason), lang)
     };
     match read_file(recording, RECORDING.len() as u64) {
         Ok(found) if found == RECORDING => return Ok(()),
-        Ok(_) => return Err(failed(Note::new("procedures.other_content").say(lang))),
+        Ok(_) => return Err(failed(note!("procedures.other_content").say(lang))),
         Err(_) => {}
     }
     if let Some(folder) = recording.parent() {

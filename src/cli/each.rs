@@ -14,7 +14,7 @@ use crate::acceptance::lot;
 use crate::config::diagnostics::Problems;
 use crate::config::manifest::{self, is_manifest};
 use crate::config::procedure::phases::is_phased;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::lot::{LotError, Member, members};
 use crate::ingest::serial::SerialPattern;
 use crate::ingest::{ReadOptions, RecordingError, files_read};
@@ -139,7 +139,7 @@ pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
         let test: Box<dyn UnitTest + '_> = if is_phased(&args.procedure) {
             let test = PhasedTest::load(args, frame.now, lang)?;
             if let Some(odd) = args.recording.iter().find(|r| !is_manifest(r) && r.exists()) {
-                let note = Note::new("lot.needs_manifests").with("path", odd.display().to_string());
+                let note = note!("lot.needs_manifests", path = odd.display().to_string());
                 return Err(place::error(&note, lang));
             }
             Box::new(PhasedUnits { test, options: ReadOptions::default() })
@@ -211,10 +211,10 @@ fn refused(error: &LotError, lang: Lang) -> String {
             let mut said: String =
                 notes.iter().take(MAX_PRINTED_DIAGNOSTICS).map(|note| place::error(note, lang)).collect();
             if notes.len() > MAX_PRINTED_DIAGNOSTICS {
-                let more = Note::new("lot.more").with("n", notes.len() - MAX_PRINTED_DIAGNOSTICS).say(lang);
+                let more = note!("lot.more", n = notes.len() - MAX_PRINTED_DIAGNOSTICS).say(lang);
                 said.push_str(&format!("  {more}\n"));
             }
-            format!("{said}  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang))
+            format!("{said}  {}: {}\n", note!("diagnostic.help").say(lang), help.say(lang))
         }
     }
 }
@@ -246,7 +246,7 @@ impl Work<'_> {
     fn run(&self, jobs: usize, printer: Printer, progress: &mut Progress) -> Result<Vec<LotUnit>, String> {
         let (next, stop) = (AtomicUsize::new(0), AtomicBool::new(false));
         let (send, receive) = channel();
-        let testing = Note::new("progress.testing").say(self.lang);
+        let testing = note!("progress.testing").say(self.lang);
         let total = self.lot.members.len() as u64;
         let mut units: BTreeMap<usize, LotUnit> = BTreeMap::new();
         let mut failed = None;

@@ -2,7 +2,7 @@
 
 use super::{exit, place};
 use crate::effect::{EFFECTS, Effect, Param, find};
-use crate::i18n::{Arg, EffectText, Lang, Localize, Note, decimal, effect_text};
+use crate::i18n::{Arg, EffectText, Lang, Localize, Note, decimal, effect_text, note};
 use crate::report::unit::pretty;
 use clap::Args;
 use sagnac_core::spelling::nearest;
@@ -40,11 +40,11 @@ pub fn main(args: &EffectsArgs, lang: Lang) -> Result<u8, String> {
 fn unknown(name: &str, lang: Lang) -> String {
     let shown: String = name.chars().take(60).collect();
     let help = match nearest(name, EFFECTS.iter().map(|e| e.kind())) {
-        Some(near) => Note::new("keyed.help.did_you_mean").with("name", near),
-        None => Note::new("model_file.help.kinds"),
+        Some(near) => note!("keyed.help.did_you_mean", name = near),
+        None => note!("model_file.help.kinds"),
     };
-    let said = place::error(&Note::new("model_file.no_kind").with("kind", shown), lang);
-    format!("{said}  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang))
+    let said = place::error(&note!("model_file.no_kind", kind = shown), lang);
+    format!("{said}  {}: {}\n", note!("diagnostic.help").say(lang), help.say(lang))
 }
 
 fn view(effect: &dyn Effect, lang: Lang) -> String {
@@ -82,7 +82,7 @@ fn list(lang: Lang) -> String {
         out.push_str(line.trim_end());
         out.push('\n');
     }
-    out.push_str(&format!("\n{}\n", Note::new("effects.more").say(lang)));
+    out.push_str(&format!("\n{}\n", note!("effects.more").say(lang)));
     out
 }
 
@@ -128,11 +128,11 @@ fn parameter(p: &Param, what: Option<&'static str>, lang: Lang) -> String {
     };
     let bounds = match (bounded(p.lower), bounded(p.upper)) {
         (Some(low), Some(high)) => {
-            Note::new("effects.between").with("low", number(low)).with("high", number(high))
+            note!("effects.between", low = number(low), high = number(high))
         }
-        (Some(low), None) => Note::new("effects.at_least").with("low", number(low)),
-        (None, Some(high)) => Note::new("effects.at_most").with("high", number(high)),
-        (None, None) => Note::new("effects.any"),
+        (Some(low), None) => note!("effects.at_least", low = number(low)),
+        (None, Some(high)) => note!("effects.at_most", high = number(high)),
+        (None, None) => note!("effects.any"),
     };
     let name = if unit.is_empty() { p.name.to_owned() } else { format!("{}, {unit}", p.name) };
     let what = what.or((!p.reported).then_some("effects.inner"));

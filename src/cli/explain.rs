@@ -7,7 +7,7 @@ use super::{explain_jointly, next_step};
 use crate::claim::Claim;
 use crate::config::model;
 use crate::effect::Column;
-use crate::i18n::{Arg, EffectText, Lang, Note, effect_key};
+use crate::i18n::{Arg, EffectText, Lang, Note, effect_key, note};
 use crate::ingest::{ReadOptions, are_several, files_read};
 use crate::mismatch::{self, Options, Outcome};
 use crate::output::{Kind, StagedFolder};
@@ -71,7 +71,7 @@ impl Job for Explaining<'_> {
         if let Some(given) = hidden.iter().find(|c| c.is_other() && !recording.columns.contains_key(c)) {
             let others = recording.columns.keys().copied().filter(|c| c.is_other());
             let known: Vec<&str> = Column::KNOWN.into_iter().chain(others).map(Column::name).collect();
-            let note = Note::new("explain.error.column").with("given", given.name());
+            let note = note!("explain.error.column", given = given.name());
             return Err(place::error(&note.with("known", known.join(", ")), lang));
         }
         let mut notes = recording.remarks();
@@ -130,7 +130,7 @@ impl Explaining<'_> {
         if !taken.shared.is_empty() {
             let titles = taken.shared.iter().map(|e| Arg::Key(effect_key(e.kind(), EffectText::Title)));
             let titles = Arg::Several(titles.collect(), ", ".into());
-            notes.push(Note::new("explain.note.shared").with("effects", titles));
+            notes.push(note!("explain.note.shared", effects = titles));
         }
         let (claim, outcome) = (taken.claim, taken.outcome);
         Ok(Explained { claim, claim_file: shown(simulation), identified: true, outcome })

@@ -6,7 +6,7 @@ use super::join::JoinArgs;
 use super::options::OutputArgs;
 use super::read::ReadArgs;
 use crate::effect::{Column, EFFECTS, find};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::mismatch::Options;
 use crate::series::{Series, SeriesOptions};
 use clap::Args;
@@ -67,7 +67,7 @@ pub(super) fn options(args: &ExplainArgs) -> Result<Options, Note> {
     let default = Options::default();
     let alpha = args.alpha.unwrap_or(default.alpha);
     if !(alpha > 0.0 && alpha < 1.0) {
-        return Err(Note::new("explain.error.alpha").with("given", alpha.to_string()));
+        return Err(note!("explain.error.alpha", given = alpha.to_string()));
     }
     let max_effects = args.max_effects.unwrap_or(default.max_effects);
     if max_effects == 0 {
@@ -80,10 +80,10 @@ pub(super) fn options(args: &ExplainArgs) -> Result<Options, Note> {
     let mut without = vec![];
     for name in &args.without {
         let Some(effect) = find(name) else {
-            let note = Note::new("explain.error.effect").with("given", name.as_str());
+            let note = note!("explain.error.effect", given = name.as_str());
             return Err(match nearest(name, EFFECTS.iter().map(|e| e.kind())) {
                 Some(near) => {
-                    Note::new("explain.error.effect_near").with("given", name.as_str()).with("near", near)
+                    note!("explain.error.effect_near", given = name.as_str(), near)
                 }
                 None => note,
             });

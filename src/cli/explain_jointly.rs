@@ -7,7 +7,7 @@ use super::place::{self, OutputPlace};
 use super::progress::{Measure, Progress};
 use crate::claim::Claim;
 use crate::config::model;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::{RecordingError, each_of};
 use crate::mismatch::Options;
 use crate::mismatch::joint::{JointOutcome, JointProgress, Recording, explain_jointly};
@@ -73,7 +73,7 @@ impl Job for ExplainingJointly<'_> {
         let outcome = explain_jointly(recordings, &self.claim, &self.options, progress);
         let outcome = outcome.map_err(|e| {
             let file = self.files.get(e.recording).map(|f| shown(f)).unwrap_or_default();
-            let note = Note::new("explain.error.of_recording").with("file", file);
+            let note = note!("explain.error.of_recording", file);
             place::error(&note.with("reason", e.note), lang)
         })?;
         let results = results(&outcome, shown(&self.model), frame.stamp(), remarks);
@@ -117,10 +117,12 @@ fn results(
 /// Says how far the work is, and with which recording.
 fn tell(p: JointProgress, recordings: usize, progress: &mut Progress, lang: Lang) {
     let Some(recording) = p.recording else { return progress.explaining(p.of) };
-    let doing = Note::new("explain.progress.of_recording")
-        .with("doing", Note::new(p.of.doing).say(lang))
-        .with("k", recording + 1)
-        .with("n", recordings);
+    let doing = note!(
+        "explain.progress.of_recording",
+        doing = Note::new(p.of.doing).say(lang),
+        k = recording + 1,
+        n = recordings
+    );
     progress.update(&doing.say(lang), Measure::Steps, p.of.done, p.of.total);
 }
 

@@ -3,7 +3,7 @@
 //! The English texts stand in the derived command and nowhere else. Another language translates each in its table `help_text`, whose keys
 //! are the English texts: one that changes has no translation until it is translated anew, and a test says so.
 
-use crate::i18n::{Lang, Localize, Note, lookup};
+use crate::i18n::{Lang, Localize, Note, lookup, note};
 use anstream::adapter::strip_str;
 use clap::builder::Str;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
@@ -208,14 +208,14 @@ fn complaint(error: &Error, lang: Lang) -> String {
     let mut out = super::place::error(&note, lang);
     let near = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::SuggestedValue];
     if let Some(near) = near.into_iter().map(part).find(|text| !text.is_empty()) {
-        let hint = Note::new("keyed.help.did_you_mean").with("name", near);
-        out.push_str(&format!("  {}: {}\n", Note::new("diagnostic.help").say(lang), hint.say(lang)));
+        let hint = note!("keyed.help.did_you_mean", name = near);
+        out.push_str(&format!("  {}: {}\n", note!("diagnostic.help").say(lang), hint.say(lang)));
     }
     let valid = part(ContextKind::ValidValue);
     if !valid.is_empty() {
-        out.push_str(&format!("  {}\n", Note::new("help.error.values").with("values", valid).say(lang)));
+        out.push_str(&format!("  {}\n", note!("help.error.values", values = valid).say(lang)));
     }
-    out.push_str(&format!("\n{}\n", Note::new("help.error.more").say(lang)));
+    out.push_str(&format!("\n{}\n", note!("help.error.more").say(lang)));
     out
 }
 

@@ -5,7 +5,7 @@ use super::options::{Pages, pdf_pages, renderer};
 use super::printer::standard_output;
 use super::{exit, place, stdout, store};
 use crate::acceptance::history::history;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, Note, note};
 use crate::ingest::serial;
 use crate::measurand;
 use crate::output::StagedFile;
@@ -84,10 +84,10 @@ pub enum HistoryFormat {
 pub fn main(args: &HistoryArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
     if let Some(id) = args.measurand.as_deref().filter(|id| measurand::find(id).is_none()) {
-        return Err(say(Note::new("history.no_measurand").with("id", id)));
+        return Err(say(note!("history.no_measurand", id)));
     }
     if !(args.common >= 0.0 && args.common.is_finite()) {
-        return Err(say(Note::new("history.common").with("given", args.common.to_string())));
+        return Err(say(note!("history.common", given = args.common.to_string())));
     }
     let named = StoreArgs { store: args.store.clone(), ..StoreArgs::default() };
     let path = named.path(lang)?.ok_or_else(|| say("history.no_store".into()))?;
@@ -168,6 +168,6 @@ fn rendered(
 
 fn json(record: &HistoryRecord, lang: Lang) -> Result<String, String> {
     let json = serde_json::to_string_pretty(record)
-        .map_err(|e| place::error(&Note::new("system.other").with("reason", e.to_string()), lang))?;
+        .map_err(|e| place::error(&note!("system.other", reason = e.to_string()), lang))?;
     Ok(format!("{json}\n"))
 }

@@ -11,7 +11,7 @@ use crate::acceptance::column_choice::channels;
 use crate::acceptance::verdict::contradicted;
 use crate::config::procedure::EffectiveLimits;
 use crate::criticism::temperature;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::lot::stated_serial;
 use crate::ingest::{Source, open_recording};
 use crate::measurand::{
@@ -68,7 +68,7 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     let layout = args.read.layout().map(|path| Layout::of(path, &args.out));
     let copied = layout.as_ref().and_then(|l| l.copy.as_ref());
     if let Some(path) = paths.iter().chain(copied).find(|p| p.exists()) {
-        return Err(say(Note::new("init.exists").with("path", place::shown(path))));
+        return Err(say(note!("init.exists", path = place::shown(path))));
     }
     let recording = std::slice::from_ref(&args.recording);
     JoinArgs::default().check(recording, "join.help.init", lang)?;
@@ -77,9 +77,9 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     let channels = channels(&args.columns.choice(), &args.recording, &source).map_err(say)?;
     let (record, sample_rate_hz) = analysed(args, &channels, &source, lang)?;
     let files = written(args, layout.as_ref(), &channels, &source, (&record, sample_rate_hz))
-        .map_err(|e| say(Note::new("init.template").with("reason", e.to_string())))?;
+        .map_err(|e| say(note!("init.template", reason = e.to_string())))?;
     let failed = |path: &Path, e: &std::io::Error| {
-        let note = Note::new("procedures.not_saved").with("path", place::shown(path));
+        let note = note!("procedures.not_saved", path = place::shown(path));
         say(note.with("reason", e.to_string()))
     };
     std::fs::create_dir_all(&args.out).map_err(|e| failed(&args.out, &e))?;
@@ -93,12 +93,14 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     for note in contradicted(&record.measurands) {
         place::print(&format!("{}\n", note.say(lang)));
     }
-    let note = Note::new("init.written")
-        .with("procedure", shown[0].as_str())
-        .with("limits", shown[1].as_str())
-        .with("ci", shown[2].as_str())
-        .with("recording", place::for_shell(&args.recording.display().to_string()))
-        .with("serial", place::for_shell(&serial_of(&source)));
+    let note = note!(
+        "init.written",
+        procedure = shown[0].as_str(),
+        limits = shown[1].as_str(),
+        ci = shown[2].as_str(),
+        recording = place::for_shell(&args.recording.display().to_string()),
+        serial = place::for_shell(&serial_of(&source))
+    );
     place::print(&format!("{}\n", note.say(lang)));
     Ok(exit::PASS)
 }
@@ -116,8 +118,8 @@ fn analysed(
     let limits = EffectiveLimits::default();
     let request = prepared.request(source, &limits, moment::now());
     let mut progress = Progress::new(Display::unless(false), lang);
-    let outcome = with_progress(&request, &Note::new("cli.reading").say(lang), &mut progress)
-        .map_err(|e| say(e.note()))?;
+    let outcome =
+        with_progress(&request, &note!("cli.reading").say(lang), &mut progress).map_err(|e| say(e.note()))?;
     Ok((outcome.record, prepared.sample_rate_without_stamps_hz()))
 }
 

@@ -3,7 +3,7 @@
 use super::place::{self, OutputPlace};
 use crate::config::manifest::Manifest;
 use crate::config::shipped;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::lot::stated_serial_of;
 use crate::ingest::unit_data::UnitData;
 use crate::ingest::{ReadOptions, Source, files_read};
@@ -159,7 +159,7 @@ pub fn serial(given: Option<&str>, manifest: Option<&Manifest>) -> Result<Option
     match (given, stated) {
         (Some(given), Some(stated)) if given.trim() != stated.trim() => {
             let path = manifest.map(|m| m.path.display().to_string()).unwrap_or_default();
-            Err(Note::new("manifest.serial").with("path", path).with("stated", stated).with("given", given))
+            Err(note!("manifest.serial", path, stated, given))
         }
         _ => Ok(given.or(stated).map(str::to_owned)),
     }

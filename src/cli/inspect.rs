@@ -5,7 +5,7 @@ use super::progress::{Display, Progress};
 use super::read::ReadArgs;
 use super::{exit, next_step, place};
 use crate::acceptance::inspect::inspect_source;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, note};
 use crate::ingest::open_recording;
 use clap::Args;
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ pub struct InspectArgs {
 pub fn main(args: &InspectArgs, lang: Lang) -> Result<u8, String> {
     args.join.check(&args.recording, "join.help.other", lang)?;
     let mut progress = Progress::new(Display::unless(false), lang);
-    let reading = Note::new("cli.reading").say(lang);
+    let reading = note!("cli.reading").say(lang);
     let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let report = inspect_source(&recording.source, args.sample_rate, lang, &mut |done, total| {
         progress.reading(&reading, done, total);

@@ -6,7 +6,7 @@ use super::printer::Printer;
 use super::progress::Progress;
 use super::writer::Writer;
 use super::{exit, place};
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::mismatch;
 use crate::moment;
 use crate::output::StagedFolder;
@@ -129,7 +129,7 @@ pub fn execute<J: Job>(
     let place = frame.writer.publish(&results, folder)?;
     frame.progress.finish();
     if let Some(Refusal { why, advice }) = refusal {
-        let report = Note::new("cli.report_says_so").with("place", place.display().to_string()).say(lang);
+        let report = note!("cli.report_says_so", place = place.display().to_string()).say(lang);
         let not_kept = job.keep(&place, printer).err().unwrap_or_default();
         return Err(format!("{why}{report}\n{not_kept}{advice}"));
     }

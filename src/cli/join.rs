@@ -1,7 +1,7 @@
 //! Several files as one recording: only where that is asked for.
 
 use super::place;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::{RecordingError, are_several, each_of};
 use clap::Args;
 use std::path::PathBuf;
@@ -31,6 +31,6 @@ impl JoinArgs {
         let key = if named.len() > 1 { "join.several" } else { "join.pattern" };
         let note = Note::new(key).with("n", files).with("first", first);
         let help = Note::new(help).say(lang);
-        Err(format!("{}  {}: {help}\n", place::error(&note, lang), Note::new("diagnostic.help").say(lang)))
+        Err(format!("{}  {}: {help}\n", place::error(&note, lang), note!("diagnostic.help").say(lang)))
     }
 }

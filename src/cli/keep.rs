@@ -6,7 +6,7 @@ use crate::acceptance::datasheet::{TestedUnit, select};
 use crate::acceptance::siblings::{MOST_SIBLINGS, siblings};
 use crate::config::user;
 use crate::estimate::Verdict;
-use crate::i18n::{Lang, LocalText, Localize, Note};
+use crate::i18n::{Lang, LocalText, Localize, note};
 use crate::ingest::serial;
 use crate::output::Kind;
 use crate::record::{RunRecord, SiblingsRecord};
@@ -142,7 +142,7 @@ impl Keeper {
     pub fn keep(&self, folder: &Path, printer: Printer) -> Result<(), String> {
         let Some(path) = &self.path else { return Ok(()) };
         let later = |message: String| {
-            let note = Note::new("store.not_kept").with("folder", place::shown(folder));
+            let note = note!("store.not_kept", folder = place::shown(folder));
             format!("{message}{}\n", note.say(self.lang))
         };
         let Some(mut store) = self.open().map_err(later)? else { return Ok(()) };
@@ -150,9 +150,11 @@ impl Keeper {
         if self.recordings {
             store.keep_recordings(&added.address).map_err(|e| self.say(&e))?;
         }
-        let note = Note::new("store.kept")
-            .with("address", added.address.get(..SHOWN_ADDRESS_DIGITS).unwrap_or(&added.address))
-            .with("store", place::shown(path));
+        let note = note!(
+            "store.kept",
+            address = added.address.get(..SHOWN_ADDRESS_DIGITS).unwrap_or(&added.address),
+            store = place::shown(path)
+        );
         printer.next_step(Some(&note));
         Ok(())
     }

@@ -7,7 +7,7 @@ use super::{exit, next_step, place};
 use crate::acceptance::claimed;
 use crate::claim::Claim;
 use crate::config::model;
-use crate::i18n::{Lang, LocalText, Localize, Note};
+use crate::i18n::{Lang, LocalText, Localize, Note, note};
 use crate::mismatch::{self, Options};
 use crate::output::StagedFile;
 use crate::record::{self, RunRecord};
@@ -104,7 +104,7 @@ fn of_recording(args: &ModelArgs, lang: Lang) -> Result<Claim, String> {
         channels: vec![],
         sample_rate_hz: args.sample_rate,
     };
-    let reading = Note::new("cli.reading").say(lang);
+    let reading = note!("cli.reading").say(lang);
     let series = load_series(std::slice::from_ref(&args.from_what), &options, &mut |done, total| {
         progress.reading(&reading, done, total);
     });

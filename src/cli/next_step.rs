@@ -2,14 +2,14 @@
 
 use super::place::for_shell;
 use crate::config::procedure::Procedure;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::ingest::Source;
 use std::path::{Path, PathBuf};
 
 /// After a recording was looked at: a procedure and limits from it. `options` stand behind the recording. `None` for
 /// several files, which `init` does not read.
 pub fn init(recording: &[PathBuf], options: &str) -> Option<Note> {
-    Some(Note::new("next_step.init").with("recording", only(recording)?).with("options", options))
+    Some(note!("next_step.init", recording = only(recording)?, options))
 }
 
 /// After a recording was inspected: as [`init`], with the options that its columns leave open and those by which it was `read`.
@@ -36,29 +36,31 @@ pub fn after_fail(recording: &[PathBuf], procedure: &Procedure) -> Option<Note> 
     if moved || p.explain.is_some() {
         return None;
     }
-    Some(Note::new("next_step.explain").with("recording", only(recording)?))
+    Some(note!("next_step.explain", recording = only(recording)?))
 }
 
 /// After an effect was found.
 pub fn after_effect(kind: &str) -> Note {
-    Note::new("next_step.effect").with("effect", kind)
+    note!("next_step.effect", effect = kind)
 }
 
 /// After a model was written: another recording against it.
 pub fn after_model(model: &Path) -> Note {
-    Note::new("next_step.model").with("model", for_shell(&model.display().to_string()))
+    note!("next_step.model", model = for_shell(&model.display().to_string()))
 }
 
 /// After a test was planned: its recording, simulated.
 pub fn after_plan(model: &Path, schedule: &Path) -> Note {
-    Note::new("next_step.plan")
-        .with("model", for_shell(&model.display().to_string()))
-        .with("schedule", for_shell(&schedule.display().to_string()))
+    note!(
+        "next_step.plan",
+        model = for_shell(&model.display().to_string()),
+        schedule = for_shell(&schedule.display().to_string())
+    )
 }
 
 /// After the demonstration.
 pub fn after_demo() -> Note {
-    Note::new("next_step.own_recording")
+    note!("next_step.own_recording")
 }
 
 fn only(recording: &[PathBuf]) -> Option<String> {

@@ -2,7 +2,7 @@
 
 use super::place;
 use super::writer::Writer;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, note};
 use crate::noise::tau_grid::TauGrid;
 use crate::report::Renderer;
 use crate::report::pdf::PdfPages;
@@ -28,7 +28,7 @@ impl GridArgs {
     /// The diagnostic, in words.
     pub fn grid(&self, lang: Lang) -> Result<Option<TauGrid>, String> {
         self.taus.as_deref().map(str::parse::<TauGrid>).transpose().map_err(|e| {
-            let note = Note::new("cli.of_option").with("option", "--taus").with("what", e.note());
+            let note = note!("cli.of_option", option = "--taus", what = e.note());
             place::error(&note, lang)
         })
     }

@@ -13,7 +13,7 @@ use crate::config::manifest::{Manifest, ManifestFile};
 use crate::config::procedure::phases::{Phase, Phased, load_phased};
 use crate::config::procedure::{EffectiveLimits, effective};
 use crate::estimate::Verdict;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::{ReadOptions, Source, open_files};
 use crate::record::UnitUnderTest;
 use crate::report::RunResults;
@@ -41,10 +41,10 @@ impl<'a> PhasedTest<'a> {
         say_which(&[&args.procedure], lang);
         let phased = load_phased(&args.procedure).map_err(|p| p.say(lang))?;
         if args.limits.is_some() {
-            return Err(error(Note::new("phases.limits")));
+            return Err(error(note!("phases.limits")));
         }
         if let Some(odd) = phased.phases.iter().find(|p| p.procedure.value.explain.is_some()) {
-            return Err(error(Note::new("phases.explain").with("id", odd.id.as_str())));
+            return Err(error(note!("phases.explain", id = odd.id.as_str())));
         }
         let limits: Vec<EffectiveLimits> =
             phased.phases.iter().map(|p| effective(&p.procedure, p.limits.as_ref())).collect();
@@ -103,7 +103,7 @@ impl<'a> PhasedTest<'a> {
         let mut results = self.combined(done, self.unit(serial, None));
         let record = &mut results.outcome.record;
         record.verdict = Verdict::Error;
-        record.errors.push(Note::new("error.not_evaluated").with("reason", why).into());
+        record.errors.push(note!("error.not_evaluated", reason = why).into());
         record.summary = record.errors.clone();
         results
     }
@@ -167,7 +167,7 @@ impl<'a> PhasedTest<'a> {
             unit,
             serial_of_recording,
             against: None,
-            label: &format!("{}: {}", phase.title.say(lang), Note::new("cli.reading").say(lang)),
+            label: &format!("{}: {}", phase.title.say(lang), note!("cli.reading").say(lang)),
         };
         self.setup.evaluate(test, progress)
     }
@@ -213,8 +213,8 @@ pub fn belong(phased: &Phased, manifest: &Manifest) -> Result<(), Note> {
     for file in &manifest.files {
         let note = match &file.phase {
             Some(of) if phased.phases.iter().any(|p| rest(p, of).is_some()) => continue,
-            Some(of) => Note::new("phases.unknown").with("phase", of.as_str()),
-            None => Note::new("phases.no_phase"),
+            Some(of) => note!("phases.unknown", phase = of.as_str()),
+            None => note!("phases.no_phase"),
         };
         return Err(note.with("path", file.path.display().to_string()).with("phases", known.join(", ")));
     }

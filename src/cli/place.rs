@@ -1,7 +1,7 @@
 //! Where results go, and how text reaches the user.
 
 use super::{exit, stdout};
-use crate::i18n::{Lang, Localize, Note, io_reason, visible, visible_lines};
+use crate::i18n::{Lang, Localize, Note, io_reason, note, visible, visible_lines};
 use chrono::{DateTime, Utc};
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -20,7 +20,7 @@ pub fn eprint_diagnostic(text: &str) {
 /// The exit code of a command that would end with `code`: where a part of its output could not be written, it did not succeed.
 pub fn settled(code: u8, lang: Lang) -> u8 {
     let Some(failure) = stdout::failure() else { return code };
-    let note = Note::new("system.stdout").with("reason", io_reason(&failure));
+    let note = note!("system.stdout", reason = io_reason(&failure));
     eprint_diagnostic(&error(&note, lang));
     exit::ERROR
 }
@@ -42,12 +42,12 @@ pub fn for_shell(path: &str) -> String {
 
 /// The line of an error for the terminal.
 pub fn error(note: &Note, lang: Lang) -> String {
-    format!("{}: {}\n", Note::new("diagnostic.error").say(lang), note.say(lang))
+    format!("{}: {}\n", note!("diagnostic.error").say(lang), note.say(lang))
 }
 
 /// The line of a warning for the terminal.
 pub fn warning(note: &Note, lang: Lang) -> String {
-    format!("{}: {}\n", Note::new("diagnostic.warning").say(lang), note.say(lang))
+    format!("{}: {}\n", note!("diagnostic.warning").say(lang), note.say(lang))
 }
 
 /// Where a result goes.

@@ -8,7 +8,7 @@ use super::{next_step, simulate};
 use crate::claim::Claim;
 use crate::config::alternatives;
 use crate::config::model::load_model;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::ReadOptions;
 use crate::mismatch::finding::Finding;
 use crate::mismatch::{self, Alternative, Options};
@@ -83,7 +83,7 @@ impl Job for Planning<'_> {
     fn run(&self, _: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
         let args = self.args;
         let Explained { alternatives, named } = explained(args, &self.claim, frame)?;
-        let label = Note::new("plan.progress").say(frame.lang);
+        let label = note!("plan.progress").say(frame.lang);
         let plan = plan(&self.claim, &alternatives, &self.limits, &mut |done, total| {
             frame.progress.update(&label, Measure::Steps, done, total);
         });
@@ -121,7 +121,7 @@ fn of_folder(path: &Path, lang: Lang) -> Result<Explained, String> {
     let stored = StoredResults::open(path).map_err(say)?;
     let shown = || path.display().to_string();
     let Results::Explanation(results) = stored.results else {
-        return Err(say(Note::new("plan.error.no_explanation").with("path", shown())));
+        return Err(say(note!("plan.error.no_explanation", path = shown())));
     };
     let named = equivalents(&results.file.explanation);
     let table = results.tables.iter().find(|(name, _)| name == ALTERNATIVES_FILE);
@@ -129,7 +129,7 @@ fn of_folder(path: &Path, lang: Lang) -> Result<Explained, String> {
         if named.is_empty() {
             return Ok(Explained { alternatives: vec![], named });
         }
-        let note = Note::new("plan.error.no_alternatives").with("path", shown());
+        let note = note!("plan.error.no_alternatives", path = shown());
         return Err(say(note.with("file", ALTERNATIVES_FILE)));
     };
     let folder = if path.is_dir() { Some(path) } else { path.parent() };
@@ -161,7 +161,7 @@ fn unplanned(named: &[String], alternatives: &[Alternative]) -> Option<Note> {
     let planned =
         |kind: &str| alternatives.iter().filter_map(|a| a.effects.first()).any(|s| s.effect.kind() == kind);
     let left: Vec<&str> = named.iter().map(String::as_str).filter(|kind| !planned(kind)).collect();
-    (!left.is_empty()).then(|| Note::new("plan.note.unplanned").with("kinds", left.join(", ")))
+    (!left.is_empty()).then(|| note!("plan.note.unplanned", kinds = left.join(", ")))
 }
 
 /// The limits of the laboratory that the options state.
@@ -169,7 +169,7 @@ fn limits(args: &PlanArgs, lang: Lang) -> Result<Limits, String> {
     let usual = Limits::usual(simulate::duration("--budget", &args.budget, lang)?);
     let chosen = |option: &'static str, text: &Option<String>, lowest: f64, default: [f64; 2]| match text {
         Some(text) => range(text, lowest).ok_or_else(|| {
-            let note = Note::new("plan.error.range").with("option", option).with("given", text.as_str());
+            let note = note!("plan.error.range", option, given = text.as_str());
             place::error(&note, lang)
         }),
         None => Ok(default),
@@ -180,7 +180,7 @@ fn limits(args: &PlanArgs, lang: Lang) -> Result<Limits, String> {
         chosen("--ramp-range", &args.ramp_range, f64::MIN_POSITIVE, Limits::RAMP_DEGC_PER_H)?;
     let mut table_rates_deg_s = match &args.table_rates {
         Some(text) => rates(text)
-            .ok_or_else(|| place::error(&Note::new("plan.error.rates").with("given", text.as_str()), lang))?,
+            .ok_or_else(|| place::error(&note!("plan.error.rates", given = text.as_str()), lang))?,
         None => usual.table_rates_deg_s,
     };
     if args.no_table {

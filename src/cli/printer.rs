@@ -4,7 +4,7 @@ use super::options::{OutputArgs, PrintFormat};
 use super::place;
 use super::progress::{Display, Progress};
 use super::stdout;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::report::Results;
 use crate::report::terminal::{self, Terminal};
 use anstream::ColorChoice;
@@ -51,16 +51,18 @@ impl Printer {
         if self.format == PrintFormat::Json {
             let record = folder.join(kind.record_file());
             let contents = std::fs::read(&record).map_err(|e| {
-                let note = Note::new("result_error.unreadable")
-                    .with("path", record.display().to_string())
-                    .with("reason", e.to_string());
+                let note = note!(
+                    "result_error.unreadable",
+                    path = record.display().to_string(),
+                    reason = e.to_string()
+                );
                 place::error(&note, self.lang)
             })?;
             stdout::write(&contents);
             return Ok(());
         }
         let page = folder.join(format!("{}.html", kind.page_stem()));
-        let place = Note::new("terminal.report").with("place", place::shown(&page)).say(self.lang);
+        let place = note!("terminal.report", place = place::shown(&page)).say(self.lang);
         let text = if self.quiet {
             String::new()
         } else {

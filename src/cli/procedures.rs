@@ -2,7 +2,7 @@
 
 use super::{exit, place};
 use crate::config::shipped::{LIMITS, PROCEDURES, Shipped, find};
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use clap::{Args, Subcommand};
 use sagnac_ingest::read_file;
 use std::path::{Path, PathBuf};
@@ -34,7 +34,7 @@ pub fn main(args: &ProceduresArgs, lang: Lang) -> Result<u8, String> {
         Some(What::Show { name }) => {
             let Some(shipped) = find(Path::new(name)) else {
                 let names: Vec<&str> = PROCEDURES.iter().chain(LIMITS).map(|s| s.name).collect();
-                let note = Note::new("procedures.unknown").with("name", name.as_str());
+                let note = note!("procedures.unknown", name = name.as_str());
                 return Err(place::error(&note.with("names", names.join(", ")), lang));
             };
             place::print(shipped.text);
@@ -60,13 +60,13 @@ fn list(lang: Lang) {
         format!("{}\n{rows}", Note::new(key).say(lang))
     };
     let text = [group("procedures.procedures", PROCEDURES), group("procedures.limits", LIMITS)].join("\n");
-    place::print(&format!("{text}\n{}\n", Note::new("procedures.more").say(lang)));
+    place::print(&format!("{text}\n{}\n", note!("procedures.more").say(lang)));
 }
 
 /// Writes what is not there yet; a file of other content ends it before anything is written.
 fn save(folder: &Path, lang: Lang) -> Result<(), String> {
     let failed = |path: &Path, reason: String| {
-        let note = Note::new("procedures.not_saved").with("path", place::shown(path)).with("reason", reason);
+        let note = note!("procedures.not_saved", path = place::shown(path), reason);
         place::error(&note, lang)
     };
     let all: Vec<(PathBuf, &Shipped)> =
@@ -75,7 +75,7 @@ fn save(folder: &Path, lang: Lang) -> Result<(), String> {
         if path.exists()
             && read_file(path, shipped.text.len() as u64).ok().as_deref() != Some(shipped.text.as_bytes())
         {
-            return Err(failed(path, Note::new("procedures.other_content").say(lang)));
+            return Err(failed(path, note!("procedures.other_content").say(lang)));
         }
     }
     for (path, shipped) in &all {
@@ -83,7 +83,7 @@ fn save(folder: &Path, lang: Lang) -> Result<(), String> {
         std::fs::create_dir_all(parent).map_err(|e| failed(parent, e.to_string()))?;
         std::fs::write(path, shipped.text).map_err(|e| failed(path, e.to_string()))?;
     }
-    let note = Note::new("procedures.saved").with("n", all.len()).with("folder", place::shown(folder));
+    let note = note!("procedures.saved", n = all.len(), folder = place::shown(folder));
     place::print(&format!("{}\n", note.say(lang)));
     Ok(())
 }

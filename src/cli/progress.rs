@@ -1,6 +1,6 @@
 //! Progress on standard error, where somebody watches and the work takes more than about a second.
 
-use crate::i18n::{Lang, Localize, Note, visible};
+use crate::i18n::{Lang, Localize, Note, note, visible};
 use crate::report::number::limit_digits;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle, TermLike};
 use std::fmt::Write as _;
@@ -191,7 +191,7 @@ fn style(measure: Measure, lang: Lang) -> ProgressStyle {
         .with_key("left", move |state: &ProgressState, out: &mut dyn std::fmt::Write| {
             let known = state.pos() > 0;
             let time = if known { clock(state.eta().as_secs()) } else { "–".to_owned() };
-            let _ = out.write_str(&Note::new("progress.left").with("time", time).say(lang));
+            let _ = out.write_str(&note!("progress.left", time).say(lang));
         })
         .with_key("passed", |state: &ProgressState, out: &mut dyn std::fmt::Write| {
             let _ = out.write_str(&clock(state.elapsed().as_secs()));

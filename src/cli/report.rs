@@ -6,7 +6,7 @@ use super::progress::{Display, Progress};
 use super::writer::Writer;
 use super::{exit, place};
 use crate::config::laboratory;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, Note, note};
 use crate::moment;
 use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::LotUnit;
@@ -111,7 +111,7 @@ fn unit_anew(
     let plain =
         name.components().count() == 1 && name.components().all(|c| matches!(c, Component::Normal(_)));
     let at = lot.join(name);
-    let missing = || Note::new("result_error.no_result_in").with("path", at.display().to_string());
+    let missing = || note!("result_error.no_result_in", path = at.display().to_string());
     let stored = match StoredResults::open(&at) {
         _ if !plain => return Ok(Some(missing())),
         Ok(stored) if stored.results.kind() == Kind::Result => stored,

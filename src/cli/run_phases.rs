@@ -9,7 +9,7 @@ use super::printer::Printer;
 use super::run_args::RunArgs;
 use crate::acceptance::phases::failure;
 use crate::config::manifest::{self, Manifest, is_manifest};
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, Note, note};
 use crate::output::{Kind, StagedFolder};
 use crate::report::Results;
 use std::path::Path;
@@ -40,7 +40,7 @@ impl<'a> RunOfPhases<'a> {
             [one] if is_manifest(one) || one.extension().is_some_and(|e| e == "toml") => one,
             _ => {
                 let id = test.phased.identity.id.as_str();
-                let needed = error(Note::new("phases.needs_manifest").with("id", id));
+                let needed = error(note!("phases.needs_manifest", id));
                 return Err(format!("{needed}\n{}", test.phased.example_manifest()));
             }
         };
@@ -67,7 +67,7 @@ impl Job for RunOfPhases<'_> {
         for phase in record.phases.iter().filter(|p| !explained.contains(&p.id)) {
             if let Some(why) = failure(phase) {
                 let title = phase.title.clone();
-                let note = Note::new("phases.error").with("title", title).with("why", why.clone());
+                let note = note!("phases.error", title, why = why.clone());
                 frame.progress.beside(|| place::eprint_diagnostic(&place::error(&note, frame.lang)));
             }
         }

@@ -3,7 +3,7 @@
 use super::options::renderer;
 use super::{exit, place};
 use crate::estimate::Verdict;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, Note, note};
 use crate::moment;
 use crate::record::{self, RunRecord};
 use crate::signing::{self, Role, SIGNATURES_FOLDER, SignOff, Waived};
@@ -85,12 +85,12 @@ fn put(args: &SignArgs, role: Role, follows: bool, lang: Lang) -> Result<u8, Str
     let files = signing::files_of(&folder.path, stated_hashes(&folder.path).into_keys());
     let links = signing::chain(&folder.path, &files);
     if let Some(link) = links.iter().find(|l| !l.broken.is_empty()) {
-        return Err(say(Note::new("signing.broken_chain").with("name", link.name.as_str())));
+        return Err(say(note!("signing.broken_chain", name = link.name.as_str())));
     }
     let strays = signing::strays(&folder.path);
     if let Some(stray) = strays.iter().find(|stray| !signing::is_leftover(stray, links.len())) {
-        let why = Note::new("verify.added").with("name", stray.as_str());
-        return Err(say(Note::new("signing.changed").with("why", why)));
+        let why = note!("verify.added", name = stray.as_str());
+        return Err(say(note!("signing.changed", why)));
     }
     if follows && links.is_empty() {
         return Err(say("signing.nothing_to_approve".into()));
@@ -125,7 +125,7 @@ fn waivers(args: &SignArgs) -> Result<Vec<Waived>, Note> {
         return Err("signing.reasons".into());
     }
     let each = |(row, reason): (&String, &String)| match reason.trim() {
-        "" => Err(Note::new("signing.empty_reason").with("row", row.as_str())),
+        "" => Err(note!("signing.empty_reason", row = row.as_str())),
         reason => Ok(Waived { row: row.clone(), reason: reason.to_owned() }),
     };
     args.waive.iter().zip(&args.reason).map(each).collect()
@@ -138,12 +138,12 @@ fn may_be_waived(run: Option<&RunRecord>, row: &str) -> Result<(), Note> {
     let of_row = |m: &&record::MeasurandRecord| m.id == id && channel.is_none_or(|c| m.channel == c);
     let found: Vec<&record::MeasurandRecord> = rows.filter(of_row).filter(|m| m.limit.is_some()).collect();
     match found.as_slice() {
-        [] => Err(Note::new("signing.no_row").with("row", row)),
+        [] => Err(note!("signing.no_row", row)),
         [one] if matches!(one.verdict, Verdict::Fail | Verdict::Indeterminate) => Ok(()),
-        [_] => Err(Note::new("signing.row_passed").with("row", row)),
+        [_] => Err(note!("signing.row_passed", row)),
         several => {
             let channels: Vec<&str> = several.iter().map(|m| m.channel.as_str()).collect();
-            Err(Note::new("signing.several_rows").with("row", row).with("channels", channels.join(", ")))
+            Err(note!("signing.several_rows", row, channels = channels.join(", ")))
         }
     }
 }

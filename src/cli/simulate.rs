@@ -7,7 +7,7 @@ use crate::config::model::{ModelFile, Profile, load_model};
 use crate::config::quantity;
 use crate::config::schedule::{self, Schedule};
 use crate::effect::Column;
-use crate::i18n::{Arg, Lang, Localize, Note};
+use crate::i18n::{Arg, Lang, Localize, Note, note};
 use crate::ingest::{ReadOptions, files_read};
 use crate::output::StagedFile;
 use crate::series::{Series, SeriesOptions, load_series};
@@ -62,15 +62,15 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     read.push(args.model.clone());
     read.extend(args.schedule.clone());
     if read.iter().any(|input| same(input, &args.out)) {
-        let note = Note::new("simulate.onto_itself").with("path", args.out.display().to_string());
+        let note = note!("simulate.onto_itself", path = args.out.display().to_string());
         return Err(say(&note));
     }
     let asked_s = args.duration.as_deref().map(|d| duration("--duration", d, lang)).transpose()?;
     if asked_s.is_some() && args.like.is_some() {
-        return Err(say(&Note::new("simulate.both")));
+        return Err(say(&note!("simulate.both")));
     }
     if args.schedule.is_some() && (asked_s.is_some() || args.like.is_some()) {
-        return Err(say(&Note::new("simulate.schedule_and")));
+        return Err(say(&note!("simulate.schedule_and")));
     }
     let mut model = load_model(&args.model).map_err(|problems| problems.say(lang))?;
     if let Some(path) = &args.schedule {
@@ -80,7 +80,7 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     let mut progress = Progress::new(Display::unless(args.quiet), lang);
     let mut series = None;
     if let Some(path) = &args.like {
-        let reading = Note::new("cli.reading").say(lang);
+        let reading = note!("cli.reading").say(lang);
         let options = SeriesOptions {
             sample_rate_hz: Some(model.claim.sample_rate_hz),
             any_rate: true,
@@ -97,11 +97,11 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
         (None, Some(duration_s)) => {
             Over::Duration { duration_s, start_s: model.simulation.start_s, drivers: &model.drivers }
         }
-        (None, None) => return Err(say(&Note::new("simulate.no_duration"))),
+        (None, None) => return Err(say(&note!("simulate.no_duration"))),
     };
     let simulation =
         Simulation::begin(Order { claim: &model.claim, seed, over }).map_err(|e| say(e.note()))?;
-    let writing = Note::new("simulate.writing").say(lang);
+    let writing = note!("simulate.writing").say(lang);
     let replaced = args.force && args.out.exists();
     let staged = StagedFile::begin(&args.out, &read, args.force).map_err(|e| say(&e.note()))?;
     let written = write(simulation, staged, &mut |done, total| {
@@ -110,7 +110,7 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
     progress.finish();
     let written = written.map_err(|e| say(&e.note()))?;
     if replaced {
-        let note = Note::new("output_file.replaces").with("path", args.out.display().to_string());
+        let note = note!("output_file.replaces", path = args.out.display().to_string());
         place::eprint_diagnostic(&format!("{}\n", note.say(lang)));
     }
     if args.quiet {
@@ -143,13 +143,13 @@ fn same(a: &Path, b: &Path) -> bool {
 /// A length in seconds, given to an option.
 pub(super) fn duration(option: &str, text: &str, lang: Lang) -> Result<f64, String> {
     let refused = |what: Note| {
-        let note = Note::new("cli.of_option").with("option", option).with("what", what);
-        let help = Note::new("simulate.help.duration");
-        let help = format!("  {}: {}\n", Note::new("diagnostic.help").say(lang), help.say(lang));
+        let note = note!("cli.of_option", option, what);
+        let help = note!("simulate.help.duration");
+        let help = format!("  {}: {}\n", note!("diagnostic.help").say(lang), help.say(lang));
         format!("{}{help}", place::error(&note, lang))
     };
     let seconds = quantity::parse(text, "s", true, false).map_err(|e| refused(e.message))?;
-    if seconds > 0.0 { Ok(seconds) } else { Err(refused(Note::new("simulate.not_positive"))) }
+    if seconds > 0.0 { Ok(seconds) } else { Err(refused(note!("simulate.not_positive"))) }
 }
 
 /// What was made, in a few lines.
@@ -162,17 +162,19 @@ fn summary(
     lang: Lang,
 ) -> String {
     let mut lines = vec![
-        Note::new("simulate.written")
-            .with("path", args.out.display().to_string())
-            .with("rows", written.rows)
-            .with("length", length(written.length_s))
-            .with("rate", Arg::rounded(model.claim.sample_rate_hz, 6))
-            .with("columns", written.columns.join(", ")),
-        Note::new("simulate.seed").with("seed", seed),
+        note!(
+            "simulate.written",
+            path = args.out.display().to_string(),
+            rows = written.rows,
+            length = length(written.length_s),
+            rate = Arg::rounded(model.claim.sample_rate_hz, 6),
+            columns = written.columns.join(", ")
+        ),
+        note!("simulate.seed", seed),
     ];
     if !model.claim.effects.is_empty() {
         let kinds: Vec<&str> = model.claim.effects.iter().map(|e| e.effect.kind()).collect();
-        lines.push(Note::new("simulate.effects").with("kinds", kinds.join(", ")));
+        lines.push(note!("simulate.effects", kinds = kinds.join(", ")));
     }
     let idle: Vec<&str> = model
         .claim
@@ -189,17 +191,17 @@ fn summary(
     if let Some(series) = series {
         let faults = &series.faults;
         if !model.drivers.is_empty() {
-            lines.push(Note::new("simulate.drivers_idle"));
+            lines.push(note!("simulate.drivers_idle"));
         }
         if faults.without_time + faults.without_rate > 0 {
-            let left = Note::new("simulate.left_out").with("rows", faults.rows);
+            let left = note!("simulate.left_out", rows = faults.rows);
             lines.push(left.with("time", faults.without_time).with("rate", faults.without_rate));
         }
         if faults.missing > 0 {
-            lines.push(Note::new("simulate.gaps").with("missing", faults.missing));
+            lines.push(note!("simulate.gaps", missing = faults.missing));
         }
         for (column, count) in &faults.interpolated {
-            let note = Note::new("simulate.interpolated").with("column", column.name());
+            let note = note!("simulate.interpolated", column = column.name());
             lines.push(note.with("count", *count));
         }
     }

@@ -12,7 +12,7 @@ use crate::config::model::Claim;
 use crate::config::procedure::{
     EffectiveLimits, LimitsFile, Loaded, Procedure, effective, load, load_limits,
 };
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, note};
 use crate::ingest::{Recording, RecordingError, Source, open_recording};
 use crate::record::UnitUnderTest;
 use chrono::{DateTime, Utc};
@@ -125,7 +125,7 @@ impl<'a> SingleTest<'a> {
             unit: self.setup.unit(self.described(), serial.number, manifest),
             serial_of_recording: serial.of_recording,
             against: self.model.clone().map(|claim| Against { claim, recording }),
-            label: &Note::new("cli.reading").say(progress.lang()),
+            label: &note!("cli.reading").say(progress.lang()),
         };
         self.setup.evaluate(test, progress)
     }

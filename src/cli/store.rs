@@ -1,7 +1,7 @@
 //! `sagnac store`: a store of results, made, looked after and exchanged with others.
 
 use super::{exit, place};
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::io_reason;
 use crate::ingest::result_table::{TableResult, results_in, tables_at};
 use crate::moment;
@@ -103,13 +103,13 @@ pub fn main(args: &StoreVerbArgs, lang: Lang) -> Result<u8, String> {
             for note in store::init(store, *shared_disk).map_err(say)? {
                 place::eprint_diagnostic(&place::warning(&note, lang));
             }
-            done(&Note::new("store.made").with("store", place::shown(store)), lang)
+            done(&note!("store.made", store = place::shown(store)), lang)
         }
         What::Import { store, folders, recordings } => import(store, folders, recordings, lang),
         What::Export { store, out, force } => {
             let opened = open_to_read(store, lang)?;
             let rows = store::export(&opened, &Filter::default(), out, *force).map_err(say)?;
-            done(&Note::new("store.exported").with("n", rows).with("file", place::shown(out)), lang)
+            done(&note!("store.exported", n = rows, file = place::shown(out)), lang)
         }
         What::Supersede { store, superseded, by, reason, operator } => {
             let mut opened = said(Store::open(store), lang)?;
@@ -120,17 +120,17 @@ pub fn main(args: &StoreVerbArgs, lang: Lang) -> Result<u8, String> {
         What::Prune { store, to, before } => {
             let mut opened = said(Store::open(store), lang)?;
             let moved = opened.prune(to, before.as_deref(), &now()).map_err(say)?;
-            done(&Note::new("store.pruned").with("n", moved).with("folder", place::shown(to)), lang)
+            done(&note!("store.pruned", n = moved, folder = place::shown(to)), lang)
         }
         What::Rebuild { store } => {
             let rebuilt = store::rebuild(store).map_err(say)?;
-            let note = Note::new("store.rebuilt").with("n", rebuilt.results);
+            let note = note!("store.rebuilt", n = rebuilt.results);
             found(&rebuilt.findings, &note.with("statements", rebuilt.statements), lang)
         }
         What::Verify { store } => {
             let opened = said(Store::open_to_verify(store), lang)?;
             let verified = store::verify(&opened).map_err(say)?;
-            let note = Note::new("store.verified").with("n", verified.results);
+            let note = note!("store.verified", n = verified.results);
             let note = note.with("statements", verified.statements).with("wrong", verified.findings.len());
             found(&verified.findings, &note, lang)
         }
@@ -212,7 +212,7 @@ impl Tally {
         for row in results_in(table).map_err(|note| say(&note))? {
             let TableResult { name, record } = row.map_err(|note| say(&note))?;
             let Some(record) = record else {
-                self.refuse(&Note::new("result_table.no_result").with("recording", name), lang);
+                self.refuse(&note!("result_table.no_result", recording = name), lang);
                 continue;
             };
             let folder = tempfile::tempdir();
@@ -220,8 +220,7 @@ impl Tally {
                 std::fs::write(folder.path().join(Kind::Result.record_file()), record)?;
                 Ok(folder)
             });
-            let folder =
-                folder.map_err(|e| say(&Note::new("store.no_scratch").with("reason", io_reason(&e))))?;
+            let folder = folder.map_err(|e| say(&note!("store.no_scratch", reason = io_reason(&e))))?;
             self.add(store, folder.path(), lang)?;
         }
         Ok(())
@@ -242,7 +241,7 @@ fn import(store: &Path, folders: &[PathBuf], recordings: &[PathBuf], lang: Lang)
         let results = if is_table { vec![] } else { result_folders(named).map_err(say)? };
         let tables = if results.is_empty() { tables_at(named) } else { vec![] };
         if results.is_empty() && tables.is_empty() {
-            let note = Note::new("result_error.no_result_in").with("path", place::shown(named));
+            let note = note!("result_error.no_result_in", path = place::shown(named));
             return Err(place::error(&note, lang));
         }
         for folder in results {
@@ -253,18 +252,18 @@ fn import(store: &Path, folders: &[PathBuf], recordings: &[PathBuf], lang: Lang)
         }
     }
     let Tally { new, known, refused, incomplete } = tally;
-    let note = Note::new("store.imported").with("new", new).with("known", known).with("refused", refused);
+    let note = note!("store.imported", new, known, refused);
     done(&note, lang)?;
     if let Some((folder, names)) = incomplete.first() {
         let files: usize = incomplete.iter().map(|(_, names)| names.len()).sum();
-        let note = Note::new("store.files_missing").with("results", incomplete.len()).with("files", files);
+        let note = note!("store.files_missing", results = incomplete.len(), files);
         let note = note.with("path", place::shown(folder)).with("names", names.join(", "));
         place::eprint_diagnostic(&place::warning(&note, lang));
     }
     if !recordings.is_empty() {
         let RecordingSearch { found, in_place, missing } =
             opened.find_recordings(recordings, &now()).map_err(say)?;
-        let note = Note::new("store.recordings").with("found", found).with("in_place", in_place);
+        let note = note!("store.recordings", found, in_place);
         done(&note.with("missing", missing), lang)?;
     }
     Ok(if refused > 0 { exit::FAIL } else { exit::PASS })

@@ -2,7 +2,7 @@
 
 use super::options::renderer;
 use super::{exit, place};
-use crate::i18n::{Arg, Lang, Localize, Note, io_reason};
+use crate::i18n::{Arg, Lang, Localize, Note, io_reason, note};
 use crate::moment;
 use crate::record;
 use crate::report::signatures::row_name;
@@ -107,7 +107,7 @@ fn of_pdf(path: &Path, lang: Lang) -> Result<u8, String> {
 fn moment(given: Option<&str>) -> Result<DateTime<Utc>, Note> {
     match given {
         None => Ok(moment::now()),
-        Some(text) => signing::moment(text).map_err(|_| Note::new("signing.moment").with("given", text)),
+        Some(text) => signing::moment(text).map_err(|_| note!("signing.moment", given = text)),
     }
 }
 
@@ -132,6 +132,6 @@ fn verdict_waived(folder: &Folder) -> Option<Finding> {
     let held = links.iter().filter(|link| link.broken.is_empty()).filter_map(|link| link.statement.as_ref());
     let rows: Vec<Arg> =
         held.flat_map(|statement| &statement.predicate.waivers).map(|w| row_name(&w.row)).collect();
-    let note = Note::new("verify.verdict_waived").with("verdict", Arg::key("verdict", run.verdict.id()));
+    let note = note!("verify.verdict_waived", verdict = Arg::key("verdict", run.verdict.id()));
     (!rows.is_empty()).then(|| Finding::Unchecked(note.with("rows", Arg::Several(rows, "; ".into()))))
 }

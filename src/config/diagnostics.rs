@@ -3,7 +3,7 @@
 //! A [`Problem`] carries the line it is about, so that it can be shown without the file. The rendering is plain text:
 //! no colours, columns counted in characters, so that it lines up for text in any alphabet.
 
-use crate::i18n::{Lang, Localize, Note, steers, visible};
+use crate::i18n::{Lang, Localize, Note, note, steers, visible};
 use std::fmt;
 use std::ops::Range;
 
@@ -103,7 +103,7 @@ impl Problem {
         }
         if let Some(help) = &self.help {
             let help = help.say(lang);
-            out.push_str(&format!("  {}: {}\n", Note::new("diagnostic.help").say(lang), visible(&help)));
+            out.push_str(&format!("  {}: {}\n", note!("diagnostic.help").say(lang), visible(&help)));
         }
         out
     }
@@ -134,7 +134,7 @@ impl Problems {
         let shown: Vec<String> = self.list.iter().take(MAX_SHOWN).map(|p| p.say(lang)).collect();
         let mut out = shown.join("\n");
         if let Some(rest) = self.list.len().checked_sub(MAX_SHOWN).filter(|n| *n > 0) {
-            out.push_str(&format!("\n{}\n", Note::new("diagnostic.more").with("n", rest).say(lang)));
+            out.push_str(&format!("\n{}\n", note!("diagnostic.more", n = rest).say(lang)));
         }
         out
     }

@@ -8,7 +8,7 @@ use super::section::{Entry, Section};
 use super::spec::{TableSpec, Word};
 use super::table::{Table, words};
 use super::text_file::{self, Wording};
-use crate::i18n::{Lang, LocalText, Note};
+use crate::i18n::{Lang, LocalText, note};
 use std::path::Path;
 
 /// What is said of a file that cannot be read at all.
@@ -180,8 +180,8 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Laboratory {
     let used = each_once(tables.languages, "languages", root, reader);
     let binding = each_once(tables.binding_languages, "binding_languages", root, reader);
     if let Some(lang) = binding.iter().find(|lang| !used.contains(lang)) {
-        let message = Note::new("laboratory_file.not_used").with("code", lang.code());
-        let help = Note::new("laboratory_file.help.not_used");
+        let message = note!("laboratory_file.not_used", code = lang.code());
+        let help = note!("laboratory_file.help.not_used");
         reader.error(&root.span_of("binding_languages"), message, Some(help));
     }
     check_country(&tables.laboratory.contact, &tables.laboratory.section, reader);
@@ -201,7 +201,7 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Laboratory {
 /// The languages of a list, each once.
 fn each_once(list: Vec<Lang>, key: &str, section: &Section, reader: &mut Reader<'_>) -> Vec<Lang> {
     if matches!(section.entry(key), Some(Entry::Words(words)) if words.is_empty()) {
-        reader.error(&section.span_of(key), Note::new("keyed.empty").with("key", key), None);
+        reader.error(&section.span_of(key), note!("keyed.empty", key), None);
     }
     let mut found = vec![];
     for lang in list {
@@ -217,8 +217,8 @@ fn check_country(contact: &Contact, section: &Section, reader: &mut Reader<'_>) 
     let country = contact.country.as_str();
     let is_code = country.len() == 2 && country.bytes().all(|b| b.is_ascii_uppercase());
     if !country.is_empty() && !is_code {
-        let message = Note::new("laboratory_file.country").with("given", country);
-        let help = Note::new("laboratory_file.help.country");
+        let message = note!("laboratory_file.country", given = country);
+        let help = note!("laboratory_file.help.country");
         let at = reader.source.inside_quotes(&section.span_of("country"));
         reader.error(&at, message, Some(help));
     }

@@ -1,6 +1,6 @@
 //! A number with its unit in one text: `"20 degC"`, `"0.0030 deg/sqrt(h)"`, `"0.1 %"`.
 
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::units::Unit;
 use std::ops::Range;
 
@@ -28,24 +28,24 @@ pub fn split(text: &str) -> Result<(f64, &str), QuantityError> {
     let whole = || start..text.trim_end().len().max(start);
     if number.is_empty() {
         let message = if body.trim().is_empty() {
-            Note::new("keyed.quantity.missing")
+            note!("keyed.quantity.missing")
         } else {
-            Note::new("keyed.quantity.no_number").with("text", body.trim())
+            note!("keyed.quantity.no_number", text = body.trim())
         };
         return Err(QuantityError { span: whole(), message, help: None });
     }
     if rest.starts_with(',') && rest[1..].starts_with(|c: char| c.is_ascii_digit()) {
         return Err(QuantityError {
             span: whole(),
-            message: Note::new("keyed.quantity.decimal_comma").with("text", body.trim()),
-            help: Some(Note::new("keyed.help.write").with("text", body.trim().replacen(',', ".", 1))),
+            message: note!("keyed.quantity.decimal_comma", text = body.trim()),
+            help: Some(note!("keyed.help.write", text = body.trim().replacen(',', ".", 1))),
         });
     }
     match number.replacen('−', "-", 1).parse::<f64>() {
         Ok(value) if value.is_finite() => Ok((value, rest.trim())),
         _ => Err(QuantityError {
             span: start..start + end,
-            message: Note::new("keyed.quantity.not_finite").with("text", number),
+            message: note!("keyed.quantity.not_finite", text = number),
             help: None,
         }),
     }
@@ -99,7 +99,7 @@ pub fn parse_as_recorded(text: &str) -> Result<(f64, &'static str), QuantityErro
     match AS_RECORDED.iter().find(fits) {
         Some(unit) => parse(text, unit, true, true).map(|value| (value, *unit)),
         None => {
-            let message = Note::new("keyed_more.no_output_per_input").with("unit", unit_text);
+            let message = note!("keyed_more.no_output_per_input", unit = unit_text);
             Err(QuantityError { span: whole(), message, help: None })
         }
     }
@@ -123,7 +123,7 @@ pub fn parse(text: &str, unit: &str, difference: bool, bare: bool) -> Result<f64
         if bare && unit == "1" {
             return Ok(value);
         }
-        let message = Note::new("keyed.no_unit").with("name", trimmed);
+        let message = note!("keyed.no_unit", name = trimmed);
         return Err(QuantityError { span: whole, message, help: None });
     }
     let unit_start = whole.end - unit_text.len();
@@ -139,7 +139,7 @@ pub fn parse(text: &str, unit: &str, difference: bool, bare: bool) -> Result<f64
     if converted.is_finite() {
         Ok(converted)
     } else {
-        let message = Note::new("keyed.quantity.too_large").with("text", trimmed);
+        let message = note!("keyed.quantity.too_large", text = trimmed);
         Err(QuantityError { span: whole, message, help: None })
     }
 }

@@ -6,7 +6,7 @@ use super::reader::{Reader, Value, example, meant, shorten};
 use super::section::{Entry, Section};
 use super::spec::{KeySpec, Kind, Need, TableSpec};
 use super::{syntax, values};
-use crate::i18n::{Arg, Lang, Note, lookup};
+use crate::i18n::{Arg, Lang, Note, lookup, note};
 use crate::measurand::Measurand;
 use crate::recording::Role;
 use sagnac_core::spelling::nearest;
@@ -80,8 +80,8 @@ fn other_format(source: &SourceText, root: &TableSpec, table: &DeTable<'_>) -> O
     })?;
     let value = table.get("format")?;
     let given = value.get_ref().as_str().filter(|given| *given != wanted)?;
-    let message = Note::new("keyed.other_format").with("given", shorten(given));
-    let help = Note::new("keyed.help.format").with("wanted", wanted);
+    let message = note!("keyed.other_format", given = shorten(given));
+    let help = note!("keyed.help.format", wanted);
     Some(source.error(&value.span(), message).help(help))
 }
 
@@ -177,9 +177,9 @@ impl Reader<'_> {
                     let message =
                         self.placed("keyed.missing", "keyed.missing_in", spec).with("key", written(key));
                     let help = if key.example.is_empty() {
-                        Note::new("keyed.help.add").with("key", written(key)).with("doc", doc(key))
+                        note!("keyed.help.add", key = written(key), doc = doc(key))
                     } else {
-                        Note::new("keyed.help.add_example").with("example", example(key))
+                        note!("keyed.help.add_example", example = example(key))
                     };
                     self.error(&section.span.clone(), message, Some(help));
                 }
@@ -200,7 +200,7 @@ impl Reader<'_> {
             Some(near) => meant(near),
             None => self
                 .elsewhere(spec, key)
-                .unwrap_or_else(|| Note::new("keyed.help.known").with("keys", known.join(", "))),
+                .unwrap_or_else(|| note!("keyed.help.known", keys = known.join(", "))),
         };
         let message =
             self.placed("keyed.unknown_key", "keyed.unknown_key_in", spec).with("key", shorten(key));
@@ -212,9 +212,9 @@ impl Reader<'_> {
     fn elsewhere(&self, spec: &TableSpec, key: &str) -> Option<Note> {
         let home = self.root.walk().into_iter().find(|t| t.name != spec.name && t.key(key).is_some())?;
         Some(if home.name.is_empty() {
-            Note::new("keyed.help.at_beginning").with("key", key)
+            note!("keyed.help.at_beginning", key)
         } else {
-            Note::new("keyed.help.belongs").with("key", key).with("table", self.header(home))
+            note!("keyed.help.belongs", key, table = self.header(home))
         })
     }
 
@@ -260,14 +260,14 @@ impl Reader<'_> {
                 Some(Entry::Table(self.table(spec, table, key_span)))
             }
             DeValue::Table(_) => {
-                let message = Note::new("keyed.is_list").with("key", key.name);
-                let help = Note::new("keyed.help.write_tables").with("table", spec.name);
+                let message = note!("keyed.is_list", key = key.name);
+                let help = note!("keyed.help.write_tables", table = spec.name);
                 self.error(key_span, message, Some(help));
                 None
             }
             DeValue::Array(items) if items.is_empty() && key.need == Need::Required => {
-                let message = Note::new("keyed.empty").with("key", key.name);
-                let help = Note::new("keyed.help.add_table").with("table", spec.name);
+                let message = note!("keyed.empty", key = key.name);
+                let help = note!("keyed.help.add_table", table = spec.name);
                 self.error(span, message, Some(help));
                 None
             }

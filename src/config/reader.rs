@@ -2,7 +2,7 @@
 
 use super::diagnostics::{Problems, SourceText, Span};
 use super::spec::{KeySpec, TableSpec};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::measurand::{self, Measurand};
 use sagnac_core::spelling::nearest;
 use toml::de::DeValue;
@@ -59,7 +59,7 @@ impl Reader<'_> {
     pub fn measurand(&mut self, name: &str, span: &Span) -> Option<&'static Measurand> {
         let found = measurand::find(name);
         if found.is_none() {
-            let message = Note::new("keyed.unknown_measurand").with("name", shorten(name));
+            let message = note!("keyed.unknown_measurand", name = shorten(name));
             self.error(span, message, Some(measurand_meant(name)));
         }
         found
@@ -68,12 +68,14 @@ impl Reader<'_> {
     /// Reports a value of the wrong type.
     pub fn wrong<T>(&mut self, value: Value<'_>) -> Option<T> {
         let Value { key, toml, span } = value;
-        let message = Note::new("keyed.wrong")
-            .with("key", key.name)
-            .with("wanted", key.kind.describe())
-            .with("given", Note::new(type_name(toml)));
+        let message = note!(
+            "keyed.wrong",
+            key = key.name,
+            wanted = key.kind.describe(),
+            given = Note::new(type_name(toml))
+        );
         let help = if key.example.is_empty() {
-            key.kind.table().map(|t| Note::new("keyed.help.write_table").with("table", t.name))
+            key.kind.table().map(|t| note!("keyed.help.write_table", table = t.name))
         } else {
             Some(for_example(key))
         };
@@ -89,12 +91,12 @@ pub(super) fn example(key: &KeySpec) -> String {
 
 /// Shows how a key is written.
 pub(crate) fn for_example(key: &KeySpec) -> Note {
-    Note::new("keyed.help.example").with("example", example(key))
+    note!("keyed.help.example", example = example(key))
 }
 
 /// Offers a name that is spelt nearly the same.
 pub(crate) fn meant(near: &str) -> Note {
-    Note::new("keyed.help.did_you_mean").with("name", near)
+    note!("keyed.help.did_you_mean", name = near)
 }
 
 /// The measurand that a name means: by its symbol or abbreviation, else those whose ids hold the word,
@@ -106,16 +108,14 @@ fn measurand_meant(name: &str) -> Note {
         [one] => Some(meant(one.id)),
         several => {
             let names: Vec<&str> = several.iter().map(|m| m.id).collect();
-            Some(Note::new("keyed.help.one_of").with("values", names.join(", ")))
+            Some(note!("keyed.help.one_of", values = names.join(", ")))
         }
     };
     measurand::called(name)
         .map(|m| meant(m.id))
         .or_else(by_word)
         .or_else(|| nearest(name, known()).map(meant))
-        .unwrap_or_else(|| {
-            Note::new("keyed.help.measurands").with("names", known().collect::<Vec<_>>().join(", "))
-        })
+        .unwrap_or_else(|| note!("keyed.help.measurands", names = known().collect::<Vec<_>>().join(", ")))
 }
 
 /// A name short enough for a message.

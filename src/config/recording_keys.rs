@@ -5,7 +5,7 @@ use crate::config::reader::{Reader, shorten};
 use crate::config::section::Section;
 use crate::config::spec::Word;
 use crate::config::table::Table;
-use crate::i18n::Note;
+use crate::i18n::note;
 use sagnac_ingest::{Encoding, FORMATS, ReadOptions, TextOptions};
 
 /// How a recording is to be read.
@@ -44,20 +44,20 @@ impl RecordingKeys {
         if let Some(unknown) = self.format.as_deref().filter(|id| !FORMATS.iter().any(|f| f.id() == *id)) {
             let ids: Vec<&str> = FORMATS.iter().map(|f| f.id()).collect();
             let at = reader.source.inside_quotes(&section.span_of("format"));
-            let message = Note::new("reading.no_format").with("format", shorten(unknown));
-            reader.error(&at, message, Some(Note::new("reading.formats").with("formats", ids.join(", "))));
+            let message = note!("reading.no_format", format = shorten(unknown));
+            reader.error(&at, message, Some(note!("reading.formats", formats = ids.join(", "))));
         }
         let mut line = |number: Option<f64>, key: &str| {
             if number?.fract() == 0.0 {
                 return number.map(|line| line as u64);
             }
-            reader.error(&section.span_of(key), Note::new("reading.whole").with("key", key), None);
+            reader.error(&section.span_of(key), note!("reading.whole", key), None);
             None
         };
         let header_line = line(self.header_line, "header_line");
         let first_line = line(self.first_line, "first_line");
         if let Some((header, first)) = header_line.zip(first_line).filter(|(header, first)| header >= first) {
-            let message = Note::new("reading.lines").with("first", first).with("header", header);
+            let message = note!("reading.lines", first, header);
             reader.error(&section.span_of("first_line"), message, Some("reading.below".into()));
         }
         let text = TextOptions {

@@ -3,7 +3,7 @@
 //! Reading with its checks, the JSON Schema for editors and the key reference of the guide all come from these
 //! descriptions, so that none can differ from another.
 
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 
 /// A table and its keys.
 #[derive(Debug, Clone, Copy)]
@@ -181,50 +181,48 @@ impl Kind {
     /// What a value must be, in words.
     pub fn describe(self) -> Note {
         match self {
-            Kind::Text => Note::new("keyed.kind.text"),
-            Kind::LocalText | Kind::LocalRemark => Note::new("local_text.kind"),
-            Kind::Format(text) => Note::new("keyed.kind.quoted").with("text", text),
-            Kind::Id => Note::new("keyed.kind.id"),
-            Kind::Flag => Note::new("keyed.kind.flag"),
-            Kind::Number(range) => Note::new("keyed.kind.number").with("range", range.describe("")),
-            Kind::Numbers(range) => Note::new("keyed_more.numbers").with("range", range.describe("")),
-            Kind::Values => Note::new("keyed_more.values"),
-            Kind::Remark => Note::new("keyed.kind.text"),
-            Kind::Date => Note::new("keyed.kind.date"),
+            Kind::Text => note!("keyed.kind.text"),
+            Kind::LocalText | Kind::LocalRemark => note!("local_text.kind"),
+            Kind::Format(text) => note!("keyed.kind.quoted", text),
+            Kind::Id => note!("keyed.kind.id"),
+            Kind::Flag => note!("keyed.kind.flag"),
+            Kind::Number(range) => note!("keyed.kind.number", range = range.describe("")),
+            Kind::Numbers(range) => note!("keyed_more.numbers", range = range.describe("")),
+            Kind::Values => note!("keyed_more.values"),
+            Kind::Remark => note!("keyed.kind.text"),
+            Kind::Date => note!("keyed.kind.date"),
             Kind::Choice(words) => one_of(words),
-            Kind::Choices(words) => Note::new("keyed.kind.list_of").with("words", in_quotes(words)),
-            Kind::Columns([]) => Note::new("proof_file.columns"),
-            Kind::Columns(words) => Note::new("keyed.kind.columns").with("words", in_quotes(words)),
-            Kind::Effects => Note::new("proof_file.effects"),
+            Kind::Choices(words) => note!("keyed.kind.list_of", words = in_quotes(words)),
+            Kind::Columns([]) => note!("proof_file.columns"),
+            Kind::Columns(words) => note!("keyed.kind.columns", words = in_quotes(words)),
+            Kind::Effects => note!("proof_file.effects"),
             Kind::Quantity { unit, range, .. } => {
                 let shown = if unit == "1" { "%" } else { unit };
                 if range == Range::ANY {
-                    Note::new("keyed.kind.quantity").with("unit", shown)
+                    note!("keyed.kind.quantity", unit = shown)
                 } else {
-                    Note::new("keyed.kind.quantity_in")
-                        .with("unit", shown)
-                        .with("range", range.describe(unit))
+                    note!("keyed.kind.quantity_in", unit = shown, range = range.describe(unit))
                 }
             }
-            Kind::QuantityBy(key) => Note::new("keyed.kind.quantity_by").with("key", key),
-            Kind::QuantityMap => Note::new("keyed.kind.quantity_map"),
-            Kind::UnitText => Note::new("keyed.kind.unit"),
-            Kind::Column => Note::new("keyed.kind.column"),
-            Kind::Taus => Note::new("keyed.kind.taus"),
-            Kind::Allowance => Note::new("keyed.kind.allowance"),
-            Kind::Measurand => Note::new("keyed.kind.measurand"),
-            Kind::Table(_) => Note::new("keyed.kind.table"),
-            Kind::Tables(_) => Note::new("keyed.kind.tables"),
-            Kind::TableOrTables(_) => Note::new("keyed.kind.table_or_tables"),
+            Kind::QuantityBy(key) => note!("keyed.kind.quantity_by", key),
+            Kind::QuantityMap => note!("keyed.kind.quantity_map"),
+            Kind::UnitText => note!("keyed.kind.unit"),
+            Kind::Column => note!("keyed.kind.column"),
+            Kind::Taus => note!("keyed.kind.taus"),
+            Kind::Allowance => note!("keyed.kind.allowance"),
+            Kind::Measurand => note!("keyed.kind.measurand"),
+            Kind::Table(_) => note!("keyed.kind.table"),
+            Kind::Tables(_) => note!("keyed.kind.tables"),
+            Kind::TableOrTables(_) => note!("keyed.kind.table_or_tables"),
         }
     }
 }
 
 /// `"a" or "b" or "c"`.
 fn one_of(words: &[Word]) -> Note {
-    let mut words = words.iter().rev().map(|(word, _)| Note::new("keyed.kind.quoted").with("text", *word));
-    let last = words.next().unwrap_or_else(|| Note::new("keyed.kind.text"));
-    words.fold(last, |rest, word| Note::new("keyed.kind.or").with("word", word).with("rest", rest))
+    let mut words = words.iter().rev().map(|(word, _)| note!("keyed.kind.quoted", text = *word));
+    let last = words.next().unwrap_or_else(|| note!("keyed.kind.text"));
+    words.fold(last, |rest, word| note!("keyed.kind.or", word, rest))
 }
 
 fn in_quotes(words: &[Word]) -> String {

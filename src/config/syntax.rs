@@ -2,7 +2,7 @@
 
 use super::diagnostics::{Problem, SourceText, Span};
 use super::line_repair::{Fault, repaired};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 
 /// What the parser says, and the key of the locale tables for it.
 const FAULTS: &[(&str, &str)] = &[
@@ -62,9 +62,9 @@ pub(super) fn problem(source: &SourceText, span: &Span, said: &str) -> Problem {
             Fault::Date => "keyed.date_order",
             Fault::Colon => "keyed.colon",
         };
-        return source.error(&line, key).help(Note::new("keyed.help.write").with("text", repair.line));
+        return source.error(&line, key).help(note!("keyed.help.write", text = repair.line));
     }
-    let problem = source.error(span, Note::new("keyed.not_toml").with("reason", reason(said)));
+    let problem = source.error(span, note!("keyed.not_toml", reason = reason(said)));
     let help = if said.contains("duplicate key") {
         "keyed.help.once"
     } else if said.contains("date") || said.contains("time") {

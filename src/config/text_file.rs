@@ -2,7 +2,7 @@
 
 use super::diagnostics::{Problem, Problems, SourceText};
 use super::shipped;
-use crate::i18n::{Note, io_reason};
+use crate::i18n::{Note, io_reason, note};
 use sagnac_ingest::open_file;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -51,9 +51,7 @@ fn help(path: &Path) -> Note {
         return "text_file.check_path".into();
     }
     let names = |list: &[shipped::Shipped]| list.iter().map(|s| s.name).collect::<Vec<_>>().join(", ");
-    Note::new("text_file.check_name")
-        .with("procedures", names(shipped::PROCEDURES))
-        .with("limits", names(shipped::LIMITS))
+    note!("text_file.check_name", procedures = names(shipped::PROCEDURES), limits = names(shipped::LIMITS))
 }
 
 /// The bytes of a file, one more than allowed at the most; where there is none, those of the shipped one of that name.
@@ -76,7 +74,7 @@ pub(crate) fn read(path: &Path) -> std::io::Result<Vec<u8>> {
 pub(crate) fn source(name: &str, bytes: &[u8]) -> Result<SourceText, Problems> {
     let body = bytes.strip_prefix(MARK).unwrap_or(bytes);
     if body.len() > MAX_BYTES {
-        let message = Note::new("keyed.too_large").with("bytes", MAX_BYTES);
+        let message = note!("keyed.too_large", bytes = MAX_BYTES);
         return Err(Problem::of_file(name, message, None).into());
     }
     std::str::from_utf8(body).map(|text| SourceText::new(name, text.to_owned())).map_err(|e| {

@@ -3,7 +3,7 @@
 
 use super::diagnostics::Span;
 use super::reader::{Reader, Value, meant, shorten};
-use crate::i18n::{Lang, LocalText, Note};
+use crate::i18n::{Lang, LocalText, Note, note};
 use sagnac_core::spelling::nearest;
 use std::collections::BTreeMap;
 use toml::de::{DeTable, DeValue};
@@ -27,15 +27,15 @@ pub(super) fn text(reader: &mut Reader<'_>, value: Value<'_>, blank: Blank) -> O
         if blank == Blank::Allowed {
             return Some(String::new());
         }
-        let message = Note::new("keyed.empty").with("key", value.key.name);
+        let message = note!("keyed.empty", key = value.key.name);
         reader.error(value.span, message, Some("keyed.help.fill_in".into()));
         return None;
     }
     if text.chars().count() > MAX_TEXT_CHARACTERS
         || text.chars().any(|c| c.is_control() && c != '\n' && c != '\t')
     {
-        let message = Note::new("keyed.no_text").with("key", value.key.name);
-        let help = Note::new("keyed.help.text").with("most", MAX_TEXT_CHARACTERS);
+        let message = note!("keyed.no_text", key = value.key.name);
+        let help = note!("keyed.help.text", most = MAX_TEXT_CHARACTERS);
         reader.error(value.span, message, Some(help));
         return None;
     }
@@ -47,7 +47,7 @@ pub(super) fn local(reader: &mut Reader<'_>, value: Value<'_>, blank: Blank) -> 
     match value.toml {
         DeValue::String(_) => text(reader, value, blank).map(LocalText::from),
         DeValue::Table(table) if table.is_empty() => {
-            let message = Note::new("local_text.empty").with("key", value.key.name);
+            let message = note!("local_text.empty", key = value.key.name);
             reader.error(value.span, message, Some(written(value.key.name)));
             None
         }
@@ -74,7 +74,7 @@ fn by_language(
         let read = match given.get_ref() {
             DeValue::String(_) => text(reader, value.with(given.get_ref(), &at), blank),
             _ => {
-                let message = Note::new("local_text.no_text").with("key", value.key.name);
+                let message = note!("local_text.no_text", key = value.key.name);
                 reader.error(
                     &at,
                     message.with("code", code.get_ref().as_ref()),
@@ -92,15 +92,13 @@ fn by_language(
     }
     let default = Lang::default().code();
     if sound && !texts.contains_key(default) {
-        let message = Note::new("local_text.no_default")
-            .with("key", value.key.name)
-            .with("default", default)
-            .with("shown", texts.keys().next().map_or("", String::as_str));
-        reader.warning(
-            value.span,
-            message,
-            Some(Note::new("local_text.help.default").with("key", value.key.name)),
+        let message = note!(
+            "local_text.no_default",
+            key = value.key.name,
+            default,
+            shown = texts.keys().next().map_or("", String::as_str)
         );
+        reader.warning(value.span, message, Some(note!("local_text.help.default", key = value.key.name)));
     }
     sound.then(|| LocalText::in_languages(texts, default))
 }
@@ -109,14 +107,14 @@ fn unknown(reader: &mut Reader<'_>, key: &str, code: &str, at: &Span) {
     let known = || Lang::ALL.iter().map(|l| l.code());
     let help = match nearest(code, known()) {
         Some(near) => meant(near),
-        None => Note::new("local_text.help.languages").with("codes", known().collect::<Vec<_>>().join(", ")),
+        None => note!("local_text.help.languages", codes = known().collect::<Vec<_>>().join(", ")),
     };
-    let message = Note::new("local_text.unknown").with("key", key).with("code", shorten(code));
+    let message = note!("local_text.unknown", key, code = shorten(code));
     reader.error(at, message, Some(help));
 }
 
 /// How a text is written in every language.
 fn written(key: &str) -> Note {
     let texts: Vec<String> = Lang::ALL.iter().map(|l| format!("{key}.{} = \"...\"", l.code())).collect();
-    Note::new("local_text.help.written").with("example", texts.join("; "))
+    note!("local_text.help.written", example = texts.join("; "))
 }

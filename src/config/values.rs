@@ -8,7 +8,7 @@ use super::section::{Allowance, Entry, Given, Named, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
 use super::texts::{Blank, local, text};
 use crate::effect::EFFECTS;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::recording::ColumnRef;
 use crate::units::Unit;
 use chrono::NaiveDate;
@@ -107,11 +107,11 @@ fn effect(id: &str, span: &Span, reader: &mut Reader<'_>) -> Option<String> {
         return Some(id.to_owned());
     }
     let help = match nearest(id, known()) {
-        Some(near) => Note::new("keyed.help.did_you_mean_value").with("value", near),
-        None => Note::new("model_file.help.kinds"),
+        Some(near) => note!("keyed.help.did_you_mean_value", value = near),
+        None => note!("model_file.help.kinds"),
     };
     let at = reader.source.inside_quotes(span);
-    reader.error(&at, Note::new("model_file.no_kind").with("kind", shorten(id)), Some(help));
+    reader.error(&at, note!("model_file.no_kind", kind = shorten(id)), Some(help));
     None
 }
 
@@ -121,7 +121,7 @@ fn id(reader: &mut Reader<'_>, value: Value<'_>) -> Option<String> {
     if plain && given.len() <= 64 && given.starts_with(|c: char| c.is_ascii_alphanumeric()) {
         return Some(given);
     }
-    let message = Note::new("keyed.no_name").with("given", shorten(&given)).with("key", value.key.name);
+    let message = note!("keyed.no_name", given = shorten(&given), key = value.key.name);
     reader.error(value.span, message, Some("keyed.help.name".into()));
     None
 }
@@ -164,7 +164,7 @@ fn named(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Vec<Named>> {
             },
         };
         let Some(given) = given else {
-            let message = Note::new("keyed_more.no_value").with("name", shorten(name.get_ref()));
+            let message = note!("keyed_more.no_value", name = shorten(name.get_ref()));
             reader.error(&value.span(), message, Some("keyed_more.help.value".into()));
             continue;
         };
@@ -176,8 +176,7 @@ fn named(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Vec<Named>> {
 fn in_range(reader: &mut Reader<'_>, value: Value<'_>, number: f64, range: Range, unit: &str) -> bool {
     let fits = range.holds(number);
     if !fits {
-        let message =
-            Note::new("keyed.out_of_range").with("key", value.key.name).with("range", range.describe(unit));
+        let message = note!("keyed.out_of_range", key = value.key.name, range = range.describe(unit));
         reader.error(value.span, message, Some(for_example(value.key)));
     }
     fits
@@ -193,8 +192,8 @@ fn date(reader: &mut Reader<'_>, value: Value<'_>) -> Option<NaiveDate> {
         _ => return reader.wrong(value),
     };
     if parsed.is_none() {
-        let message = Note::new("keyed.no_date").with("key", value.key.name);
-        reader.error(value.span, message, Some(Note::new("keyed.help.date").with("key", value.key.name)));
+        let message = note!("keyed.no_date", key = value.key.name);
+        reader.error(value.span, message, Some(note!("keyed.help.date", key = value.key.name)));
     }
     parsed
 }
@@ -207,10 +206,10 @@ fn word(reader: &mut Reader<'_>, value: Value<'_>, words: &'static [Word]) -> Op
     let role = || (value.key.name == "role").then(|| role_words::meant(given)).flatten();
     let meant = role().filter(|role| words.iter().any(|(known, _)| known == role));
     let help = match meant.or_else(|| nearest(given, words.iter().map(|(known, _)| *known))) {
-        Some(near) => Note::new("keyed.help.did_you_mean_value").with("value", near),
+        Some(near) => note!("keyed.help.did_you_mean_value", value = near),
         None => {
             let all: Vec<&str> = words.iter().map(|(known, _)| *known).collect();
-            Note::new("keyed.help.one_of").with("values", all.join(", "))
+            note!("keyed.help.one_of", values = all.join(", "))
         }
     };
     let at = inside_quotes(reader, given, value.span);
@@ -251,7 +250,7 @@ fn allowance(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Allowance> {
         DeValue::Integer(_) => match number(value.toml) {
             Some(count) if count >= 0.0 => Some(Allowance::Count(count as u64)),
             _ => {
-                reader.error(value.span, Note::new("keyed.no_count").with("key", value.key.name), None);
+                reader.error(value.span, note!("keyed.no_count", key = value.key.name), None);
                 None
             }
         },
@@ -302,11 +301,7 @@ pub(crate) fn quantity_by(reader: &mut Reader<'_>, value: Value<'_>, unit: &str)
         return quantity_text(reader, value, unit, false).map(Entry::Number);
     }
     let DeValue::String(text) = value.toml else {
-        reader.error(
-            value.span,
-            Note::new("keyed.no_unit").with("name", value.key.name),
-            Some(as_recorded_help()),
-        );
+        reader.error(value.span, note!("keyed.no_unit", name = value.key.name), Some(as_recorded_help()));
         return None;
     };
     match quantity::parse_as_recorded(text) {
@@ -321,7 +316,7 @@ pub(crate) fn quantity_by(reader: &mut Reader<'_>, value: Value<'_>, unit: &str)
 
 /// How a quantity is written whose unit is as recorded.
 fn as_recorded_help() -> Note {
-    Note::new("keyed_more.help.as_recorded").with("units", quantity::AS_RECORDED.join(", "))
+    note!("keyed_more.help.as_recorded", units = quantity::AS_RECORDED.join(", "))
 }
 
 fn quantity_text(reader: &mut Reader<'_>, value: Value<'_>, unit: &str, difference: bool) -> Option<f64> {
@@ -341,7 +336,7 @@ fn quantity_text(reader: &mut Reader<'_>, value: Value<'_>, unit: &str, differen
             }
         },
         DeValue::Integer(_) | DeValue::Float(_) => {
-            let message = Note::new("keyed.no_unit").with("name", value.key.name);
+            let message = note!("keyed.no_unit", name = value.key.name);
             reader.error(value.span, message, Some(quantity_help(value.key, unit)));
             None
         }
@@ -353,14 +348,14 @@ fn quantity_text(reader: &mut Reader<'_>, value: Value<'_>, unit: &str, differen
 /// would turn hours into seconds.
 fn quantity_help(key: &KeySpec, unit: &str) -> Note {
     match key.kind {
-        Kind::QuantityBy(_) | Kind::QuantityMap => Note::new("keyed.help.quantity_like").with("unit", unit),
-        _ => Note::new("keyed.help.quantity").with("key", key.name).with("example", key.example),
+        Kind::QuantityBy(_) | Kind::QuantityMap => note!("keyed.help.quantity_like", unit),
+        _ => note!("keyed.help.quantity", key = key.name, example = key.example),
     }
 }
 
 /// A word that a key does not know.
 fn no_value(given: &str, key: &KeySpec) -> Note {
-    Note::new("keyed.no_value").with("given", shorten(given)).with("key", key.name)
+    note!("keyed.no_value", given = shorten(given), key = key.name)
 }
 
 /// The place of a text between its quotes; the whole value where escapes make the two differ.

@@ -3,7 +3,7 @@
 use super::serial::{SerialPattern, plain, stem};
 use super::{ReadOptions, RecordingError, Source, each_of, open_recording};
 use crate::config::manifest;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::record::SerialSource;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -76,11 +76,11 @@ pub fn members(
         }
     }
     if !wrong.is_empty() {
-        return Err(LotError::Serial { notes: wrong, help: Note::new("lot.help.pattern") });
+        return Err(LotError::Serial { notes: wrong, help: note!("lot.help.pattern") });
     }
     let twice = repeated(&members);
     if !twice.is_empty() {
-        return Err(LotError::Serial { notes: twice, help: Note::new("lot.help.duplicate") });
+        return Err(LotError::Serial { notes: twice, help: note!("lot.help.duplicate") });
     }
     name_folders(&mut members);
     Ok(members)

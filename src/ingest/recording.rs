@@ -6,7 +6,7 @@ use super::{ReadOptions, Source};
 use crate::config::diagnostics::Problems;
 use crate::config::layout::{self, refused};
 use crate::config::manifest::{self, Manifest};
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use sagnac_ingest::pattern;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -36,9 +36,8 @@ impl RecordingError {
             RecordingError::File(e) => e,
             RecordingError::Manifest(problems) => {
                 let first = problems.list.first();
-                let reason =
-                    first.map_or_else(|| Note::new("ingest.joined.no_reason"), |p| p.message.clone());
-                let note = Note::new("ingest.joined.manifest").with("reason", reason);
+                let reason = first.map_or_else(|| note!("ingest.joined.no_reason"), |p| p.message.clone());
+                let note = note!("ingest.joined.manifest", reason);
                 let error = IngestError::new(IngestErrorKind::Parts, path, note);
                 match first.filter(|p| p.line > 0) {
                     Some(p) => error.at(p.line as u64, Some(p.column as u64)),
@@ -54,7 +53,7 @@ impl RecordingError {
     pub fn say(&self, lang: Lang) -> String {
         match self {
             RecordingError::File(e) => {
-                format!("{}: {}\n", Note::new("diagnostic.error").say(lang), e.say(lang))
+                format!("{}: {}\n", note!("diagnostic.error").say(lang), e.say(lang))
             }
             RecordingError::Manifest(problems) => problems.say(lang),
         }
@@ -198,11 +197,11 @@ fn expand(path: &Path, pattern: &str) -> Result<Vec<PathBuf>, IngestError> {
     let mut files = pattern::files(Path::new(""), pattern, most)
         .map_err(|e| error(e.note("ingest.joined.bad_pattern", "ingest.joined.wide_pattern")))?;
     if files.len() > most {
-        let note = Note::new("ingest.joined.too_many").with("count", files.len()).with("most", most);
+        let note = note!("ingest.joined.too_many", count = files.len(), most);
         return Err(error(note));
     }
     if files.is_empty() {
-        return Err(error(Note::new("ingest.joined.no_match")).hint("ingest.joined.hint.quote_pattern"));
+        return Err(error(note!("ingest.joined.no_match")).hint("ingest.joined.hint.quote_pattern"));
     }
     files.sort_by_cached_key(|f| pattern::natural(&f.to_string_lossy()));
     Ok(files)

@@ -1,7 +1,7 @@
 //! Results that stand in Parquet tables, one row each: those of an archive. The column `result_json` holds the record, `uri` names the
 //! recording.
 
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::RowAccessor;
 use parquet::schema::types::Type;
@@ -59,7 +59,7 @@ pub fn results_in(path: &Path) -> Result<impl Iterator<Item = Result<TableResult
     let shown = path.display().to_string();
     let unreadable = {
         let shown = shown.clone();
-        move |why: Arg| Note::new("result_table.unreadable").with("path", shown.as_str()).with("reason", why)
+        move |why: Arg| note!("result_table.unreadable", path = shown.as_str(), reason = why)
     };
     let file = open_file(path).map_err(|e| unreadable(sagnac_ingest::io_reason(&e).into()))?;
     let reader = SerializedFileReader::new(file).map_err(|e| unreadable(e.to_string().into()))?;
@@ -67,7 +67,7 @@ pub fn results_in(path: &Path) -> Result<impl Iterator<Item = Result<TableResult
     let (name, fields) = (root.name().to_owned(), root.get_fields().to_vec());
     let has = |name: &str| fields.iter().any(|f| f.name() == name && f.is_primitive());
     if !has(RECORD) {
-        return Err(Note::new("result_table.no_records").with("path", shown).with("column", RECORD));
+        return Err(note!("result_table.no_records", path = shown, column = RECORD));
     }
     let named = has(URI);
     let wanted = fields.into_iter().filter(|f| f.name() == RECORD || (named && f.name() == URI)).collect();

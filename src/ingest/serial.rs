@@ -1,6 +1,6 @@
 //! Serial numbers: one number written in several ways, and the part of a file name that is one.
 
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use std::path::{Component, Path};
 
 /// A serial number without what is written before it, and without punctuation, case and leading zeros: `S/N 0043` and
@@ -59,7 +59,7 @@ impl SerialPattern {
     /// # Errors
     /// A note that says what is wrong with it.
     pub fn parse(text: &str) -> Result<SerialPattern, Note> {
-        let wrong = || Note::new("lot.pattern").with("given", text);
+        let wrong = || note!("lot.pattern", given = text);
         let whole = text.replace(STEM, SERIAL);
         let (before, after) = whole.split_once(SERIAL).ok_or_else(wrong)?;
         let braces = |part: &str| part.contains(['{', '}']);

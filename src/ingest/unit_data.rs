@@ -6,7 +6,7 @@
 use super::serial::plain;
 use crate::config::diagnostics::{Problem, Problems, SourceText, Span};
 use crate::config::text_file::{self, Wording};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::record::UnitUnderTest;
 use chrono::NaiveDate;
 use csv::{ByteRecord, ReaderBuilder, StringRecord};
@@ -110,7 +110,7 @@ fn parse(name: &str, bytes: &[u8]) -> Result<UnitData, Problems> {
 }
 
 fn broken(error: &csv::Error) -> Note {
-    Note::new("unit_data.broken").with("reason", error.to_string())
+    note!("unit_data.broken", reason = error.to_string())
 }
 
 /// The line that begins at a byte. What precedes the first character of a row, such as the end of the line before, is not of it.
@@ -135,7 +135,7 @@ fn unit(
     start: usize,
 ) -> Result<(String, UnitUnderTest), Box<Problem>> {
     if row.len() != columns.len() {
-        let note = Note::new("unit_data.fields").with("found", row.len()).with("expected", columns.len());
+        let note = note!("unit_data.fields", found = row.len(), expected = columns.len());
         return Err(Box::new(source.error(&line(source, start), note)));
     }
     let mut unit = UnitUnderTest::default();

@@ -6,7 +6,7 @@ use crate::acceptance::analysis::Prepared;
 use crate::acceptance::column_choice::{ColumnChoice, channels};
 use crate::acceptance::execute;
 use crate::config::procedure::EffectiveLimits;
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::moment;
 use crate::noise::tau_grid::TauGrid;
 use crate::record::UnitUnderTest;
@@ -54,7 +54,7 @@ impl Analysis {
     ) -> Result<RunResult, Error> {
         let warm_up_s = self.columns.warm_up_s;
         if !(warm_up_s >= 0.0 && warm_up_s.is_finite()) {
-            return Err(Error::argument(Note::new("cli.warm_up").with("given", warm_up_s.to_string())));
+            return Err(Error::argument(note!("cli.warm_up", given = warm_up_s.to_string())));
         }
         let choice = ColumnChoice {
             sample_rate_hz: self.columns.sample_rate_hz.or(recording.sample_rate_hz()),

@@ -2,7 +2,7 @@
 
 use super::Error;
 use crate::acceptance::datasheet::{Refusal, TestedUnit, datasheet, select};
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, Note, note};
 use crate::lot::tolerance::Promise;
 use crate::moment;
 use crate::output::Kind;
@@ -30,7 +30,7 @@ pub enum SheetSource<'a> {
 pub fn data_sheet(results: &[SheetSource<'_>], promise: Promise) -> Result<Results, Error> {
     for (option, given) in [("proportion", promise.proportion), ("confidence", promise.confidence)] {
         if !PROBABILITIES.contains(&given) {
-            let note = Note::new("datasheet.refused.probability").with("option", option);
+            let note = note!("datasheet.refused.probability", option);
             return Err(Error::argument(note.with("given", given.to_string())));
         }
     }

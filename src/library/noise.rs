@@ -5,7 +5,7 @@ use super::{Error, Rate};
 use crate::acceptance::figures::{allan_family, sigma_tau};
 use crate::estimate::Estimate;
 use crate::figure::Figure;
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::ingest::MemoryValues;
 use crate::measurand::{self, GyroEvidence, Options, Test};
 use crate::noise::allan::{self, AllanAccumulator, DeviationCurve};
@@ -88,7 +88,7 @@ fn accumulator(tau0_s: f64) -> RateAccumulator {
 fn noise_of(name: String, accumulator: RateAccumulator, rounding_deg_h: Option<f64>) -> Result<Noise, Error> {
     let digest = accumulator.finish();
     if digest.samples < 2 {
-        return Err(Error::argument(Note::new("library.too_few")));
+        return Err(Error::argument(note!("library.too_few")));
     }
     let tau0_s = digest.tau0_s;
     let motion = motion(&digest.blocks, tau0_s, digest.quietest_deg_h, 0.0);
@@ -158,7 +158,7 @@ pub fn allan(
     });
     let set = accumulator.finish();
     if set.stretches.samples() < 2 {
-        return Err(Error::argument(Note::new("library.too_few")));
+        return Err(Error::argument(note!("library.too_few")));
     }
     let octaves = octaves.map(AllanAccumulator::finish);
     let read_from = octaves.as_ref().unwrap_or(&set).curve(Estimator::Allan);

@@ -6,7 +6,7 @@ use crate::config::model;
 use crate::config::procedure::{self, EffectiveLimits, LimitsFile, Loaded, Problem, effective};
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, note};
 use crate::mismatch;
 use crate::moment;
 use crate::record::{ExplainedRecord, MeasurandRecord, RESULT_FORMAT, RunKind, RunRecord, UnitUnderTest};
@@ -192,7 +192,7 @@ impl RunResult {
         match StoredResults::open(path.as_ref()).map_err(Error::argument)?.results {
             Results::Run(results) => Ok(RunResult { outcome: results.outcome }),
             _ => {
-                let note = Note::new("result_error.foreign").with("format", RESULT_FORMAT);
+                let note = note!("result_error.foreign", format = RESULT_FORMAT);
                 Err(Error::argument(note.with("path", path.as_ref().display().to_string())))
             }
         }

@@ -3,7 +3,7 @@
 use super::Error;
 use crate::acceptance::inspect::inspect_source;
 use crate::config::manifest::Manifest;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, note};
 use crate::ingest::lot::stated_serial;
 use crate::ingest::{Column, MemoryColumn, ReadOptions, Source, are_several, open_recording};
 use crate::record::UnitUnderTest;
@@ -42,7 +42,7 @@ impl Recording {
         let named = [path.as_ref().to_owned()];
         if are_several(&named) {
             let path = path.as_ref().display().to_string();
-            return Err(Error::argument(Note::new("library.pattern").with("path", path)));
+            return Err(Error::argument(note!("library.pattern", path)));
         }
         Recording::open_with(&named, &ReadOptions::default())
     }
@@ -199,12 +199,12 @@ impl Recording {
     fn with_manifest(&self, unit: &UnitUnderTest) -> Result<UnitUnderTest, Error> {
         let Some(manifest) = &self.manifest else { return Ok(unit.clone()) };
         match (unit.serial.as_deref(), manifest.serial.as_deref()) {
-            (Some(given), Some(stated)) if given.trim() != stated.trim() => Err(Error::argument(
-                Note::new("manifest.serial")
-                    .with("path", manifest.path.display().to_string())
-                    .with("stated", stated)
-                    .with("given", given),
-            )),
+            (Some(given), Some(stated)) if given.trim() != stated.trim() => Err(Error::argument(note!(
+                "manifest.serial",
+                path = manifest.path.display().to_string(),
+                stated,
+                given
+            ))),
             (given, stated) => {
                 Ok(UnitUnderTest { serial: given.or(stated).map(str::to_owned), ..unit.clone() })
             }
@@ -261,5 +261,5 @@ pub(super) fn checked_interval(sample_interval_s: f64) -> Result<f64, Error> {
         return Ok(sample_interval_s);
     }
     let given = sample_interval_s.to_string();
-    Err(Error::argument(Note::new("library.interval").with("given", given)))
+    Err(Error::argument(note!("library.interval", given)))
 }

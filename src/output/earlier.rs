@@ -2,7 +2,7 @@
 
 use super::error::{OutputError, io};
 use super::kind::{Kind, MAX_RECORD_BYTES};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use sagnac_ingest::{open_file, read_file};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -55,7 +55,7 @@ impl Earlier {
         let listed = |name: &str| earlier.files.contains(name);
         let holder = |name: &str| earlier.files.iter().any(|f| f.starts_with(&format!("{name}/")));
         match foreign(target, "", &listed, &holder).map_err(io("output_error.look_into", target))? {
-            Some(name) => in_the_way(Note::new("output_error.why.holds").with("name", name)),
+            Some(name) => in_the_way(note!("output_error.why.holds", name)),
             None => Ok(Some(earlier)),
         }
     }

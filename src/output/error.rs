@@ -1,6 +1,6 @@
 //! Why an output could not be written.
 
-use crate::i18n::{Arg, Lang, Localize, Note, io_reason};
+use crate::i18n::{Arg, Lang, Localize, Note, io_reason, note};
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -56,21 +56,23 @@ impl OutputError {
                 Note::new(*action).with("path", at(path)).with("reason", io_reason(source))
             }
             OutputError::InTheWay { path, why } => {
-                Note::new("output_error.in_the_way").with("path", at(path)).with("why", why.clone())
+                note!("output_error.in_the_way", path = at(path), why = why.clone())
             }
-            OutputError::NoName(path) => Note::new("output_error.no_name").with("path", at(path)),
-            OutputError::Unforeseen(name) => Note::new("output_error.unforeseen").with("name", name.as_str()),
+            OutputError::NoName(path) => note!("output_error.no_name", path = at(path)),
+            OutputError::Unforeseen(name) => note!("output_error.unforeseen", name = name.as_str()),
             OutputError::Other { path, what, differ } => {
                 let differ = differ.iter().map(|d| Arg::Key(format!("output_error.input.{d}"))).collect();
-                Note::new("output_error.other")
-                    .with("path", at(path))
-                    .with("what", what.clone())
-                    .with("differ", Arg::Several(differ, ", ".into()))
+                note!(
+                    "output_error.other",
+                    path = at(path),
+                    what = what.clone(),
+                    differ = Arg::Several(differ, ", ".into())
+                )
             }
             OutputError::InputInside { path, input } => {
-                Note::new("output_error.input_inside").with("path", at(path)).with("input", at(input))
+                note!("output_error.input_inside", path = at(path), input = at(input))
             }
-            OutputError::Unwritable(reason) => Note::new("system.other").with("reason", reason.as_str()),
+            OutputError::Unwritable(reason) => note!("system.other", reason = reason.as_str()),
         }
     }
 }

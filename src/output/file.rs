@@ -2,7 +2,7 @@
 
 use super::partial::{self, Partial};
 use super::{OutputError, io, outside_file, outside_stores, parent};
-use crate::i18n::Note;
+use crate::i18n::note;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -103,7 +103,7 @@ impl StagedFile {
             let same =
                 equal(self.staging.path(), &self.target).map_err(io("output_error.look_at", &self.target))?;
             if !same {
-                let why = Note::new("output_file.other");
+                let why = note!("output_file.other");
                 return Err(OutputError::InTheWay { path: self.target, why });
             }
         }

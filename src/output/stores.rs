@@ -2,7 +2,7 @@
 
 use super::error::OutputError;
 use super::{parent, starts_with_format};
-use crate::i18n::Note;
+use crate::i18n::note;
 use std::path::{Component, Path, PathBuf};
 
 /// The file that says that a folder is a store.
@@ -20,7 +20,7 @@ pub fn outside_stores(target: &Path) -> Result<(), OutputError> {
     match place.ancestors().find(|folder| starts_with_format(&folder.join(STORE_MARKER), START)) {
         Some(store) => Err(OutputError::InTheWay {
             path: target.to_owned(),
-            why: Note::new("output_error.why.store").with("store", store.display().to_string()),
+            why: note!("output_error.why.store", store = store.display().to_string()),
         }),
         None => Ok(()),
     }

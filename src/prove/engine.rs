@@ -1,7 +1,7 @@
 //! The engine in a process of its own: an empty folder, the files that are shown, and what it writes.
 
 use super::confined;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::output::{Kind, sha256};
 use crate::report::{ExplanationResults, Results, StoredResults};
 use std::collections::BTreeMap;
@@ -45,7 +45,7 @@ impl Room {
     /// # Errors
     /// A note where no folder can be made.
     pub fn new() -> Result<Room, Note> {
-        let folder = tempfile::tempdir().map_err(|_| Note::new("prove.error.no_room"))?;
+        let folder = tempfile::tempdir().map_err(|_| note!("prove.error.no_room"))?;
         Ok(Room { folder, shown: BTreeMap::new() })
     }
 
@@ -54,7 +54,7 @@ impl Room {
     /// # Errors
     /// A note where it cannot be written.
     pub fn put(&mut self, name: &str, text: &str) -> Result<(), Note> {
-        std::fs::write(self.at(name), text).map_err(|_| Note::new("prove.error.no_room"))?;
+        std::fs::write(self.at(name), text).map_err(|_| note!("prove.error.no_room"))?;
         self.shown.insert(name.to_owned(), sha256(text.as_bytes()));
         Ok(())
     }
@@ -84,7 +84,7 @@ impl Room {
     pub fn identify(&self, program: &Path) -> Result<(String, bool), Note> {
         let kept = self.run(program, &["model", "claim.csv", "--out", CLAIM_FILE, "--quiet"])?;
         let text = std::fs::read_to_string(self.at(CLAIM_FILE));
-        Ok((text.map_err(|_| Note::new("prove.error.no_room"))?, kept))
+        Ok((text.map_err(|_| note!("prove.error.no_room"))?, kept))
     }
 
     /// Explains `recording.csv`; gives what was said, and whether the process was confined.
@@ -103,7 +103,7 @@ impl Room {
     }
 
     fn run(&self, program: &Path, args: &[&str]) -> Result<bool, Note> {
-        let refused = |reason: String| Note::new("prove.error.engine").with("reason", reason);
+        let refused = |reason: String| note!("prove.error.engine", reason);
         let (output, kept) =
             confined::run(self.folder.path(), program, args).map_err(|e| refused(e.to_string()))?;
         // 0, 1 and 3 are verdicts.

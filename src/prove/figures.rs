@@ -2,7 +2,7 @@
 
 use super::rows::Prepared;
 use crate::figure::{Axis, Figure, Layer, Panel, Scale, Style};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::report::ExplanationResults;
 use crate::report::proof::{CONCEALED, UNVEILED};
 use sagnac_core::mismatch::figures::over_time;
@@ -51,7 +51,7 @@ fn against(prepared: &Prepared, course: &[f64]) -> Option<Figure> {
     let (points, group) = over_time(time, course);
     let inferred = vec![line(points, Style::Model, "figure.prove.inferred")];
     panels.push(panel("figure.prove.inferred", "deg/h", inferred));
-    let averaged = |seconds: f64| Note::new("figure.explain.averaged").with("seconds", seconds);
+    let averaged = |seconds: f64| note!("figure.explain.averaged", seconds);
     let remarks = (group > 1).then(|| averaged(group as f64 * prepared.shown.sample_interval_s));
     Some(Figure {
         id: "inferred_course".into(),

@@ -2,7 +2,7 @@
 
 use crate::config::proof::{Must, ProofFile, Reference, Rule, Shown};
 use crate::effect::{Domain, find};
-use crate::i18n::{Arg, EffectText, Note, effect_key};
+use crate::i18n::{Arg, EffectText, Note, effect_key, note};
 use crate::record::explanation::{Explanation, Finding};
 use crate::record::{CourseRecord, FoundValue, KnownRecord, RuleRecord};
 use crate::units::Unit;
@@ -43,7 +43,7 @@ fn judged(rule: &Rule, references: &[Reference], answers: &Answers<'_>) -> (Note
     match &rule.must {
         Must::Verdict(ids) => {
             let words = ids.iter().map(|id| verdict(id)).collect();
-            let found = Note::new("prove.found.verdict").with("verdict", verdict(said.verdict.id()));
+            let found = note!("prove.found.verdict", verdict = verdict(said.verdict.id()));
             let must = must("prove.must.verdict").with("verdicts", either(words));
             (must, found, ids.contains(&said.verdict.id()))
         }
@@ -71,14 +71,14 @@ fn judged(rule: &Rule, references: &[Reference], answers: &Answers<'_>) -> (Note
         Must::Improve(at_least) => {
             let must = must("prove.must.improve").with("least", Arg::Stated(100.0 * at_least));
             let share = improvement(said);
-            let found = Note::new("prove.found.share").with("share", Arg::rounded(100.0 * share, 3));
+            let found = note!("prove.found.share", share = Arg::rounded(100.0 * share, 3));
             (must, found, share >= *at_least)
         }
         Must::Recover(at_least) => {
             let must = must("prove.must.recover").with("least", Arg::Stated(100.0 * at_least));
             match answers.courses.iter().find_map(|c| c.recovered_share) {
                 Some(share) => {
-                    let found = Note::new("prove.found.share").with("share", Arg::rounded(100.0 * share, 3));
+                    let found = note!("prove.found.share", share = Arg::rounded(100.0 * share, 3));
                     (must, found, share >= *at_least)
                 }
                 None => (must, "prove.found.no_course".into(), false),
@@ -97,12 +97,14 @@ fn within(
     let Some(([low, high], unit)) = reference.and_then(|r| r.interval.as_ref()) else {
         return ("prove.must.nothing".into(), "prove.found.nothing".into(), false);
     };
-    let must = Note::new("prove.must.parameter")
-        .with("parameter", parameter)
-        .with("kinds", either(titles(kinds)))
-        .with("low", Arg::Stated(*low))
-        .with("high", Arg::Stated(*high))
-        .with("unit", unit.text());
+    let must = note!(
+        "prove.must.parameter",
+        parameter,
+        kinds = either(titles(kinds)),
+        low = Arg::Stated(*low),
+        high = Arg::Stated(*high),
+        unit = unit.text()
+    );
     match value(said, kinds, parameter, unit) {
         Some(found) => (must, of_value(&found, unit), (*low..=*high).contains(&found.value)),
         None => (must, named(said), false),
@@ -111,18 +113,22 @@ fn within(
 
 /// Whether an effect is located within an interval of a domain.
 fn located(said: &Explanation, domain: Domain, [low, high]: [f64; 2]) -> (Note, Note, bool) {
-    let must = Note::new("prove.must.locate")
-        .with("domain", Arg::key("explain.view", domain.id()))
-        .with("low", Arg::Stated(low))
-        .with("high", Arg::Stated(high))
-        .with("unit", domain.unit());
+    let must = note!(
+        "prove.must.locate",
+        domain = Arg::key("explain.view", domain.id()),
+        low = Arg::Stated(low),
+        high = Arg::Stated(high),
+        unit = domain.unit()
+    );
     let places = || said.effects.iter().flat_map(|f| &f.places).filter(|p| p.domain == domain);
     let inside = places().find(|p| p.from >= low && p.to <= high);
     let found = match inside.or_else(|| places().next()) {
-        Some(place) => Note::new("prove.found.place")
-            .with("from", Arg::rounded(place.from, 5))
-            .with("to", Arg::rounded(place.to, 5))
-            .with("unit", domain.unit()),
+        Some(place) => note!(
+            "prove.found.place",
+            from = Arg::rounded(place.from, 5),
+            to = Arg::rounded(place.to, 5),
+            unit = domain.unit()
+        ),
         None => named(said),
     };
     (must, found, inside.is_some())
@@ -130,13 +136,11 @@ fn located(said: &Explanation, domain: Domain, [low, high]: [f64; 2]) -> (Note, 
 
 /// Whether the inferred course correlates with one of some columns.
 fn alike(courses: &[CourseRecord], columns: &[String], at_least: f64) -> (Note, Note, bool) {
-    let must = Note::new("prove.must.course")
-        .with("columns", columns.join(", "))
-        .with("least", Arg::Stated(at_least));
+    let must = note!("prove.must.course", columns = columns.join(", "), least = Arg::Stated(at_least));
     let own = courses.iter().filter(|c| columns.contains(&c.name));
     match own.max_by(|a, b| a.correlation.abs().total_cmp(&b.correlation.abs())) {
         Some(c) => {
-            let found = Note::new("prove.found.course").with("r", Arg::rounded(c.correlation, 3));
+            let found = note!("prove.found.course", r = Arg::rounded(c.correlation, 3));
             (must, found.with("name", c.name.as_str()), c.correlation.abs() >= at_least)
         }
         None => (must, "prove.found.no_course".into(), false),
@@ -192,12 +196,14 @@ fn value(said: &Explanation, kinds: &[String], parameter: &str, unit: &Unit) -> 
 }
 
 fn of_value(found: &FoundValue, unit: &Unit) -> Note {
-    Note::new("prove.found.value")
-        .with("value", Arg::rounded(found.value, 4))
-        .with("low", Arg::rounded(found.ci95[0], 4))
-        .with("high", Arg::rounded(found.ci95[1], 4))
-        .with("unit", unit.text())
-        .with("kind", title(&found.kind))
+    note!(
+        "prove.found.value",
+        value = Arg::rounded(found.value, 4),
+        low = Arg::rounded(found.ci95[0], 4),
+        high = Arg::rounded(found.ci95[1], 4),
+        unit = unit.text(),
+        kind = title(&found.kind)
+    )
 }
 
 /// What is known from elsewhere, with what was found for it.
@@ -228,21 +234,21 @@ pub(super) fn references(proof: &ProofFile, answers: &Answers<'_>) -> Vec<KnownR
 /// What was named, or the verdict where nothing was.
 fn named(said: &Explanation) -> Note {
     if said.effects.is_empty() {
-        return Note::new("prove.found.verdict").with("verdict", verdict(said.verdict.id()));
+        return note!("prove.found.verdict", verdict = verdict(said.verdict.id()));
     }
     let one = |f: &Finding| {
         let equivalents: Vec<Arg> = f.equivalents.iter().map(|k| title(k)).collect();
         let name = title(f.effect_id());
         match equivalents.is_empty() {
             true => name,
-            false => Note::new("prove.found.with_equivalents")
-                .with("name", name)
-                .with("others", Arg::Several(equivalents, ", ".into()))
-                .into(),
+            false => {
+                note!("prove.found.with_equivalents", name, others = Arg::Several(equivalents, ", ".into()))
+                    .into()
+            }
         }
     };
     let effects = said.effects.iter().map(one).collect();
-    Note::new("prove.found.named").with("effects", Arg::Several(effects, "; ".into()))
+    note!("prove.found.named", effects = Arg::Several(effects, "; ".into()))
 }
 
 /// Which columns the effects follow.
@@ -252,7 +258,7 @@ fn followed(said: &Explanation) -> Note {
         known.filter(|c| said.effects.iter().any(|f| follows(f, std::slice::from_ref(c)))).collect();
     match columns.is_empty() {
         true => named(said),
-        false => Note::new("prove.found.columns").with("columns", columns.join(", ")),
+        false => note!("prove.found.columns", columns = columns.join(", ")),
     }
 }
 

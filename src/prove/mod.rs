@@ -14,7 +14,7 @@ use crate::config::model;
 use crate::config::proof::{ClaimSource, ProofFile, Source};
 use crate::config::text_file;
 use crate::figure::Figure;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::record::{
     ClaimOrigin, Hidden, HiddenKind, PROOF_FORMAT, Program, ProofOutcome, ProofRecord, ProofRecording,
 };
@@ -86,7 +86,7 @@ fn claim(
 ) -> Result<(ClaimOrigin, String, bool), Note> {
     match &order.proof.claim {
         ClaimSource::Model(path) => {
-            let unreadable = || Note::new("prove.error.unreadable").with("path", path.display().to_string());
+            let unreadable = || note!("prove.error.unreadable", path = path.display().to_string());
             let text = text_file::read(path).ok().and_then(|bytes| String::from_utf8(bytes).ok());
             Ok((ClaimOrigin::Model, text.ok_or_else(unreadable)?, true))
         }

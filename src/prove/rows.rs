@@ -6,7 +6,7 @@ use crate::config::model;
 use crate::config::proof::{ClaimSource, Decoy, Part, ProofFile, Source};
 use crate::config::text_file;
 use crate::effect::{ClaimedMean, Column};
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, Note, note};
 use crate::ingest::ReadOptions;
 use crate::noise::model::NoiseModel;
 use crate::output::{sha256, sha256_of_file};
@@ -88,7 +88,7 @@ pub(super) fn prepare(order: &ProofOrder<'_>) -> Result<Prepared, Note> {
         .iter()
         .find(|d| unveiled.as_ref().is_none_or(|u| !u.columns.contains_key(&Column::of_name(&d.name))))
     {
-        return Err(Note::new("prove.error.no_column").with("column", lost.of.as_str()));
+        return Err(note!("prove.error.no_column", column = lost.of.as_str()));
     }
     Ok(Prepared { path, sha256, shown, hidden, added, unveiled, claim })
 }
@@ -99,21 +99,20 @@ fn read(order: &ProofOrder<'_>, rate: Option<&str>) -> Result<(String, String, S
     match &proof.source {
         Source::File { path, sha256: stated } => {
             let file = order.data.join(path);
-            let found = sha256_of_file(&file).ok_or_else(|| {
-                Note::new("prove.error.unreadable").with("path", file.display().to_string())
-            })?;
+            let found = sha256_of_file(&file)
+                .ok_or_else(|| note!("prove.error.unreadable", path = file.display().to_string()))?;
             if found != *stated {
-                let note = Note::new("prove.error.other_recording").with("path", file.display().to_string());
+                let note = note!("prove.error.other_recording", path = file.display().to_string());
                 return Err(note.with("stated", stated.as_str()).with("found", found));
             }
             Ok((path.clone(), found, averaged(load(file, proof, rate)?, proof.average)))
         }
         Source::Simulated { model: path, duration_s } => {
             let named = path.display().to_string();
-            let bytes = text_file::read(path)
-                .map_err(|_| Note::new("prove.error.unreadable").with("path", named.as_str()))?;
-            let file = model::parse(&named, &bytes)
-                .map_err(|p| Note::new("system.other").with("reason", p.say(Lang::En)))?;
+            let bytes =
+                text_file::read(path).map_err(|_| note!("prove.error.unreadable", path = named.as_str()))?;
+            let file =
+                model::parse(&named, &bytes).map_err(|p| note!("system.other", reason = p.say(Lang::En)))?;
             let over = Over::Duration { duration_s: *duration_s, start_s: 0.0, drivers: &file.drivers };
             let order = Order { claim: &file.claim, seed: proof.seed, over };
             let rows = Simulation::begin(order).and_then(Simulation::all).map_err(|e| e.note().clone())?;
@@ -130,7 +129,7 @@ fn load(file: PathBuf, proof: &ProofFile, rate: Option<&str>) -> Result<Series, 
     {
         // Of declared channels, the first output is the rate.
         let Some(at) = channels.iter().position(|c| c.id == id) else {
-            return Err(Note::new("prove.error.no_column").with("column", id));
+            return Err(note!("prove.error.no_column", column = id));
         };
         let chosen = channels.remove(at);
         channels.insert(0, chosen);
@@ -202,7 +201,7 @@ fn conceal(series: &mut Series, names: &[String]) -> Result<BTreeMap<String, Vec
     let mut hidden = BTreeMap::new();
     for name in names {
         let Some(values) = series.columns.remove(&Column::of_name(name)) else {
-            return Err(Note::new("prove.error.no_column").with("column", name.as_str()));
+            return Err(note!("prove.error.no_column", column = name.as_str()));
         };
         hidden.insert(name.clone(), values);
     }
@@ -211,7 +210,7 @@ fn conceal(series: &mut Series, names: &[String]) -> Result<BTreeMap<String, Vec
 
 /// Adds the effects of a model to the rate.
 fn add(path: &Path, series: &mut Series, seed: u64) -> Result<Added, Note> {
-    let file = model::load(path).map_err(|p| Note::new("system.other").with("reason", p.say(Lang::En)))?;
+    let file = model::load(path).map_err(|p| note!("system.other", reason = p.say(Lang::En)))?;
     let only = Claim {
         noise: NoiseModel::default(),
         quantization_lsb_arcsec: 0.0,
@@ -224,7 +223,7 @@ fn add(path: &Path, series: &mut Series, seed: u64) -> Result<Added, Note> {
     let kinds: Vec<String> = only.effects.iter().map(|e| e.effect.kind().to_owned()).collect();
     let moved = rows.rate_deg_h.iter().any(|v| *v != 0.0);
     if rows.rate_deg_h.len() != series.rate_deg_h.len() || !moved {
-        return Err(Note::new("prove.error.adds_nothing").with("kinds", kinds.join(", ")));
+        return Err(note!("prove.error.adds_nothing", kinds = kinds.join(", ")));
     }
     for (rate, more) in series.rate_deg_h.iter_mut().zip(&rows.rate_deg_h) {
         *rate += more;

@@ -264,26 +264,27 @@ pub(crate) mod notes {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::i18n::note;
 
     fn read_back(message: &Message) -> Message {
         serde_json::from_str(&serde_json::to_string(message).unwrap()).unwrap()
     }
 
     fn every_argument() -> Note {
-        Note::new("note.russian_too_short")
-            .with("number", 0.1)
-            .with("whole", 3.0)
-            .with("count", 3_u64)
-            .with("stated", Arg::Stated(12.50))
-            .with("text", "measurand.static_bias")
-            .with(
-                "local",
+        note!(
+            "note.russian_too_short",
+            number = 0.1,
+            whole = 3.0,
+            count = 3_u64,
+            stated = Arg::Stated(12.50),
+            text = "measurand.static_bias",
+            local =
                 LocalText::in_languages([("en".into(), "a".into()), ("ru".into(), "б".into())].into(), "en"),
-            )
-            .with("key", Arg::key("measurand", "static_bias"))
-            .with("fixed", Arg::fixed(1.0, 2))
-            .with("rounded", Arg::rounded(-1e-300, 3))
-            .with("infinite", f64::NEG_INFINITY)
+            key = Arg::key("measurand", "static_bias"),
+            fixed = Arg::fixed(1.0, 2),
+            rounded = Arg::rounded(-1e-300, 3),
+            infinite = f64::NEG_INFINITY
+        )
     }
 
     #[test]

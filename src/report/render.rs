@@ -6,7 +6,7 @@ use super::signatures::{Signature, SignatureView, waived};
 use super::translator::Translator;
 use super::view::View;
 use crate::figure::Figure;
-use crate::i18n::{Arg, Lang, Localize, Note, io_reason, lookup, table};
+use crate::i18n::{Arg, Lang, Localize, Note, io_reason, lookup, note, table};
 use crate::record::RunRecord;
 use base64::Engine as _;
 use minijinja::value::{Kwargs, Serde, Value};
@@ -157,37 +157,36 @@ impl ReportError {
     pub fn note(&self) -> Note {
         match self {
             ReportError::Template { name, line: None, reason } => {
-                Note::new("template_error.wrong").with("name", name.as_str()).with("reason", reason.as_str())
+                note!("template_error.wrong", name = name.as_str(), reason = reason.as_str())
             }
-            ReportError::Template { name, line: Some(line), reason } => Note::new("template_error.wrong_at")
-                .with("name", name.as_str())
-                .with("line", *line)
-                .with("reason", reason.as_str()),
+            ReportError::Template { name, line: Some(line), reason } => {
+                note!("template_error.wrong_at", name = name.as_str(), line = *line, reason = reason.as_str())
+            }
             ReportError::UsedUp { name, line, budget } => {
                 let reason = match budget {
-                    Budget::Steps => Note::new("template_error.steps").with("most", MAX_STEPS),
-                    Budget::Bytes => Note::new("template_error.bytes").with("most", MAX_PAGE_BYTES),
+                    Budget::Steps => note!("template_error.steps", most = MAX_STEPS),
+                    Budget::Bytes => note!("template_error.bytes", most = MAX_PAGE_BYTES),
                 };
                 let key = if line.is_some() { "template_error.wrong_at" } else { "template_error.wrong" };
                 let note = Note::new(key).with("name", name.as_str()).with("reason", reason);
                 line.iter().fold(note, |note, line| note.with("line", *line))
             }
-            ReportError::NothingReplaced { path, names } => Note::new("template_error.nothing_replaced")
-                .with("path", path.as_str())
-                .with("names", names.as_str()),
-            ReportError::Io { path, source } => {
-                Note::new("template_error.io").with("path", path.as_str()).with("reason", io_reason(source))
+            ReportError::NothingReplaced { path, names } => {
+                note!("template_error.nothing_replaced", path = path.as_str(), names = names.as_str())
             }
-            ReportError::Json(e) => Note::new("system.other").with("reason", e.to_string()),
+            ReportError::Io { path, source } => {
+                note!("template_error.io", path = path.as_str(), reason = io_reason(source))
+            }
+            ReportError::Json(e) => note!("system.other", reason = e.to_string()),
             ReportError::Xml(reason) | ReportError::Parquet(reason) => {
-                Note::new("system.other").with("reason", reason.as_str())
+                note!("system.other", reason = reason.as_str())
             }
             ReportError::Refused(lacking) => {
                 let all = lacking.iter().cloned().map(Arg::from).collect();
-                Note::new("dcc.refused").with("list", Arg::Several(all, "; ".into()))
+                note!("dcc.refused", list = Arg::Several(all, "; ".into()))
             }
             ReportError::NoPdf => "pdf.none".into(),
-            ReportError::Pdf(reason) => Note::new("pdf.refused").with("reason", reason.as_str()),
+            ReportError::Pdf(reason) => note!("pdf.refused", reason = reason.as_str()),
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, csv, figures};
 use crate::acceptance::datasheet;
 use crate::config::{alternatives, model, schedule};
 use crate::figure::Figure;
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::mismatch;
 use crate::mismatch::joint::record::JOINT_FORMAT;
 use crate::output::Kind;
@@ -160,7 +160,7 @@ impl Results {
 
     /// The results of a data sheet. The head of its limits file is in one language, as files of limits are.
     pub fn of_datasheet(record: DataSheet) -> Results {
-        let head = Note::new("datasheet.limits_head").with("n", record.units).say(Lang::En);
+        let head = note!("datasheet.limits_head", n = record.units).say(Lang::En);
         let limits = datasheet::limits::limits_file(&record, &head);
         let figures = datasheet::figures::all(&record);
         Results::of(record, figures, vec![("limits.toml".into(), limits)])
@@ -308,7 +308,7 @@ fn record_file(path: &Path) -> Result<PathBuf, Note> {
         .iter()
         .map(|k| path.join(k.record_file()))
         .find(|p| p.is_file())
-        .ok_or_else(|| Note::new("result_error.no_result_in").with("path", path.display().to_string()))
+        .ok_or_else(|| note!("result_error.no_result_in", path = path.display().to_string()))
 }
 
 /// A folder that results are read from.
@@ -341,8 +341,7 @@ impl Folder {
         match record {
             Ok(record) => Some(self.outcome(record, &format!("{folder}/"))),
             Err(e) => {
-                self.missing
-                    .push(Note::new("result_error.no_phase").with("id", id).with("why", e.note(&path)));
+                self.missing.push(note!("result_error.no_phase", id, why = e.note(&path)));
                 None
             }
         }
@@ -420,7 +419,7 @@ impl Folder {
                 file.figures.into_owned().into_iter().filter(known).collect()
             }
             Err(e) => {
-                self.missing.push(Note::new("result_error.no_figures").with("why", e.note(&path)));
+                self.missing.push(note!("result_error.no_figures", why = e.note(&path)));
                 vec![]
             }
         }
@@ -442,9 +441,9 @@ impl Folder {
             let path = below.join(&name);
             match read::bytes(&path).map(String::from_utf8) {
                 Ok(Ok(text)) => tables.push((name, text)),
-                Ok(Err(_)) => self
-                    .missing
-                    .push(Note::new("result_error.not_text").with("path", path.display().to_string())),
+                Ok(Err(_)) => {
+                    self.missing.push(note!("result_error.not_text", path = path.display().to_string()))
+                }
                 Err(e) => self.missing.push(e.note(&path)),
             }
         }

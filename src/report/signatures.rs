@@ -2,7 +2,7 @@
 
 use super::number::date_time;
 use super::translator::Translator;
-use crate::i18n::{Arg, Lang, Localize, Note};
+use crate::i18n::{Arg, Lang, Localize, note};
 use crate::measurand;
 use crate::output::MAX_RECORD_BYTES;
 use crate::signing::{Link, Role};
@@ -83,7 +83,7 @@ pub fn row_name(row: &str) -> Arg {
         None => Arg::from(id),
     };
     match channel {
-        Some(channel) => Note::new("signer.row").with("row", name).with("channel", channel).into(),
+        Some(channel) => note!("signer.row", row = name, channel).into(),
         None => name,
     }
 }
@@ -142,7 +142,7 @@ impl Signature {
             WaivedView {
                 id: id.to_owned(),
                 channel: channel.to_owned(),
-                row: Note::new("signer.quantity").with("row", row_name(&w.row)).say(lang),
+                row: note!("signer.quantity", row = row_name(&w.row)).say(lang),
                 by: by.clone(),
                 reason: w.reason.clone(),
             }

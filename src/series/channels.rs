@@ -3,7 +3,7 @@
 use super::options::{SeriesError, SeriesOptions};
 use crate::config::role_words;
 use crate::effect::Column;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::ingest::{IngestErrorKind, Source};
 use crate::recording::{Channel, ColumnRef, Role};
 use crate::units::{Affine, Unit};
@@ -136,9 +136,7 @@ fn declared(source: &Source, channels: &[Channel], chosen: &mut SeriesChannels) 
     let Some(rate) = first(&Role::is_gyro) else {
         let path = source.path().display().to_string();
         let names = channels.iter().map(|c| c.id.as_str()).collect::<Vec<_>>().join(", ");
-        return Err(SeriesError::Unclear(
-            Note::new("series.no_rate").with("path", path).with("columns", names),
-        ));
+        return Err(SeriesError::Unclear(note!("series.no_rate", path, columns = names)));
     };
     chosen.rate = take("rate_deg_h", rate, rate.role);
     for column in Column::KNOWN {

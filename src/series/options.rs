@@ -1,6 +1,6 @@
 //! How a recording is read as a series, and why it cannot be.
 
-use crate::i18n::{Lang, Localize, Note};
+use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::{IngestError, ReadOptions, RecordingError};
 use crate::recording::Channel;
 
@@ -38,14 +38,14 @@ impl SeriesError {
     pub fn note(&self) -> Note {
         match self {
             SeriesError::Open(RecordingError::File(e)) | SeriesError::Read(e) => e.note(),
-            SeriesError::Open(other) => Note::new("system.other").with("reason", other.to_string()),
+            SeriesError::Open(other) => note!("system.other", reason = other.to_string()),
             SeriesError::Unclear(note) => note.clone(),
         }
     }
 
     /// The diagnostic as it goes to the terminal, in a language.
     pub fn say(&self, lang: Lang) -> String {
-        let error = |what: String| format!("{}: {what}\n", Note::new("diagnostic.error").say(lang));
+        let error = |what: String| format!("{}: {what}\n", note!("diagnostic.error").say(lang));
         match self {
             SeriesError::Open(e) => e.say(lang),
             SeriesError::Read(e) => error(e.say(lang)),

@@ -3,7 +3,7 @@
 use super::key::{self, Invalid, KeyError};
 use super::role::Role;
 use super::statement::{Previous, SIGN_OFF, STATEMENT, SignOff, Statement, Subject};
-use crate::i18n::{Note, io_reason};
+use crate::i18n::{Note, io_reason, note};
 use crate::output::{
     CHECKSUMS_FILE, Found, SIGNATURES_FOLDER, StagedFile, found_below, is_partial, read_below, sha256,
     sha256_below,
@@ -194,8 +194,8 @@ pub fn sign(
         predicate_type: SIGN_OFF.to_owned(),
         predicate: SignOff { previous, ..about },
     };
-    let mut bytes = serde_json::to_vec_pretty(&statement)
-        .map_err(|e| Note::new("system.other").with("reason", e.to_string()))?;
+    let mut bytes =
+        serde_json::to_vec_pretty(&statement).map_err(|e| note!("system.other", reason = e.to_string()))?;
     bytes.push(b'\n');
     let shown = key.display().to_string();
     let signature = key::sign(key, &bytes).map_err(|e| {
@@ -208,7 +208,7 @@ pub fn sign(
     })?;
     let at = folder.join(SIGNATURES_FOLDER);
     fs::create_dir_all(&at).map_err(|e| {
-        let note = Note::new("output_error.create_folder").with("path", at.display().to_string());
+        let note = note!("output_error.create_folder", path = at.display().to_string());
         note.with("reason", io_reason(&e))
     })?;
     // What a killed process left of a signature at this place in the chain was never one.

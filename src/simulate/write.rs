@@ -2,7 +2,7 @@
 
 use super::{Rows, SimulateError, Simulation};
 use crate::effect::Column;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::output::{OutputError, StagedFile};
 use parquet::basic::{Compression, ZstdLevel};
 use parquet::data_type::DoubleType;
@@ -34,7 +34,7 @@ impl Format {
         match ending.as_deref() {
             Some("csv") => Ok(Format::Csv),
             Some("parquet") => Ok(Format::Parquet),
-            _ => Err(Note::new("simulate.ending").with("path", path.display().to_string()).into()),
+            _ => Err(note!("simulate.ending", path = path.display().to_string()).into()),
         }
     }
 }

@@ -6,7 +6,7 @@ use super::index::{Attempt, Filter};
 use super::opened::Store;
 use super::reservation::Reservation;
 use crate::estimate::Verdict;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{AttemptRecord, EarlierAttempt, Message, RunRecord};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -72,12 +72,10 @@ fn summary(earlier: &[Attempt], number: u64, test: &EntryTest) -> Vec<Note> {
     }
     let shown = earlier.get(earlier.len().saturating_sub(NAMED)..).unwrap_or_default();
     let list = shown.iter().map(|a| said(a).into()).collect();
-    let mut notes = vec![
-        Note::new("attempt.again").with("number", number).with("earlier", Arg::Several(list, "; ".into())),
-    ];
+    let mut notes = vec![note!("attempt.again", number, earlier = Arg::Several(list, "; ".into()))];
     let missing: BTreeSet<&String> = earlier.iter().flat_map(|a| &a.missing).collect();
     if !missing.is_empty() {
-        notes.push(Note::new("attempt.missing").with("n", missing.len()));
+        notes.push(note!("attempt.missing", n = missing.len()));
     }
     let tests: Vec<(u64, &EntryTest)> =
         earlier.iter().map(|a| (a.number, &a.entry.test)).chain([(number, test)]).collect();

@@ -1,6 +1,6 @@
 //! Why a store cannot be used, or a folder cannot be added to it.
 
-use crate::i18n::{Arg, Lang, Localize, Note, io_reason};
+use crate::i18n::{Arg, Lang, Localize, Note, io_reason, note};
 use crate::output::{OutputError, TransferError};
 use crate::record::read::ReadError;
 use rusqlite::ErrorCode;
@@ -149,13 +149,13 @@ impl StoreError {
             StoreError::OtherCopy(path) => at("store_error.other_copy", path),
             StoreError::InsideStore(path) => at("store_error.inside_store", path),
             StoreError::Address { given, count: 0 } => {
-                Note::new("store_error.no_address").with("given", given.as_str())
+                note!("store_error.no_address", given = given.as_str())
             }
             StoreError::Address { given, count } => {
-                Note::new("store_error.several").with("given", given.as_str()).with("n", *count)
+                note!("store_error.several", given = given.as_str(), n = *count)
             }
             StoreError::Circle { address } => {
-                Note::new("store_error.circle").with("address", Arg::from(address.as_str()))
+                note!("store_error.circle", address = Arg::from(address.as_str()))
             }
         }
     }

@@ -5,7 +5,7 @@ use super::error::{StoreError, io};
 use super::index::{Index, Journal};
 use super::layout::{Layout, STORE_FORMAT, names};
 use super::lock;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::output::{StagedFile, is_partial};
 use crate::record::read;
 use serde::{Deserialize, Serialize};
@@ -71,7 +71,7 @@ fn is_free(layout: &Layout) -> Result<bool, StoreError> {
 
 /// What is to be known of a store on a disk that its users share.
 pub(super) fn on_shared_disk(layout: &Layout) -> Note {
-    Note::new("store.shared_disk").with("path", layout.root().display().to_string())
+    note!("store.shared_disk", path = layout.root().display().to_string())
 }
 
 /// What a folder says that it is.

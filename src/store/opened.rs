@@ -8,7 +8,7 @@ use super::lock::{self, FORGOTTEN_AFTER, Lock, Sharing};
 use super::maintenance;
 use super::marker::{marker, on_shared_disk};
 use super::statement::{self, Statement, What};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
@@ -82,7 +82,7 @@ impl Store {
             }
             Err(e) => return Err(e),
         };
-        let notes = vec![Note::new("store.read_only").with("path", path.display().to_string())];
+        let notes = vec![note!("store.read_only", path = path.display().to_string())];
         Ok(Store { layout, index, shared_disk: false, read_only: true, notes, lock: None })
     }
 

@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::folder::{Folder, run_of};
 use super::pages::languages;
 use super::parts;
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::output::{
     Kind, LIMITS_FILE, PROCEDURE_FILE, found_below, read_below, sha256_below, sha256_of_file,
 };
@@ -106,7 +106,7 @@ fn of_result(folder: &Folder, run: &RunRecord, how: Anew<'_>) -> Vec<Finding> {
     let made: Option<Value> = made.and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let Some(made) = made else {
         let said = ran.map(|o| String::from_utf8_lossy(&o.stderr).trim().to_owned()).unwrap_or_default();
-        return vec![Finding::Undone(Note::new("verify.cannot_compute").with("reason", said))];
+        return vec![Finding::Undone(note!("verify.cannot_compute", reason = said))];
     };
     compare(&stated, &made, || files(folder, &out))
 }
@@ -159,7 +159,7 @@ fn compare(stated: &Value, made: &Value, files: impl FnOnce() -> Vec<String>) ->
     let mut findings = vec![];
     let unlike = other_inputs(stated, made);
     if !unlike.is_empty() {
-        findings.push(Finding::Undone(Note::new("verify.other_inputs").with("names", unlike.join(", "))));
+        findings.push(Finding::Undone(note!("verify.other_inputs", names = unlike.join(", "))));
     }
     let version = |record: &Value| record["program"]["version"].as_str().unwrap_or_default().to_owned();
     let (written, this) = (version(stated), version(made));
@@ -171,13 +171,9 @@ fn compare(stated: &Value, made: &Value, files: impl FnOnce() -> Vec<String>) ->
         return findings;
     }
     findings.push(match (differing.is_empty(), written == this) {
-        (true, _) => Finding::Agrees(Note::new("verify.computed").with("n", n)),
-        (false, true) => {
-            Finding::Differs(Note::new("verify.computed_differs").with("names", differing.join(", ")))
-        }
-        (false, false) => {
-            Finding::Undone(Note::new("verify.computed_by_other").with("written", written).with("this", this))
-        }
+        (true, _) => Finding::Agrees(note!("verify.computed", n)),
+        (false, true) => Finding::Differs(note!("verify.computed_differs", names = differing.join(", "))),
+        (false, false) => Finding::Undone(note!("verify.computed_by_other", written, this)),
     });
     findings
 }

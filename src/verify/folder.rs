@@ -1,7 +1,7 @@
 //! The files of a folder against the hashes that it states, and the texts that a test was made by against those in its record.
 
 use super::finding::Finding;
-use crate::i18n::{Note, io_reason};
+use crate::i18n::{Note, io_reason, note};
 use crate::output::{
     CHECKSUMS_FILE, Found, Kind, LIMITS_FILE, NotRead, PROCEDURE_FILE, found_below, read_below,
     read_checksums, sha256, sha256_below,
@@ -36,7 +36,7 @@ impl Folder {
         let kind = Kind::ALL.into_iter().find(|k| folder.join(k.record_file()).is_file());
         match kind {
             Some(kind) => Ok(Folder { path: folder, kind }),
-            None => Err(Note::new("result_error.no_result_in").with("path", folder.display().to_string())),
+            None => Err(note!("result_error.no_result_in", path = folder.display().to_string())),
         }
     }
 
@@ -86,7 +86,7 @@ pub fn hashes(folder: &Folder, beside: &str) -> Vec<Finding> {
     }
     findings.extend(added(folder, beside, &stated));
     if findings.is_empty() {
-        findings.push(Finding::Agrees(Note::new("verify.hashes").with("n", stated.len())));
+        findings.push(Finding::Agrees(note!("verify.hashes", n = stated.len())));
     }
     findings
 }
@@ -129,7 +129,7 @@ fn not_read(name: &str, why: &NotRead) -> Finding {
         NotRead::NoFile => "verify.no_file",
         NotRead::TooLarge => "verify.too_large",
         NotRead::Io(e) => {
-            let note = Note::new("verify.unreadable").with("name", name).with("reason", io_reason(e));
+            let note = note!("verify.unreadable", name, reason = io_reason(e));
             return Finding::Differs(note);
         }
     };

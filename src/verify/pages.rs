@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use super::folder::Folder;
 use crate::acceptance::tables::{Follows, follows};
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, Note, note};
 use crate::output::{CHECKSUMS_FILE, Kind, NotRead, read_below};
 use crate::record::read::MAX_BYTES;
 use crate::report::export::{EXPORTERS, FURTHER, export};
@@ -29,7 +29,7 @@ pub fn pages(folder: &Folder, renderer: &Renderer) -> Vec<Finding> {
     // Another version may say the same in other words.
     let this = env!("CARGO_PKG_VERSION");
     if let Some(other) = stored.results.program_version().filter(|v| *v != this) {
-        let note = Note::new("verify.other_version").with("written", other).with("this", this);
+        let note = note!("verify.other_version", written = other, this);
         return vec![Finding::Undone(note)];
     }
     // Without pages and drawings, the data of figures are not needed.
@@ -67,8 +67,7 @@ fn compare(folder: &Folder, stored: &StoredResults, renderer: &Renderer, lang: L
                 match follows {
                     Follows::Wholly => {}
                     Follows::Not => {
-                        findings
-                            .push(Finding::Differs(Note::new("verify.rendered_differs").with("name", name)));
+                        findings.push(Finding::Differs(note!("verify.rendered_differs", name)));
                     }
                     Follows::Partly | Follows::Unknown => {
                         from_recording.insert(name);
@@ -83,8 +82,7 @@ fn compare(folder: &Folder, stored: &StoredResults, renderer: &Renderer, lang: L
         // A form that was not chosen is not there.
         match read_below(&folder.path, name, MAX_BYTES as u64) {
             Ok(found) if found != *bytes => {
-                findings
-                    .push(Finding::Differs(Note::new("verify.rendered_differs").with("name", name.as_str())));
+                findings.push(Finding::Differs(note!("verify.rendered_differs", name = name.as_str())));
             }
             Ok(_) if from_recording.contains(name) => not_made.push(name.clone()),
             Ok(_) => same += 1,
@@ -93,7 +91,7 @@ fn compare(folder: &Folder, stored: &StoredResults, renderer: &Renderer, lang: L
     }
     not_made.extend(further(folder, stored, &made));
     if !findings.iter().any(Finding::differs) {
-        findings.insert(0, Finding::Agrees(Note::new("verify.rendered").with("n", same)));
+        findings.insert(0, Finding::Agrees(note!("verify.rendered", n = same)));
     }
     if !not_made.is_empty() {
         let note = Note::new(FROM_RECORDING).with("names", not_made.join(", "));

@@ -6,7 +6,7 @@ use super::folder::{Folder, run_of};
 use super::pages::FROM_RECORDING;
 use super::verdict::verdict;
 use crate::acceptance::lot::of_record;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::output::{Kind, is_plain};
 use crate::record::{
     ConditionRecord, LOT_FORMAT, LotRecord, LotUnit, MeasurandRecord, PhaseRecord, RunRecord, VerdictCounts,
@@ -26,11 +26,11 @@ pub(super) fn units(folder: &Folder, contents: &dyn Fn(&Folder) -> Vec<Finding>)
     let (mut findings, mut from_recording) = (vec![], false);
     for unit in &lot.units {
         let Some(at) = folder_of(folder, unit) else {
-            findings.push(Finding::Differs(Note::new("verify.outside").with("name", unit.folder.as_str())));
+            findings.push(Finding::Differs(note!("verify.outside", name = unit.folder.as_str())));
             continue;
         };
         let Some(run) = run_of(&at) else {
-            findings.push(Finding::Differs(Note::new("verify.no_unit").with("name", unit.folder.as_str())));
+            findings.push(Finding::Differs(note!("verify.no_unit", name = unit.folder.as_str())));
             continue;
         };
         let mut of_unit = contents(&at);
@@ -40,8 +40,7 @@ pub(super) fn units(folder: &Folder, contents: &dyn Fn(&Folder) -> Vec<Finding>)
         of_unit.retain(|f| !matches!(f, Finding::Agrees(_)));
         findings.extend(of_unit.into_iter().map(|finding| below(&unit.folder, finding)));
         if !says(unit, &run) {
-            findings
-                .push(Finding::Differs(Note::new("verify.unit_differs").with("name", unit.folder.as_str())));
+            findings.push(Finding::Differs(note!("verify.unit_differs", name = unit.folder.as_str())));
         }
     }
     let verdicts = || lot.units.iter().map(|u| u.verdict);
@@ -50,7 +49,7 @@ pub(super) fn units(folder: &Folder, contents: &dyn Fn(&Folder) -> Vec<Finding>)
         findings.push(Finding::Differs("verify.lot_differs".into()));
     }
     if !findings.iter().any(Finding::differs) {
-        findings.push(Finding::Agrees(Note::new("verify.units").with("n", lot.units.len())));
+        findings.push(Finding::Agrees(note!("verify.units", n = lot.units.len())));
     }
     if from_recording {
         findings.push(Finding::Unchecked(UNITS_FROM_RECORDINGS.into()));
@@ -81,7 +80,7 @@ pub(super) fn folder_of(lot: &Folder, unit: &LotUnit) -> Option<Folder> {
 
 /// What was found of a unit, with its folder.
 pub(super) fn below(unit: &str, finding: Finding) -> Finding {
-    let of = |note: Note| Note::new("verify.of_unit").with("name", unit).with("what", note);
+    let of = |note: Note| note!("verify.of_unit", name = unit, what = note);
     match finding {
         Finding::Agrees(note) => Finding::Agrees(of(note)),
         Finding::Differs(note) => Finding::Differs(of(note)),
@@ -97,9 +96,8 @@ fn says(unit: &LotUnit, run: &RunRecord) -> bool {
 
 /// Checks every phase of a test of several, and the whole against them.
 pub(super) fn phases(folder: &Folder, whole: &RunRecord) -> Vec<Finding> {
-    let differs = |phase: &PhaseRecord| {
-        Finding::Differs(Note::new("verify.phase_differs").with("name", phase.id.as_str()))
-    };
+    let differs =
+        |phase: &PhaseRecord| Finding::Differs(note!("verify.phase_differs", name = phase.id.as_str()));
     let mut findings = vec![];
     for phase in &whole.phases {
         // A phase that was not recorded has no folder.

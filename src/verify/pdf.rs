@@ -2,7 +2,7 @@
 
 use super::finding::Finding;
 use super::verdict::verdict;
-use crate::i18n::{Lang, Note};
+use crate::i18n::{Lang, note};
 use crate::output::{Kind, is_plain};
 use crate::record::{self, RunRecord};
 use crate::report::pdf::{MAKES_PDF, PdfPages, attached};
@@ -19,7 +19,7 @@ pub fn pdf(bytes: &[u8], scratch: &Path) -> Vec<Finding> {
     let (language, files) = match attached(bytes) {
         Ok(found) => found,
         Err(reason) => {
-            return vec![Finding::Differs(Note::new("verify.pdf_unreadable").with("reason", reason))];
+            return vec![Finding::Differs(note!("verify.pdf_unreadable", reason))];
         }
     };
     for (name, contents) in files.iter().filter(|(name, _)| is_plain(name)) {
@@ -49,7 +49,7 @@ pub fn pdf(bytes: &[u8], scratch: &Path) -> Vec<Finding> {
     });
     let mut findings = vec![match appended {
         Some(0) => Finding::Agrees("verify.pdf".into()),
-        Some(n) => Finding::Differs(Note::new("verify.pdf_appended").with("n", n)),
+        Some(n) => Finding::Differs(note!("verify.pdf_appended", n)),
         None => Finding::Differs("verify.pdf_differs".into()),
     }];
     findings.extend(run.iter().flat_map(verdict));

@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use super::folder::Folder;
 use crate::acceptance::datasheet::{TestedUnit, datasheet, select};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::lot::tolerance::Promise;
 use crate::output::sha256_of_file;
 use crate::record::{DATASHEET_FORMAT, DataSheet, SheetQuantity, read};
@@ -24,7 +24,7 @@ pub(super) fn sheet(folder: &Folder) -> Vec<Finding> {
         match TestedUnit::read(path).ok().filter(|_| same) {
             Some(unit) => units.push(unit),
             None => {
-                let note = Note::new("verify.no_result_of_sheet").with("path", result.path.as_str());
+                let note = note!("verify.no_result_of_sheet", path = result.path.as_str());
                 return vec![Finding::Unchecked(note)];
             }
         }
@@ -53,8 +53,8 @@ pub(super) fn sheet(folder: &Folder) -> Vec<Finding> {
     ];
     differing.extend(facts.into_iter().filter(|(_, is_same)| !is_same).map(|(name, _)| name));
     match differing.as_slice() {
-        [] => vec![Finding::Agrees(Note::new("verify.sheet").with("n", made.units))],
-        names => vec![Finding::Differs(Note::new("verify.sheet_differs").with("names", names.join(", ")))],
+        [] => vec![Finding::Agrees(note!("verify.sheet", n = made.units))],
+        names => vec![Finding::Differs(note!("verify.sheet_differs", names = names.join(", ")))],
     }
 }
 

@@ -4,7 +4,7 @@ use super::finding::Finding;
 use super::folder::{Folder, run_of, stated_hashes};
 use super::parts;
 use crate::config::procedure::load;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::output::{Kind, PROCEDURE_FILE};
 use crate::record::{ProcedureRecord, RunRecord};
 use crate::report::number::date_time;
@@ -41,9 +41,11 @@ pub fn signatures(folder: &Folder, by: Signing<'_>) -> Vec<Finding> {
         }
     }
     let is_signed = findings.iter().any(|f| f.note().id.starts_with("verify.signed"));
-    findings.extend(missing.into_iter().map(|role| {
-        Finding::Differs(Note::new("verify.role_missing").with("role", Arg::key("signer", role.id())))
-    }));
+    findings.extend(
+        missing
+            .into_iter()
+            .map(|role| Finding::Differs(note!("verify.role_missing", role = Arg::key("signer", role.id())))),
+    );
     if by.signers.is_some() && !is_signed {
         findings.push(Finding::Differs("verify.nothing_signed".into()));
     }
@@ -150,12 +152,12 @@ fn of_link(link: &Link, by: Signing<'_>) -> Vec<Finding> {
         }),
     }];
     findings.extend(said.waivers.iter().map(|w| {
-        Finding::Unchecked(
-            Note::new("verify.waived")
-                .with("name", name())
-                .with("row", row_name(&w.row))
-                .with("reason", w.reason.as_str()),
-        )
+        Finding::Unchecked(note!(
+            "verify.waived",
+            name = name(),
+            row = row_name(&w.row),
+            reason = w.reason.as_str()
+        ))
     }));
     findings
 }

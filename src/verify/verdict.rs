@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use crate::acceptance::verdict::whole;
 use crate::estimate::{Rule, Verdict};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
 
 /// Relative difference of numbers that went through decimal digits within which they are equal.
@@ -17,27 +17,27 @@ pub fn verdict(record: &RunRecord) -> Vec<Finding> {
     for (row, limit) in &judged {
         let contradicted = !row.objections.is_empty() && row.verdict == Verdict::Indeterminate;
         if !contradicted && !allowed(row, limit).contains(&row.verdict) {
-            findings.push(Finding::Differs(
-                Note::new("verify.row_verdict")
-                    .with("measurand", row.id.as_str())
-                    .with("channel", row.channel.as_str())
-                    .with("verdict", row.verdict.id()),
-            ));
+            findings.push(Finding::Differs(note!(
+                "verify.row_verdict",
+                measurand = row.id.as_str(),
+                channel = row.channel.as_str(),
+                verdict = row.verdict.id()
+            )));
         }
         if let (Some(value), Some(margin)) = (row.value, row.margin) {
             let nearest = [limit.max.map(|max| max - value), limit.min.map(|min| value - min)];
             let nearest = nearest.into_iter().flatten().reduce(f64::min);
             if nearest.is_none_or(|n| (n - margin).abs() > ROUNDING_TOLERANCE * (value.abs() + n.abs())) {
-                findings.push(Finding::Differs(
-                    Note::new("verify.row_margin")
-                        .with("measurand", row.id.as_str())
-                        .with("channel", row.channel.as_str()),
-                ));
+                findings.push(Finding::Differs(note!(
+                    "verify.row_margin",
+                    measurand = row.id.as_str(),
+                    channel = row.channel.as_str()
+                )));
             }
         }
     }
     for row in record.measurands.iter().filter(|r| r.limit.is_none() && r.verdict != Verdict::None) {
-        let note = Note::new("verify.row_without_limit").with("measurand", row.id.as_str());
+        let note = note!("verify.row_without_limit", measurand = row.id.as_str());
         findings.push(Finding::Differs(note));
     }
     let errors: Vec<Note> = record.errors.iter().map(|e| e.0.clone()).collect();
@@ -48,11 +48,11 @@ pub fn verdict(record: &RunRecord) -> Vec<Finding> {
     let phases = record.phases.iter().map(|p| p.verdict).max();
     let of_phases = phases.is_some_and(|worst| worst == record.verdict);
     if whole != record.verdict && !left_open && !of_phases {
-        let note = Note::new("verify.verdict_differs");
+        let note = note!("verify.verdict_differs");
         findings.push(Finding::Differs(note.with("stated", record.verdict.id()).with("found", whole.id())));
     }
     if findings.is_empty() {
-        let note = Note::new("verify.verdict").with("verdict", record.verdict.id()).with("n", judged.len());
+        let note = note!("verify.verdict", verdict = record.verdict.id(), n = judged.len());
         findings.push(Finding::Agrees(note));
     }
     findings

@@ -2,7 +2,7 @@
 
 use super::error::{IngestError, IngestErrorKind};
 use crate::{FileFault, io_reason, open_file};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -148,7 +148,7 @@ impl ByteStream {
             return Err(IngestError::new(
                 IngestErrorKind::Bomb,
                 &self.path,
-                Note::new("ingest.bomb").with("packed", packed).with("unpacked", self.unpacked),
+                note!("ingest.bomb", packed, unpacked = self.unpacked),
             )
             .hint("ingest.hint.bomb"));
         }
@@ -190,12 +190,8 @@ pub(super) fn unchanged(path: &Path, at_open: u64, read: u64, now: u64) -> Resul
     if at_open == read && read == now {
         return Ok(());
     }
-    Err(IngestError::new(
-        IngestErrorKind::Changed,
-        path,
-        Note::new("ingest.changed").with("at_open", at_open).with("read", read).with("now", now),
-    )
-    .hint("ingest.hint.wait"))
+    Err(IngestError::new(IngestErrorKind::Changed, path, note!("ingest.changed", at_open, read, now))
+        .hint("ingest.hint.wait"))
 }
 
 fn hex(bytes: &[u8]) -> String {
@@ -214,18 +210,14 @@ pub(crate) fn io_error(path: &Path, error: &io::Error) -> IngestError {
         io::ErrorKind::PermissionDenied => "ingest.hint.permissions",
         _ => "ingest.hint.disk",
     };
-    IngestError::new(IngestErrorKind::Io, path, Note::new("ingest.io").with("reason", io_reason(error)))
-        .hint(hint)
+    IngestError::new(IngestErrorKind::Io, path, note!("ingest.io", reason = io_reason(error))).hint(hint)
 }
 
 fn unpack_error(path: &Path, error: &io::Error, at: u64) -> IngestError {
     let (message, hint) = if error.kind() == io::ErrorKind::UnexpectedEof {
-        (Note::new("ingest.packed_short").with("bytes", at), "ingest.hint.cut_off")
+        (note!("ingest.packed_short", bytes = at), "ingest.hint.cut_off")
     } else {
-        (
-            Note::new("ingest.packed_damaged").with("bytes", at).with("reason", error.to_string()),
-            "ingest.hint.copy_again",
-        )
+        (note!("ingest.packed_damaged", bytes = at, reason = error.to_string()), "ingest.hint.copy_again")
     };
     IngestError::new(IngestErrorKind::Damaged, path, message).hint(hint)
 }

@@ -1,7 +1,7 @@
 //! A column of a file, and what its name and the format tell of it.
 
 use crate::column_inference::{InferredColumn, infer};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 use sagnac_core::recording::Role;
 
 /// A column as the format describes it.
@@ -30,7 +30,7 @@ impl Column {
         if dates || ((self.epoch_s.is_some() || self.rollover_s.is_some()) && inferred.role != Role::Time) {
             inferred.role = if dates { Role::Auxiliary } else { Role::Time };
             inferred.unit_is_named = true;
-            inferred.reason = Note::new("guess.stamps").with("name", self.name.as_str());
+            inferred.reason = note!("guess.stamps", name = self.name.as_str());
         }
         inferred
     }

@@ -1,6 +1,6 @@
 //! Why a recording could not be read: one diagnostic that says where, what was found and what to do.
 
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use sagnac_core::visible::steers;
 use std::fmt;
 use std::path::{Path, PathBuf};
@@ -142,7 +142,7 @@ impl IngestError {
         };
         let mut note = Note::new(key).with("place", place).with("message", d.message.clone());
         if let Some(text) = &d.text {
-            note = note.with("found", Note::new("ingest.found").with("text", text.as_str()));
+            note = note.with("found", note!("ingest.found", text = text.as_str()));
         }
         if let Some(hint) = &d.hint {
             note = note.with("hint", hint.clone());

@@ -61,16 +61,17 @@ impl FaultLog {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use sagnac_core::message::note;
 
     #[test]
     fn faults_in_consecutive_rows_are_one_entry_for_each_channel() {
         let mut log = FaultLog::default();
         for row in 5..10 {
             for channel in ["x", "y"] {
-                log.push("non_finite", Some(channel), None, row, 1, || Note::new("fault_note.duplicate"));
+                log.push("non_finite", Some(channel), None, row, 1, || note!("fault_note.duplicate"));
             }
         }
-        log.push("non_finite", Some("x"), None, 20, 1, || Note::new("fault_note.duplicate"));
+        log.push("non_finite", Some("x"), None, 20, 1, || note!("fault_note.duplicate"));
         let list = log.into_list();
         assert_eq!(list.iter().map(|f| (f.row, f.count)).collect::<Vec<_>>(), [(5, 5), (5, 5), (20, 1)]);
     }
@@ -79,7 +80,7 @@ mod tests {
     fn the_list_is_bounded() {
         let mut log = FaultLog::default();
         for i in 0..1000 {
-            log.push("gap", None, None, 2 * i + 1, 1, || Note::new("fault_note.duplicate"));
+            log.push("gap", None, None, 2 * i + 1, 1, || note!("fault_note.duplicate"));
         }
         assert_eq!(log.into_list().len(), MAX_LISTED_OF_A_KIND);
     }

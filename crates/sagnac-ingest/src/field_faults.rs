@@ -2,7 +2,7 @@
 
 use super::row_clock::RowClock;
 use super::{Block, FieldFaultKind};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 
 impl RowClock<'_> {
     /// Counts and lists the fields of a block that are no numbers.
@@ -28,15 +28,17 @@ impl RowClock<'_> {
             let channel = self.plan.channels.get(fault.slot).map(|c| c.id.as_str());
             self.log.push(kind, channel, stamp.filter(|s| s.is_finite()), fault.row, 1, || {
                 let place = if fault.line > 0 {
-                    Note::new("fault_note.place").with("line", fault.line).with("character", fault.character)
+                    note!("fault_note.place", line = fault.line, character = fault.character)
                 } else {
-                    Note::new("fault_note.no_place")
+                    note!("fault_note.no_place")
                 };
-                Note::new("fault_note.field")
-                    .with("what", Note::new(word))
-                    .with("column", self.plan.column_name(fault.slot))
-                    .with("place", place)
-                    .with("text", format!("`{}`", fault.text))
+                note!(
+                    "fault_note.field",
+                    what = Note::new(word),
+                    column = self.plan.column_name(fault.slot),
+                    place,
+                    text = format!("`{}`", fault.text)
+                )
             });
         }
     }

@@ -3,7 +3,7 @@
 use crate::error::{IngestError, IngestErrorKind, shorten};
 use crate::format::{Candidate, Format};
 use crate::formats::{FORMATS, FormatFeature, left_out};
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, Note, note};
 use sagnac_core::spelling::nearest;
 
 /// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
@@ -29,17 +29,16 @@ pub(super) fn format_of(file: &Candidate) -> Result<&'static dyn Format, IngestE
             return Err(not_compiled_in(file, missing));
         }
         let hint = match nearest(stated, ids()) {
-            Some(near) => Note::new("ingest.hint.did_you_mean").with("name", near),
-            None => Note::new("ingest.stated.formats").with("formats", ids().collect::<Vec<_>>().join(", ")),
+            Some(near) => note!("ingest.hint.did_you_mean", name = near),
+            None => note!("ingest.stated.formats", formats = ids().collect::<Vec<_>>().join(", ")),
         };
-        let note = Note::new("ingest.stated.no_such_format").with("format", shorten(stated));
+        let note = note!("ingest.stated.no_such_format", format = shorten(stated));
         return Err(unknown(note).hint(hint));
     };
     if format.may_be(file) {
         return Ok(*format);
     }
-    Err(unknown(Note::new("ingest.stated.not_this_format").with("format", stated))
-        .hint("ingest.stated.hint_format"))
+    Err(unknown(note!("ingest.stated.not_this_format", format = stated)).hint("ingest.stated.hint_format"))
 }
 
 /// The format that recognises a file.
@@ -55,20 +54,20 @@ fn recognised(file: &Candidate) -> Result<&'static dyn Format, IngestError> {
     }
     if let Some((_, what, hint)) = NOT_READ.iter().find(|(magic, ..)| file.head.starts_with(magic)) {
         let what = Arg::Key((*what).to_owned());
-        return Err(unknown(Note::new("ingest.not_read").with("what", what)).hint(*hint));
+        return Err(unknown(note!("ingest.not_read", what)).hint(*hint));
     }
     format.ok_or_else(|| {
         let ids: Vec<&str> = FORMATS.iter().map(|f| f.id()).collect();
-        let hint = Note::new("ingest.formats.give").with("ids", ids.join(", "));
+        let hint = note!("ingest.formats.give", ids = ids.join(", "));
         unknown("ingest.formats.unknown".into()).hint(hint)
     })
 }
 
 /// The diagnostic of a format whose cargo feature is off.
 fn not_compiled_in(file: &Candidate, format: &FormatFeature) -> IngestError {
-    let note = Note::new("ingest.formats.left_out").with("format", format.id);
+    let note = note!("ingest.formats.left_out", format = format.id);
     IngestError::new(IngestErrorKind::UnknownFormat, &file.path, note)
-        .hint(Note::new("ingest.formats.hint_feature").with("feature", format.feature))
+        .hint(note!("ingest.formats.hint_feature", feature = format.feature))
 }
 
 #[cfg(test)]

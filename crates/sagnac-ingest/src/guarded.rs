@@ -4,7 +4,7 @@
 //! program that wants no message of such a panic on its terminal sets one that asks [`decoder_is_running`].
 
 use crate::error::{IngestError, IngestErrorKind};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -36,7 +36,7 @@ pub(super) fn guarded<T>(
         Err(IngestError::new(
             IngestErrorKind::Damaged,
             path,
-            Note::new("ingest.guarded.gave_up").with("reason", format!("`{said}`")),
+            note!("ingest.guarded.gave_up", reason = format!("`{said}`")),
         )
         .hint("ingest.hint.damaged"))
     })

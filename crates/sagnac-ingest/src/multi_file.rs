@@ -5,7 +5,7 @@ use super::error::{IngestError, IngestErrorKind};
 use super::source::{NoNumbers, PartFacts, ReadSeveral, SeveralFiles, Source, open_with};
 use super::{Column, FileFacts, OnBlock, Opened, ReadOptions};
 use crate::column_inference::{infer, stem};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use sagnac_core::units::Affine;
 use sagnac_core::units::Unit;
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ pub fn open(
 ) -> Result<Source, IngestError> {
     let error = |path: &Path, note: Note| IngestError::new(IngestErrorKind::Parts, path, note);
     if specs.len() > MAX_FILES {
-        let note = Note::new("ingest.joined.too_many").with("count", specs.len()).with("most", MAX_FILES);
+        let note = note!("ingest.joined.too_many", count = specs.len(), most = MAX_FILES);
         return Err(error(name, note));
     }
     let mut parts: Vec<Part> = Vec::new();
@@ -66,11 +66,11 @@ pub fn open(
         first.get_or_insert_with(|| source.columns().to_vec());
         parts.push(Part { source, columns, stated_sha256: spec.sha256.clone() });
     }
-    let none = || error(name, Note::new("ingest.joined.none"));
+    let none = || error(name, note!("ingest.joined.none"));
     let Some(columns) = first else { return Err(none()) };
     refuse_duplicates(&parts)?;
     let rows = parts.iter().map(|p| p.source.rows_estimate()).sum::<Option<u64>>();
-    let mut notes = vec![Note::new("ingest.joined.note").with("count", parts.len())];
+    let mut notes = vec![note!("ingest.joined.note", count = parts.len())];
     for note in parts.iter().flat_map(|p| p.source.notes()) {
         if notes.len() < 64 && !notes.contains(note) {
             notes.push(note.clone());
@@ -129,11 +129,13 @@ fn match_columns(
         let conversion = conversion(column, other).ok_or_else(|| {
             let units =
                 |c: &Column| c.unit.clone().unwrap_or_else(|| infer(&c.name, None).unit.text().into());
-            let note = Note::new("ingest.joined.units")
-                .with("column", other.name.as_str())
-                .with("unit", units(other))
-                .with("wanted", units(column))
-                .with("first", first.display().to_string());
+            let note = note!(
+                "ingest.joined.units",
+                column = other.name.as_str(),
+                unit = units(other),
+                wanted = units(column),
+                first = first.display().to_string()
+            );
             IngestError::new(IngestErrorKind::Parts, source.path(), note)
         })?;
         out.push((index, conversion));
@@ -179,7 +181,7 @@ fn refuse_duplicates(parts: &[Part]) -> Result<(), IngestError> {
                 own = Some(digest(path)?.sha256);
             }
             if *hash == own {
-                let note = Note::new("ingest.joined.twice").with("other", other.display().to_string());
+                let note = note!("ingest.joined.twice", other = other.display().to_string());
                 return Err(
                     IngestError::new(IngestErrorKind::Parts, path, note).hint("ingest.joined.hint.name_once")
                 );
@@ -225,9 +227,8 @@ impl ReadSeveral for Parts {
             if let Some(stated) =
                 part.stated_sha256.as_ref().filter(|s| !s.eq_ignore_ascii_case(&facts.sha256))
             {
-                let note = Note::new("ingest.joined.hash")
-                    .with("found", facts.sha256.as_str())
-                    .with("stated", stated.as_str());
+                let note =
+                    note!("ingest.joined.hash", found = facts.sha256.as_str(), stated = stated.as_str());
                 return Err(IngestError::new(IngestErrorKind::Changed, part.source.path(), note));
             }
             let rows = facts.rows;

@@ -4,7 +4,7 @@ use super::byte_stream::Packing;
 use super::error::{IngestError, IngestErrorKind, shorten};
 use super::{Candidate, Column};
 use crate::column_inference::infer;
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, Note, note};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -44,10 +44,12 @@ impl Part {
         if self.columns.len() > LISTED {
             names.push_str(", …");
         }
-        Note::new("ingest.parts.part")
-            .with("name", shorten(&self.name))
-            .with("columns", names)
-            .with("rows", self.common_rows().unwrap_or(0))
+        note!(
+            "ingest.parts.part",
+            name = shorten(&self.name),
+            columns = names,
+            rows = self.common_rows().unwrap_or(0)
+        )
     }
 }
 
@@ -55,10 +57,10 @@ impl Part {
 fn list<'a>(parts: impl Iterator<Item = &'a Part>) -> Arg {
     let parts: Vec<&Part> = parts.collect();
     let mut note: Option<Note> = (parts.len() > LISTED)
-        .then(|| Note::new("ingest.parts.more").with("count", parts.len().saturating_sub(LISTED)));
+        .then(|| note!("ingest.parts.more", count = parts.len().saturating_sub(LISTED)));
     for part in parts.iter().take(LISTED).rev() {
         note = Some(match note {
-            Some(rest) => Note::new("ingest.parts.and").with("first", part.describe()).with("rest", rest),
+            Some(rest) => note!("ingest.parts.and", first = part.describe(), rest),
             None => part.describe(),
         });
     }
@@ -82,14 +84,14 @@ pub(super) fn choose(
         let exact = parts.iter().position(|p| p.name == wanted);
         let found = exact.or_else(|| parts.iter().position(|p| plain(&p.name) == plain(wanted)));
         let Some(index) = found else {
-            return Err(error(Note::new("ingest.parts.no_such").with("name", shorten(wanted)))
-                .hint(Note::new("ingest.parts.hint.the_file_has").with("parts", list(with_numbers()))));
+            return Err(error(note!("ingest.parts.no_such", name = shorten(wanted)))
+                .hint(note!("ingest.parts.hint.the_file_has", parts = list(with_numbers()))));
         };
         if parts.get(index).is_some_and(|p| p.common_rows().is_none()) {
-            return Err(error(Note::new("ingest.parts.no_numbers_in").with("name", shorten(wanted)))
-                .hint(Note::new("ingest.parts.hint.the_file_has").with("parts", list(with_numbers()))));
+            return Err(error(note!("ingest.parts.no_numbers_in", name = shorten(wanted)))
+                .hint(note!("ingest.parts.hint.the_file_has", parts = list(with_numbers()))));
         }
-        return Ok((index, vec![Note::new("ingest.parts.wanted").with("name", shorten(wanted))]));
+        return Ok((index, vec![note!("ingest.parts.wanted", name = shorten(wanted))]));
     }
     let candidates: Vec<usize> =
         parts.iter().enumerate().filter(|(_, p)| p.common_rows().is_some()).map(|(i, _)| i).collect();
@@ -99,19 +101,17 @@ pub(super) fn choose(
     match (candidates.as_slice(), gyros.as_slice()) {
         ([], _) => Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.parts.none")
             .hint("ingest.parts.hint.check")),
-        ([one], _) => Ok((*one, vec![Note::new("ingest.parts.only").with("name", name(*one))])),
+        ([one], _) => Ok((*one, vec![note!("ingest.parts.only", name = name(*one))])),
         (_, [one]) => {
             let others = parts.iter().enumerate().filter(|(i, _)| i != one && candidates.contains(i));
-            let note = Note::new("ingest.parts.gyro")
-                .with("name", name(*one))
-                .with("others", list(others.map(|(_, p)| p)));
+            let note = note!("ingest.parts.gyro", name = name(*one), others = list(others.map(|(_, p)| p)));
             Ok((*one, vec![note]))
         }
         (several, among) => {
             let among = if among.is_empty() { several } else { among };
             let count = among.len();
             let listed = list(among.iter().filter_map(|&i| parts.get(i)));
-            Err(error(Note::new("ingest.parts.several").with("count", count).with("parts", listed))
+            Err(error(note!("ingest.parts.several", count, parts = listed))
                 .hint("ingest.parts.hint.name_one"))
         }
     }
@@ -126,8 +126,7 @@ pub(super) fn odd_lengths(part: &Part, rows: u64) -> Option<Note> {
         .take(LISTED)
         .map(|(c, r)| format!("`{}` ({r})", shorten(&c.name)))
         .collect();
-    (!odd.is_empty())
-        .then(|| Note::new("ingest.parts.odd_lengths").with("rows", rows).with("columns", odd.join(", ")))
+    (!odd.is_empty()).then(|| note!("ingest.parts.odd_lengths", rows, columns = odd.join(", ")))
 }
 
 /// Refuses a packed container: its parts are found by their place in the file.
@@ -138,9 +137,7 @@ pub(super) fn unpacked(file: &Candidate, what: &'static str) -> Result<(), Inges
     Err(IngestError::new(
         IngestErrorKind::UnknownFormat,
         &file.path,
-        Note::new("ingest.parts.packed")
-            .with("what", Arg::Key(what.to_owned()))
-            .with("packing", file.packing.id()),
+        note!("ingest.parts.packed", what = Arg::Key(what.to_owned()), packing = file.packing.id()),
     )
     .hint("ingest.hint.unpack"))
 }

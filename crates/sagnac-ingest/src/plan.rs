@@ -3,7 +3,7 @@
 use super::pauses::Pauses;
 use super::{IngestError, IngestErrorKind, Source};
 use crate::clock::{Batches, Cadence, Clock, ClockError, Loss, Unwrapper, moduli};
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, Note, note};
 use sagnac_core::recording::{Channel, Role};
 use sagnac_core::units::Affine;
 use sagnac_core::units::Unit;
@@ -263,14 +263,14 @@ fn date(epoch_s: f64, s: f64) -> Option<String> {
 fn clock_note(error: &ClockError) -> Note {
     let percent = |share: f64| Arg::Text(format!("{:.0}", share * 100.0));
     match error {
-        ClockError::TooFew => Note::new("ingest.clock_too_few"),
-        ClockError::NotGrowing => Note::new("ingest.clock_not_growing"),
-        ClockError::Falling { share } => Note::new("ingest.clock_falling").with("percent", percent(*share)),
-        ClockError::Coarse { share } => Note::new("ingest.clock_coarse").with("percent", percent(*share)),
+        ClockError::TooFew => note!("ingest.clock_too_few"),
+        ClockError::NotGrowing => note!("ingest.clock_not_growing"),
+        ClockError::Falling { share } => note!("ingest.clock_falling", percent = percent(*share)),
+        ClockError::Coarse { share } => note!("ingest.clock_coarse", percent = percent(*share)),
         ClockError::Batches { rate_hz } => {
-            Note::new("ingest.clock_batches").with("hz", (rate_hz * 1e4).round() / 1e4)
+            note!("ingest.clock_batches", hz = (rate_hz * 1e4).round() / 1e4)
         }
-        ClockError::Rate { rate_hz } => Note::new("ingest.clock_rate").with("rate", rate_hz.to_string()),
+        ClockError::Rate { rate_hz } => note!("ingest.clock_rate", rate = rate_hz.to_string()),
     }
 }
 
@@ -278,11 +278,11 @@ fn clock_note(error: &ClockError) -> Note {
 fn conversion(path: &Path, channel: &Channel) -> Result<Affine, IngestError> {
     let error = |message: Note| IngestError::new(IngestErrorKind::Unit, path, message);
     if !channel.scale.is_finite() || channel.scale == 0.0 {
-        return Err(error(
-            Note::new("ingest.bad_scale")
-                .with("channel", channel.id.as_str())
-                .with("scale", channel.scale.to_string()),
-        )
+        return Err(error(note!(
+            "ingest.bad_scale",
+            channel = channel.id.as_str(),
+            scale = channel.scale.to_string()
+        ))
         .hint("ingest.hint.scale"));
     }
     let Some(inside) = channel.role.internal_unit() else {
@@ -290,12 +290,12 @@ fn conversion(path: &Path, channel: &Channel) -> Result<Affine, IngestError> {
     };
     let affine = Unit::parse(inside).and_then(|inside| channel.unit.affine_to(&inside));
     affine.map(|a| Affine { factor: a.factor * channel.scale, offset: a.offset }).map_err(|e| {
-        error(
-            Note::new("ingest.unit")
-                .with("channel", channel.id.as_str())
-                .with("role", Arg::key("role", channel.role.id()))
-                .with("reason", e.note()),
-        )
+        error(note!(
+            "ingest.unit",
+            channel = channel.id.as_str(),
+            role = Arg::key("role", channel.role.id()),
+            reason = e.note()
+        ))
         .hint("ingest.hint.unit")
     })
 }

@@ -3,7 +3,7 @@
 
 use super::error::{IngestError, IngestErrorKind};
 use super::{Block, Column, FieldFault, FieldFaultKind};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 use std::path::Path;
 
 /// Rows from which it is judged whether a column holds numbers at all.
@@ -76,13 +76,9 @@ pub(super) fn not_numeric(
     columns: &[Column],
 ) -> IngestError {
     let name = wanted.get(fault.slot).and_then(|&i| columns.get(i)).map_or("?", |c| c.name.as_str());
-    let error = IngestError::new(
-        IngestErrorKind::NotNumeric,
-        path,
-        Note::new("ingest.not_numeric").with("name", name),
-    )
-    .found(&fault.text)
-    .hint("ingest.hint.check_dialect");
+    let error = IngestError::new(IngestErrorKind::NotNumeric, path, note!("ingest.not_numeric", name))
+        .found(&fault.text)
+        .hint("ingest.hint.check_dialect");
     if fault.line > 0 { error.at(fault.line, Some(fault.character)) } else { error }
 }
 

@@ -8,7 +8,7 @@ use crate::clock::{Cadence, CounterStep, CounterTracker, Measured, Rollover, Ste
 use crate::faults::FaultLog;
 use crate::value_checks::ValueChecks;
 use crate::value_checks::plausible::Plausible;
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, Note, note};
 use sagnac_core::numeric::range::settled;
 use sagnac_core::recording::integrity::Integrity;
 use sagnac_core::recording::{SampleBlock, Sink};
@@ -155,7 +155,7 @@ impl<'a> RowClock<'a> {
         let pause = self.pauses.file_begins();
         if self.plan.counter.is_some() {
             if first(self.plan.counter).is_some_and(|count| self.counter.join(count)) {
-                self.unknown_gap(row, None, Note::new("time_base.joint_counter").with("file", name));
+                self.unknown_gap(row, None, note!("time_base.joint_counter", file = name));
             }
             return;
         }
@@ -173,17 +173,16 @@ impl<'a> RowClock<'a> {
                     let at = Some(self.tracker.on_scale(stamp));
                     if !pause {
                         self.integrity.backward_timestamps += 1;
-                        let note =
-                            Note::new("time_base.joint_back").with("file", name).with("back_s", nano(back_s));
+                        let note = note!("time_base.joint_back", file = name, back_s = nano(back_s));
                         self.log.push("backward_timestamp", Some("clock"), at, row, 1, || note);
                     }
-                    self.unknown_gap(row, at, Note::new("fault_note.gap_set_back"));
+                    self.unknown_gap(row, at, note!("fault_note.gap_set_back"));
                     self.joined = true;
                 }
             }
             None if self.plan.time.is_none() && !contiguous => {
                 let at = Some(self.index as f64 * self.plan.clock.interval_s);
-                self.unknown_gap(row, at, Note::new("time_base.joint_unknown").with("file", name));
+                self.unknown_gap(row, at, note!("time_base.joint_unknown", file = name));
             }
             None => {}
         }
@@ -266,7 +265,7 @@ impl<'a> RowClock<'a> {
             if let Some(more_s) = self.counter.disagreement_s() {
                 self.integrity.timestamp_disagreements += 1;
                 self.log.push("timestamp_disagreement", None, Some(stamp), row, 1, || {
-                    Note::new("time_base.disagreement").with("more_s", nano(more_s))
+                    note!("time_base.disagreement", more_s = nano(more_s))
                 });
             }
             if step == CounterStep::Next && (self.connected || start < i) {
@@ -284,23 +283,23 @@ impl<'a> RowClock<'a> {
             CounterStep::Next => return true,
             CounterStep::Unusable => {}
             CounterStep::Gap { missing } => {
-                let note = Note::new("time_base.counter_gap").with("missing", missing);
+                let note = note!("time_base.counter_gap", missing);
                 let step_s = (missing as f64 + 1.0) * self.plan.clock.interval_s;
                 self.missing(missing, Some(step_s), row, at, note);
                 return true;
             }
             CounterStep::Restart => {
-                self.unknown_gap(row, at, Note::new("time_base.counter_restart"));
+                self.unknown_gap(row, at, note!("time_base.counter_restart"));
                 return true;
             }
             CounterStep::Duplicate => {
                 self.integrity.duplicate_timestamps += 1;
-                let note = || Note::new("time_base.counter_duplicate");
+                let note = || note!("time_base.counter_duplicate");
                 self.log.push("duplicate_timestamp", None, at, row, 1, note);
             }
             CounterStep::Backward { back } => {
                 self.integrity.backward_timestamps += 1;
-                let note = || Note::new("time_base.counter_backward").with("back", back as u64);
+                let note = || note!("time_base.counter_backward", back = back as u64);
                 self.log.push("backward_timestamp", None, at, row, 1, note);
             }
         }
@@ -321,27 +320,27 @@ impl<'a> RowClock<'a> {
             }
             Step::SetBack { back_s } => {
                 self.integrity.backward_timestamps += 1;
-                self.unknown_gap(row, at, Note::new("fault_note.gap_set_back"));
+                self.unknown_gap(row, at, note!("fault_note.gap_set_back"));
                 // One entry of its own, or it would be added to the rows set aside before it.
                 self.log.push("backward_timestamp", Some("clock"), at, row, 1, || {
-                    Note::new("fault_note.set_back").with("back_s", nano(back_s))
+                    note!("fault_note.set_back", back_s = nano(back_s))
                 });
                 return true;
             }
             Step::Duplicate => {
                 self.integrity.duplicate_timestamps += 1;
-                self.log.push("duplicate_timestamp", None, at, row, 1, || Note::new("fault_note.duplicate"));
+                self.log.push("duplicate_timestamp", None, at, row, 1, || note!("fault_note.duplicate"));
             }
             Step::Backward { back_s } => {
                 self.integrity.backward_timestamps += 1;
                 self.log.push("backward_timestamp", None, at, row, 1, || {
-                    Note::new("fault_note.backward").with("back_s", nano(back_s))
+                    note!("fault_note.backward", back_s = nano(back_s))
                 });
             }
             Step::Stray { ahead_s } => {
                 self.integrity.backward_timestamps += 1;
                 self.log.push("backward_timestamp", None, at, row, 1, || {
-                    Note::new("fault_note.stray").with("ahead_s", nano(ahead_s))
+                    note!("fault_note.stray", ahead_s = nano(ahead_s))
                 });
             }
         }
@@ -402,7 +401,7 @@ impl<'a> RowClock<'a> {
         for AngleRollover { row: at, slot, period } in wraps {
             self.integrity.rollovers += 1;
             let id = self.plan.channels.get(slot).map(|c| c.id.as_str());
-            let note = || Note::new("time_base.angle_rollover").with("period_deg", period / 3600.0);
+            let note = || note!("time_base.angle_rollover", period_deg = period / 3600.0);
             self.log.push("rollover", id, Some(time_s), first_row + at as u64, 1, note);
         }
         if skipped > 0 {

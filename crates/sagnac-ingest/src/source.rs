@@ -11,7 +11,7 @@ use super::named_file::open_file;
 use super::requested_columns::{NumericCheck, not_numeric, repeat_columns, restore_columns};
 use super::similar_column::similar;
 use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, in_memory};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use sagnac_core::recording::{ColumnRef, Role};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -275,17 +275,17 @@ impl Source {
         let columns = self.columns();
         let index = match column {
             ColumnRef::Position(p) => p.checked_sub(1).filter(|&i| i < columns.len()).ok_or_else(|| {
-                self.column_error(Note::new("ingest.no_column_at").with("position", *p))
-                    .hint(Note::new("ingest.hint.columns_to").with("count", columns.len()))
+                self.column_error(note!("ingest.no_column_at", position = *p))
+                    .hint(note!("ingest.hint.columns_to", count = columns.len()))
             })?,
             ColumnRef::Name(name) => self.column_named(name)?,
         };
         match columns.get(index) {
-            Some(c) if !c.numeric => Err(self.column_error(
-                Note::new("ingest.column_no_numbers")
-                    .with("name", c.name.as_str())
-                    .with("storage", c.storage.as_str()),
-            )),
+            Some(c) if !c.numeric => Err(self.column_error(note!(
+                "ingest.column_no_numbers",
+                name = c.name.as_str(),
+                storage = c.storage.as_str()
+            ))),
             _ => Ok(index),
         }
     }
@@ -303,8 +303,8 @@ impl Source {
             names.push("…");
         }
         let hint = match meant {
-            Some(meant) => Note::new("ingest.hint.column_meant").with("name", meant),
-            None => Note::new("ingest.hint.the_file_has"),
+            Some(meant) => note!("ingest.hint.column_meant", name = meant),
+            None => note!("ingest.hint.the_file_has"),
         };
         hint.with("names", names.join(", "))
     }
@@ -322,14 +322,12 @@ impl Source {
             [one] => Ok(*one),
             [] => {
                 let hint = self.columns_hint(self.similar_column(name));
-                Err(self.column_error(Note::new("ingest.no_column_named").with("name", name)).hint(hint))
+                Err(self.column_error(note!("ingest.no_column_named", name)).hint(hint))
             }
             several => {
                 let places: Vec<String> = several.iter().map(|i| (i + 1).to_string()).collect();
-                let note = Note::new("ingest.name_twice")
-                    .with("name", name)
-                    .with("count", several.len())
-                    .with("places", places.join(", "));
+                let note =
+                    note!("ingest.name_twice", name, count = several.len(), places = places.join(", "));
                 Err(self.column_error(note).hint("ingest.hint.give_position"))
             }
         }

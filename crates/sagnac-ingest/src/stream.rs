@@ -5,7 +5,7 @@ use super::row_clock::{RowClock, TimeSpan};
 use super::{FileFacts, IngestError, IngestErrorKind, PartFacts, Source};
 use crate::clock::{Cadence, Measured};
 use crate::value_checks::{ValueChecks, ValueFacts, min_samples_for};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use sagnac_core::recording::integrity::{Fault, Integrity, OF_ROWS, OF_STAMPS, OF_VALUES};
 use sagnac_core::recording::{Channel, Role, Sink};
 use std::ops::ControlFlow;
@@ -207,34 +207,31 @@ impl RowClock<'_> {
         let clock = self.plan.clock;
         let mut notes = Vec::new();
         if let Some(other) = clock.ambiguous_with_s {
-            let note = Note::new("time_base.ambiguous").with("interval_s", clock.interval_s);
+            let note = note!("time_base.ambiguous", interval_s = clock.interval_s);
             notes.push(note.with("other_s", other));
         }
         match clock.cadence {
             Cadence::Even => {}
-            Cadence::Uneven => notes.push(Note::new("time_base.uneven")),
+            Cadence::Uneven => notes.push(note!("time_base.uneven")),
             Cadence::Bunched { period_s, rows } => {
-                notes.push(Note::new("time_base.bunched").with("rows", rows).with("period_s", period_s));
+                notes.push(note!("time_base.bunched", rows, period_s));
             }
-            Cadence::Buffered { rows, spread_s, .. } => notes.push(
-                Note::new("time_base.buffered")
-                    .with("hz", 1.0 / measured)
-                    .with("rows", rows)
-                    .with("spread_s", spread_s),
-            ),
+            Cadence::Buffered { rows, spread_s, .. } => {
+                notes.push(note!("time_base.buffered", hz = 1.0 / measured, rows, spread_s))
+            }
         }
         if rollovers > 0 {
-            notes.push(Note::new("time_base.rollovers").with("count", rollovers));
+            notes.push(note!("time_base.rollovers", count = rollovers));
         }
         let pauses = self.pauses.ends_s.len();
         if pauses > 0 {
-            notes.push(Note::new("time_base.pauses").with("count", pauses));
+            notes.push(note!("time_base.pauses", count = pauses));
         }
         let off = measured / nominal - 1.0;
         if off.abs() > 1e-6
             && self.measured().is_some_and(|m| (measured - nominal).abs() > 5.0 * m.uncertainty_s)
         {
-            notes.push(Note::new("time_base.first_rows").with("ppm", off * 1e6));
+            notes.push(note!("time_base.first_rows", ppm = off * 1e6));
         }
         notes
     }

@@ -1,14 +1,14 @@
 //! What the operating system answers, in words of the tables.
 
 use super::named_file::FileFault;
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use std::io::{Error, ErrorKind};
 
 /// The reason of an error of the operating system as a note; a reason without a translation is quoted as it is.
 pub fn io_reason(error: &Error) -> Note {
     match FileFault::of(error) {
-        Some(FileFault::Special) => return Note::new("system.no_file"),
-        Some(FileFault::TooLarge { most }) => return Note::new("system.too_large").with("most", most),
+        Some(FileFault::Special) => return note!("system.no_file"),
+        Some(FileFault::TooLarge { most }) => return note!("system.too_large", most),
         None => {}
     }
     let key = match error.kind() {
@@ -25,6 +25,6 @@ pub fn io_reason(error: &Error) -> Note {
     };
     match error.raw_os_error() {
         Some(code) if !key.is_empty() => Note::new(key).with("code", code.to_string()),
-        _ => Note::new("system.other").with("reason", error.to_string()),
+        _ => note!("system.other", reason = error.to_string()),
     }
 }

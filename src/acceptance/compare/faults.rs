@@ -1,6 +1,6 @@
 //! What the check of a recording and of its model found: the figures of a unit rest on both.
 
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::noise::residual::View;
 use crate::record::{ConditionStatus, GoodnessOfFitRecord, Integrity, RunRecord};
 
@@ -25,16 +25,15 @@ fn counts(found: &Integrity) -> [(u64, &'static str); 12] {
 /// Bad samples and gaps of the recording, and a test that was not valid.
 pub(super) fn of_recording(result: &RunRecord) -> Vec<Note> {
     let mut out = vec![];
-    let fault = |(n, key): (u64, &'static str)| {
-        Note::new("compare.more.fault").with("kind", Arg::Key(key.into())).with("count", n)
-    };
+    let fault =
+        |(n, key): (u64, &'static str)| note!("compare.more.fault", kind = Arg::Key(key.into()), count = n);
     let found = counts(&result.integrity).into_iter().filter(|(n, _)| *n > 0);
     let found: Vec<Arg> = found.map(|count| Arg::from(fault(count))).collect();
     if !found.is_empty() {
-        out.push(Note::new("compare.more.faults").with("found", Arg::Several(found, ", ".into())));
+        out.push(note!("compare.more.faults", found = Arg::Several(found, ", ".into())));
     }
     if result.conditions.iter().any(|c| c.status == ConditionStatus::Invalid) {
-        out.push(Note::new("compare.more.invalid"));
+        out.push(note!("compare.more.invalid"));
     }
     out
 }
@@ -48,18 +47,19 @@ fn departure<'a>(result: &'a RunRecord, channel: &str, view: View) -> Option<&'a
 pub(super) fn of_model(result: &RunRecord, channel: &str) -> Option<Note> {
     let departs = View::ALL.into_iter().filter(|view| departure(result, channel, *view).is_some());
     let names: Vec<Arg> = departs.map(|view| Arg::Key(format!("goodness.view.{}", view.id()))).collect();
-    (!names.is_empty())
-        .then(|| Note::new("compare.more.departs").with("views", Arg::Several(names, ", ".into())))
+    (!names.is_empty()).then(|| note!("compare.more.departs", views = Arg::Several(names, ", ".into())))
 }
 
 /// The jump of the level that the model of a channel does not make: when, and how large.
 pub(super) fn jump(result: &RunRecord, channel: &str) -> Option<Note> {
     let row = departure(result, channel, View::Jump)?;
     let number = |name: &str| row.message.args.get(name)?.number();
-    let note = Note::new("goodness.jump")
-        .with("time_s", Arg::rounded(number("time_s")?, 6))
-        .with("size", Arg::figures(number("size")?, 3))
-        .with("deviations", Arg::rounded(number("deviations")?, 2));
+    let note = note!(
+        "goodness.jump",
+        time_s = Arg::rounded(number("time_s")?, 6),
+        size = Arg::figures(number("size")?, 3),
+        deviations = Arg::rounded(number("deviations")?, 2)
+    );
     Some(note)
 }
 

@@ -2,7 +2,7 @@
 
 use super::Unit;
 use crate::figure::{Axis, Figure, Layer, Panel, Scale, Style};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::measurand;
 
 /// Units that are named in the figure of ratios.
@@ -37,12 +37,12 @@ pub fn octaves(unit: &Unit, number: usize) -> Option<Figure> {
             y: axis("compare.axis.share", "%", Scale::Linear),
             layers,
         }],
-        remarks: vec![
-            Note::new("compare.figure.octaves_remark")
-                .with("windows", o.windows)
-                .with("of", o.of)
-                .with("sigma", o.sigma),
-        ],
+        remarks: vec![note!(
+            "compare.figure.octaves_remark",
+            windows = o.windows,
+            of = o.of,
+            sigma = o.sigma
+        )],
     })
 }
 
@@ -64,7 +64,7 @@ pub fn ratios(units: &[Unit]) -> Option<Figure> {
         }
         points.push((hours, ratio));
         if labels.len() < NAMED {
-            let text = Note::new("compare.label").with("name", unit.label());
+            let text = note!("compare.label", name = unit.label());
             labels.push(Layer::Label { at: (hours, ratio), text });
         }
     }
@@ -135,7 +135,7 @@ pub fn sigma_tau(units: &[Unit]) -> Option<Figure> {
     });
     let mut remarks = vec![];
     if with_curve.len() > OVERLAID {
-        let shown = Note::new("compare.figure.sigma_tau_remark");
+        let shown = note!("compare.figure.sigma_tau_remark");
         remarks.push(shown.with("shown", OVERLAID).with("all", with_curve.len()));
     }
     Some(Figure {

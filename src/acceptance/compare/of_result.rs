@@ -4,7 +4,7 @@ use super::rules::rules;
 use super::unit::{Origin, Unit};
 use super::{faults, summary};
 use crate::acceptance::verdict::contradicted;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand;
 use crate::record::{MeasurandRecord, RunRecord};
 
@@ -32,7 +32,7 @@ pub fn units_of(result: &RunRecord, path: &str, stem: &str, origin: Origin) -> R
     let rows = result.measurands.iter().filter(|r| COMPARED_MEASURANDS.contains(&r.id.as_str()));
     let quantities: Vec<&MeasurandRecord> = rows.collect();
     if quantities.is_empty() {
-        return Err(Note::new("compare.error.nothing").with("path", path));
+        return Err(note!("compare.error.nothing", path));
     }
     let serial = result.unit_under_test.serial.as_deref().filter(|s| !s.trim().is_empty());
     let mut channels: Vec<&str> = vec![];
@@ -98,8 +98,7 @@ pub fn not_compared<'a>(limited: impl Iterator<Item = &'a str>) -> Option<Note> 
     let mut ids: Vec<&str> = limited.filter(|id| !COMPARED_MEASURANDS.contains(id)).collect();
     ids.dedup();
     let names: Vec<Arg> = ids.into_iter().map(|id| Arg::Key(format!("measurand.{id}"))).collect();
-    (!names.is_empty())
-        .then(|| Note::new("compare.more.limits").with("names", Arg::Several(names, ", ".into())))
+    (!names.is_empty()).then(|| note!("compare.more.limits", names = Arg::Several(names, ", ".into())))
 }
 
 /// Gives units of the same name different ones: by the name of their file, and where that is the same too, by their path.
@@ -132,7 +131,7 @@ pub fn mark_repeated(units: &mut [Unit]) {
         .collect();
     for (unit, first) in units.iter_mut().zip(first) {
         if let Some(name) = first {
-            unit.missing.insert(0, Note::new("compare.more.repeated").with("name", name));
+            unit.missing.insert(0, note!("compare.more.repeated", name));
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The parts of a model by name.
 
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand;
 use crate::record::{ModelRecord, ShareRecord};
 
@@ -57,8 +57,8 @@ pub fn part_name(share: &ShareRecord, model: &ModelRecord) -> Note {
     };
     let name = Arg::Key(part_key(&share.part).into());
     match frequency {
-        Some(hz) => Note::new("compare.more.part_at").with("part", name).with("hz", Arg::rounded(hz, 4)),
-        None => Note::new("compare.label").with("name", name),
+        Some(hz) => note!("compare.more.part_at", part = name, hz = Arg::rounded(hz, 4)),
+        None => note!("compare.label", name),
     }
 }
 

@@ -5,7 +5,7 @@
 
 use super::published::{Checked, CheckedRow, NullRow, Printed, Range, Row2, Tables};
 use crate::estimate::chi_square_quantile;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::noise::data::NoiseType;
 use crate::noise::model::{TERMS, unit_allan_variance};
 use crate::noise::russian::{angle_random_walk_from_10s, null_minimum};
@@ -163,9 +163,11 @@ fn against_table1(r: &Row, n: Option<Printed>, b: Option<Printed>, remarks: &mut
         }
     }
     if let Some(first) = b.filter(|first| first.value != r.bias.value) {
-        let note = Note::new("compare.published.b_differs")
-            .with("first", Arg::Stated(first.value))
-            .with("second", Arg::Stated(r.bias.value));
+        let note = note!(
+            "compare.published.b_differs",
+            first = Arg::Stated(first.value),
+            second = Arg::Stated(r.bias.value)
+        );
         remarks.flag(note);
     }
 }
@@ -190,7 +192,7 @@ fn against_white_noise(r: &Row, tables: &Tables, remarks: &mut Remarks) -> f64 {
     let steep = per_arw * r.arw.value / r.sigma100.value;
     let sigma10 = Printed { value: per_arw * r.arw.value, half: per_arw * r.arw.half };
     if quotients(sigma10, r.sigma100).low > WHITE / sampling.low {
-        let note = Note::new("compare.published.excess_at_10_s");
+        let note = note!("compare.published.excess_at_10_s");
         remarks.flag(note.with("ratio", factor(steep)).with("white", factor(WHITE)));
     }
     steep
@@ -207,43 +209,45 @@ fn remarks(tables: &Tables, rows: &[CheckedRow], null: &[NullRow]) -> Vec<Note> 
     if let Some(term) = TERMS.into_iter().find(|t| (slope(*t) - called).abs() < 1e-9)
         && term != NoiseType::RateRamp
     {
-        let note = Note::new("compare.published.slope_name")
-            .with("called", Arg::Stated(called))
-            .with("term", Arg::Key(super::part_key(term.id()).into()))
-            .with("ramp", Arg::Stated(slope(NoiseType::RateRamp)));
+        let note = note!(
+            "compare.published.slope_name",
+            called = Arg::Stated(called),
+            term = Arg::Key(super::part_key(term.id()).into()),
+            ramp = Arg::Stated(slope(NoiseType::RateRamp))
+        );
         out.push(note);
     }
-    out.push(
-        Note::new("compare.published.no_correlation_time")
-            .with("seconds", Arg::Stated(tables.flicker_correlation_time_s)),
-    );
+    out.push(note!(
+        "compare.published.no_correlation_time",
+        seconds = Arg::Stated(tables.flicker_correlation_time_s)
+    ));
     // The formula gives N back only at the bandwidth of the averaging: σ of white noise over 10 s is 60 N/√10.
     let bandwidth = (60.0 * angle_random_walk_from_10s(1.0)).powi(-2);
-    out.push(Note::new("compare.published.bandwidth").with("hz", Arg::rounded(bandwidth, 3)));
-    out.push(Note::new("compare.published.inverse_first"));
+    out.push(note!("compare.published.bandwidth", hz = Arg::rounded(bandwidth, 3)));
+    out.push(note!("compare.published.inverse_first"));
     let range = |of: fn(&CheckedRow) -> f64| {
         let fold = |f: fn(f64, f64) -> f64, from: f64| rows.iter().map(of).fold(from, f);
         (Arg::figures(fold(f64::min, f64::INFINITY), 3), Arg::figures(fold(f64::max, 0.0), 3))
     };
     let ((b0, b1), (a0, a1)) = (range(|r| r.ratio), range(|r| r.arw_ratio));
-    out.push(
-        Note::new("compare.published.order_of_magnitude")
-            .with("bias_low", b0)
-            .with("bias_high", b1)
-            .with("arw_low", a0)
-            .with("arw_high", a1),
-    );
+    out.push(note!(
+        "compare.published.order_of_magnitude",
+        bias_low = b0,
+        bias_high = b1,
+        arw_low = a0,
+        arw_high = a1
+    ));
     if let (Some(first), Some(last)) = (null.first(), null.last())
         && rows.iter().all(|r| (first.ratio[1]..=last.ratio[1]).contains(&r.ratio_printed))
     {
-        out.push(
-            Note::new("compare.published.null")
-                .with("hours", Arg::Stated(tables.least_record_h))
-                .with("low", Arg::figures(first.ratio[1], 2))
-                .with("high", Arg::figures(last.ratio[1], 2))
-                .with("low_part", Arg::Stated(first.length_over_tau_max))
-                .with("high_part", Arg::Stated(last.length_over_tau_max)),
-        );
+        out.push(note!(
+            "compare.published.null",
+            hours = Arg::Stated(tables.least_record_h),
+            low = Arg::figures(first.ratio[1], 2),
+            high = Arg::figures(last.ratio[1], 2),
+            low_part = Arg::Stated(first.length_over_tau_max),
+            high_part = Arg::Stated(last.length_over_tau_max)
+        ));
     }
     out
 }

@@ -2,7 +2,7 @@
 
 use super::parts::grouped;
 use super::unit::{Origin, Unit};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand;
 use crate::noise::data::NoiseType;
 use crate::record::{Agreement, ComparisonRecord, WindowRecord};
@@ -57,7 +57,7 @@ fn made_of(w: &WindowRecord) -> Option<Note> {
         .filter(|(_, share)| *share >= NAMED)
         .map(|(key, share)| {
             let part = Arg::Key((*key).into());
-            Arg::from(Note::new("compare.summary.share").with("part", part).with("share", percent(*share)))
+            Arg::from(note!("compare.summary.share", part, share = percent(*share)))
         })
         .collect();
     let note =
@@ -92,7 +92,7 @@ fn agreement(w: &WindowRecord, window: &'static str) -> Option<Note> {
 /// Said when the model is no description of the record.
 pub(super) fn misfit(detail: &ComparisonRecord) -> Option<Note> {
     let (misfit, p) = (detail.model.misfit?, detail.model.misfit_probability?);
-    (p < UNBELIEVABLE).then(|| Note::new("compare.summary.misfit").with("misfit", Arg::rounded(misfit, 2)))
+    (p < UNBELIEVABLE).then(|| note!("compare.summary.misfit", misfit = Arg::rounded(misfit, 2)))
 }
 
 /// Said when a verdict is so near that it may be chance.
@@ -103,7 +103,7 @@ fn by_chance(detail: &ComparisonRecord) -> Option<Note> {
         let off = ratio.ln().abs() / to_one;
         Some(off > 1.0 && off < NEAR)
     };
-    detail.windows.iter().any(|w| near(w) == Some(true)).then(|| Note::new("compare.more.by_chance"))
+    detail.windows.iter().any(|w| near(w) == Some(true)).then(|| note!("compare.more.by_chance"))
 }
 
 /// Share of angle random walk in σ100 as predicted; `None` without a prediction.
@@ -182,34 +182,34 @@ pub(super) fn missing(unit: &Unit) -> Vec<Note> {
     let mut out = vec![];
     let drift = unit.quantity(measurand::RUSSIAN_DRIFT_100S.id);
     if drift.and_then(|d| d.value) == Some(0.0) {
-        return vec![Note::new("compare.missing.constant")];
+        return vec![note!("compare.missing.constant")];
     }
     match (&unit.detail, drift.and_then(|d| d.value), unit.origin) {
         (Some(detail), _, _) => {
             for w in detail.windows.iter().filter(|w| w.predicted.is_none()) {
-                out.push(Note::new("compare.missing.beyond").with("window", w.window_s));
+                out.push(note!("compare.missing.beyond", window = w.window_s));
             }
             if detail.octaves.is_none() {
-                out.push(Note::new("compare.missing.octaves"));
+                out.push(note!("compare.missing.octaves"));
             }
             if detail.minimum.as_ref().is_none_or(|m| m.null_ratio.is_none()) {
-                out.push(Note::new("compare.missing.null"));
+                out.push(note!("compare.missing.null"));
             }
         }
         (None, None, _) if unit.length_s.is_some_and(|t| t >= 2.0 * WINDOW_S) => {
-            out.push(Note::new("compare.missing.windows"));
+            out.push(note!("compare.missing.windows"));
         }
-        (None, None, _) => out.push(Note::new("compare.missing.short")),
-        (None, Some(_), Origin::Result) => out.push(Note::new("compare.missing.detail")),
-        (None, Some(_), Origin::Recording) => out.push(Note::new("compare.missing.model")),
+        (None, None, _) => out.push(note!("compare.missing.short")),
+        (None, Some(_), Origin::Result) => out.push(note!("compare.missing.detail")),
+        (None, Some(_), Origin::Recording) => out.push(note!("compare.missing.model")),
     }
     if unit.detail.is_some()
         && unit.quantity(measurand::RUSSIAN_ARW_10S.id).is_some_and(|q| q.value.is_none())
     {
-        out.push(Note::new("compare.missing.ten"));
+        out.push(note!("compare.missing.ten"));
     }
     if drift.is_none() {
-        out.push(Note::new("compare.missing.drift"));
+        out.push(note!("compare.missing.drift"));
     }
     out
 }

@@ -4,7 +4,7 @@
 //! One more check: one line in [`CHECKS`], its name `check_name.<id>` in the tables, the kinds of test that could make it
 //! (`checks` of each, or [`OF_EVERY_TEST`]), and a call of [`CheckLog::made`] or [`CheckLog::not_made`] where it runs.
 
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::record::{CheckRecord, CheckStatus};
 use std::sync::Mutex;
 
@@ -89,7 +89,7 @@ impl CheckLog {
             own.retain(|r| !made || r.status == CheckStatus::Made || r.channel.is_some());
             all.append(&mut own);
             if all.len() == before {
-                all.push(unmade(id, Note::new("check_list.no_part")));
+                all.push(unmade(id, note!("check_list.no_part")));
             }
         }
         all
@@ -98,7 +98,7 @@ impl CheckLog {
 
 /// The checks of a run that read nothing.
 pub fn none_made(own: &[&str]) -> Vec<CheckRecord> {
-    possible(own).map(|id| unmade(id, Note::new("check_list.not_read"))).collect()
+    possible(own).map(|id| unmade(id, note!("check_list.not_read"))).collect()
 }
 
 fn possible(own: &[&str]) -> impl Iterator<Item = &'static str> {

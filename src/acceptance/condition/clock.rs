@@ -1,7 +1,7 @@
 //! Whether the stamps can be what they are taken for: the unit of the time, even steps, a rate that is no round number.
 
 use super::facts::{Condition, Facts, record};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Clock;
@@ -26,29 +26,26 @@ impl Condition for Clock {
         facts.checks.made("clock", None, "clock");
         let rate_hz = 1.0 / facts.sample_interval_s;
         let note = if facts.duration_s > MAX_DURATION_S {
-            Note::new("clock.too_long")
-                .with("years", facts.duration_s / (365.25 * 86_400.0))
-                .with("hz", rate_hz)
+            note!("clock.too_long", years = facts.duration_s / (365.25 * 86_400.0), hz = rate_hz)
         } else if rate_hz > MAX_RATE_HZ {
-            Note::new("clock.too_fast").with("hz", rate_hz)
+            note!("clock.too_fast", hz = rate_hz)
         } else if let Some(jitter_s) =
             facts.integrity.timestamp_jitter_s.filter(|j| *j > MAX_STAMP_SCATTER * facts.sample_interval_s)
         {
-            Note::new("clock.uneven")
-                .with("jitter_s", jitter_s)
-                .with("interval_s", facts.sample_interval_s)
-                .with("percent", 100.0 * jitter_s / facts.sample_interval_s)
+            note!(
+                "clock.uneven",
+                jitter_s,
+                interval_s = facts.sample_interval_s,
+                percent = 100.0 * jitter_s / facts.sample_interval_s
+            )
         } else if let Some(round_hz) =
             round_near(rate_hz).filter(|_| facts.procedure.sample_rate_hz.is_none())
         {
-            Note::new("clock.not_round")
-                .with("hz", rate_hz)
-                .with("round_hz", round_hz)
-                .with("percent", (rate_hz / round_hz - 1.0) * 100.0)
+            note!("clock.not_round", hz = rate_hz, round_hz, percent = (rate_hz / round_hz - 1.0) * 100.0)
         } else {
             return vec![];
         };
-        let required = Note::new("clock.required");
+        let required = note!("clock.required");
         vec![record("clock", ConditionStatus::Remark, &[("measured_hz", rate_hz)], Some(required), note)]
     }
 }

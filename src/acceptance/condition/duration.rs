@@ -1,7 +1,7 @@
 //! Usable time after warm-up, exclusions and gaps: not "last minus first stamp".
 
 use super::facts::{Condition, Facts, record};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Duration;
@@ -24,7 +24,7 @@ impl Condition for Duration {
             .with("required", Arg::span(required_s))
             .with("warm_up_min", facts.procedure.conditions.warm_up_s / 60.0);
         let observed = [("usable_h", facts.usable_s / 3600.0)];
-        let required = Note::new("note.required.duration").with("length", Arg::span(required_s));
+        let required = note!("note.required.duration", length = Arg::span(required_s));
         vec![record("duration", status, &observed, Some(required), note)]
     }
 }

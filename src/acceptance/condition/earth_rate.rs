@@ -21,7 +21,7 @@ use super::plausibility::{
 };
 use super::stability_track::StabilityKey;
 use super::unit_slip::{self, UnitSlip};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand;
 use crate::noise::static_bias::{EARTH_RATE_DEG_H, Orientation, Uncertain, earth_rate};
 use crate::record::{ConditionRecord, ConditionStatus};
@@ -58,7 +58,7 @@ fn of_gyro(gyro: &GyroFact, facts: &Facts<'_>) -> Option<ConditionRecord> {
         (false, true) => (ConditionStatus::Remark, "earth_rate.not_seen"),
         (false, false) => (ConditionStatus::Invalid, "earth_rate.mistake"),
     };
-    let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
+    let required = note!("earth_rate.required", earth, bound = 2.0 * bound);
     Some(comparison(gyro, earth, (status, key, mistakes), required, facts))
 }
 
@@ -114,7 +114,7 @@ fn exchanged_unit(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Cond
     if found.is_empty() {
         return None;
     }
-    let required = Note::new("earth_rate.required_alone").with("earth", earth);
+    let required = note!("earth_rate.required_alone", earth);
     Some(comparison(gyro, earth, (ConditionStatus::Invalid, "earth_rate.mistake", found), required, facts))
 }
 
@@ -136,7 +136,7 @@ fn movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<(f64, bool
 /// warm-up, in runs or in intervals.
 fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let (bound, small) = movement(gyro, earth, facts)?;
-    let required = Note::new("earth_rate.required").with("earth", earth).with("bound", 2.0 * bound);
+    let required = note!("earth_rate.required", earth, bound = 2.0 * bound);
     let u = 3.0 * gyro.mean_uncertainty_deg_h;
     let tolerance = EXCHANGE_TOLERANCE * earth.abs();
     if !small {
@@ -147,9 +147,9 @@ fn by_movement(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Conditi
     let slack = bound.max(tolerance) + u;
     let near = |value: f64| (gyro.mean_deg_h - value).abs() <= slack;
     let found = if near(-earth) {
-        Note::new("earth_rate.sign")
+        note!("earth_rate.sign")
     } else if near(0.0) {
-        Note::new("earth_rate.taken_out")
+        note!("earth_rate.taken_out")
     } else {
         return None;
     };
@@ -170,7 +170,7 @@ fn explain(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec<No
     };
     let mut found = Vec::new();
     if near(-mean, 1.0) {
-        found.push(Note::new("earth_rate.sign"));
+        found.push(note!("earth_rate.sign"));
     }
     if let Some(spec) = facts.procedure.channel(&gyro.channel) {
         let scaled = unit_slip::rate_factors(&spec.unit_in_file);
@@ -184,7 +184,7 @@ fn explain(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec<No
         found.extend(gain(gyro, earth, facts));
     }
     if found.is_empty() && mean.abs() <= bound + 3.0 * u {
-        found.push(Note::new("earth_rate.taken_out"));
+        found.push(note!("earth_rate.taken_out"));
     }
     found
 }
@@ -200,7 +200,7 @@ fn gain(gyro: &GyroFact, earth: f64, facts: &Facts<'_>) -> Option<Note> {
     let noise = gyro.angle_random_walk? / facts.limits.expected(measurand::ANGLE_RANDOM_WALK.id)?;
     let together = (noise / ratio).ln().abs() <= MIN_GAIN_RATIO.ln();
     let figures = |v: f64| Arg::figures(v, 2);
-    together.then(|| Note::new("earth_rate.gain").with("ratio", figures(ratio)).with("noise", figures(noise)))
+    together.then(|| note!("earth_rate.gain", ratio = figures(ratio), noise = figures(noise)))
 }
 
 /// The temperature where the rate should be, and the rate where the temperature should be.
@@ -213,10 +213,12 @@ fn exchanged(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Opti
                 && (track.mean - earth).abs() <= bound
         })
         .map(|(c, track)| {
-            Note::new("earth_rate.exchanged")
-                .with("temperature", c.channel.clone())
-                .with("rate", gyro.channel.clone())
-                .with("mean", track.mean)
+            note!(
+                "earth_rate.exchanged",
+                temperature = c.channel.clone(),
+                rate = gyro.channel.clone(),
+                mean = track.mean
+            )
         })
 }
 
@@ -230,7 +232,7 @@ fn other_axis(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec
     let others = facts.gyros.iter().filter(|g| g.channel != gyro.channel);
     let other = others
         .filter(|g| g.earth_deg_h.is_some_and(|(rate, _)| is(rate)))
-        .map(|g| Note::new("earth_rate.other_channel").with("other", g.channel.clone()));
+        .map(|g| note!("earth_rate.other_channel", other = g.channel.clone()));
     let mut found: Vec<Note> = other.collect();
     let Some(site) = facts.procedure.site.as_ref().filter(|_| found.is_empty()) else { return found };
     let exact = |value: f64| Uncertain { value, uncertainty: 0.0 };
@@ -247,7 +249,7 @@ fn other_axis(gyro: &GyroFact, earth: f64, bound: f64, facts: &Facts<'_>) -> Vec
             elevation_deg: exact(elevation),
         });
         if rate.value.abs() <= EARTH_RATE_DEG_H && is(rate.value) {
-            found.push(Note::new("earth_rate.axis").with("direction", Arg::Key(key.to_owned())));
+            found.push(note!("earth_rate.axis", direction = Arg::Key(key.to_owned())));
         }
     }
     found

@@ -2,7 +2,7 @@
 
 use super::facts::{Condition, Facts, record};
 use crate::config::procedure::model::Allowance;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Faults;
@@ -48,12 +48,12 @@ impl Condition for Faults {
 /// A fault of which not a single one is allowed; `None` where there is none.
 fn never_allowed(id: &str, count: u64, facts: &Facts<'_>) -> Option<ConditionRecord> {
     let first = facts.integrity.faults.iter().find(|f| f.kind == id);
-    let note = Note::new("plausible.condition").with("count", count);
+    let note = note!("plausible.condition", count);
     let note = match first {
         Some(first) => note.with("first", first.seen.clone()),
         None => note.with("first", ""),
     };
-    let required = Note::new("note.required.at_most_count").with("count", 0u64);
+    let required = note!("note.required.at_most_count", count = 0u64);
     let observed = [("count", count as f64)];
     (count > 0).then(|| record(id, ConditionStatus::Invalid, &observed, Some(required), note))
 }
@@ -70,9 +70,9 @@ fn budgeted(id: &str, count: u64, allowance: Allowance, facts: &Facts<'_>) -> Co
         (ConditionStatus::Ok, "note.condition.fault_none")
     };
     let required = match allowance {
-        Allowance::Count(most) => Note::new("note.required.at_most_count").with("count", most),
+        Allowance::Count(most) => note!("note.required.at_most_count", count = most),
         Allowance::Share(most) => {
-            Note::new("note.required.at_most_share").with("percent", Arg::Stated(most * 100.0))
+            note!("note.required.at_most_share", percent = Arg::Stated(most * 100.0))
         }
     };
     let share = share(count, facts);
@@ -97,7 +97,7 @@ fn longest_gap(facts: &Facts<'_>) -> Option<ConditionRecord> {
     };
     let note = Note::new(key).with("seconds", facts.longest_gap_s);
     let observed = [("seconds", facts.longest_gap_s)];
-    let required = Note::new("note.required.at_most_seconds").with("seconds", Arg::Stated(most_s));
+    let required = note!("note.required.at_most_seconds", seconds = Arg::Stated(most_s));
     Some(record("longest_gap", status, &observed, Some(required), note))
 }
 
@@ -110,7 +110,7 @@ fn jitter(facts: &Facts<'_>) -> Option<ConditionRecord> {
         (ConditionStatus::Invalid, "note.condition.jitter_over")
     };
     let note = Note::new(key).with("seconds", jitter_s);
-    let required = Note::new("note.required.at_most_rms").with("seconds", Arg::Stated(most_s));
+    let required = note!("note.required.at_most_rms", seconds = Arg::Stated(most_s));
     Some(record("timestamp_jitter", status, &[("seconds", jitter_s)], Some(required), note))
 }
 

@@ -1,7 +1,7 @@
 //! What a series of switching off and on, and a comparison without and with an influence, must have been.
 
 use super::facts::record;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::influence::nuisance::Following;
 use crate::influence::repeatability::factors;
 use crate::record::{ConditionRecord, ConditionStatus, Evidence};
@@ -42,7 +42,7 @@ pub fn judge_runs(facts: &RunFacts) -> ConditionRecord {
         (true, _) => ConditionStatus::Remark,
         _ => ConditionStatus::Invalid,
     };
-    let required = Note::new("runs.required").with("n", facts.fewest);
+    let required = note!("runs.required", n = facts.fewest);
     let judged = record("runs", status, &[("runs", facts.found as f64)], Some(required), note);
     known(judged, Some(facts.evidence))
 }
@@ -98,8 +98,8 @@ impl Acted {
     pub fn remark(self) -> Option<Note> {
         match self {
             Acted::Recorded | Acted::Contradicted { .. } => None,
-            Acted::Inferred { .. } => Some(Note::new("acted.level_declared")),
-            Acted::Declared | Acted::NotShown { .. } => Some(Note::new("acted.only_declared")),
+            Acted::Inferred { .. } => Some(note!("acted.level_declared")),
+            Acted::Declared | Acted::NotShown { .. } => Some(note!("acted.only_declared")),
         }
     }
 }
@@ -107,34 +107,37 @@ impl Acted {
 fn acted(facts: &ComparedFacts<'_>) -> ConditionRecord {
     let figure = |v: f64| Arg::figures(v, 3);
     let (status, note) = match facts.acted {
-        Acted::Recorded => (ConditionStatus::Ok, Note::new("acted.recorded")),
+        Acted::Recorded => (ConditionStatus::Ok, note!("acted.recorded")),
         Acted::Inferred { ratio, significance } => {
-            let note = Note::new("acted.inferred")
-                .with("ratio", figure(ratio))
-                .with("significance", Arg::figures(significance, 2));
+            let note =
+                note!("acted.inferred", ratio = figure(ratio), significance = Arg::figures(significance, 2));
             (ConditionStatus::Ok, note)
         }
-        Acted::Declared => (ConditionStatus::Remark, Note::new("acted.declared")),
+        Acted::Declared => (ConditionStatus::Remark, note!("acted.declared")),
         Acted::NotShown { by_noise: Some((ratio, significance)) } => {
-            let note = Note::new("acted.not_louder")
-                .with("ratio", figure(ratio))
-                .with("significance", Arg::decimals(significance, 1))
-                .with("table", facts.table);
+            let note = note!(
+                "acted.not_louder",
+                ratio = figure(ratio),
+                significance = Arg::decimals(significance, 1),
+                table = facts.table
+            );
             (ConditionStatus::Invalid, note)
         }
         Acted::NotShown { by_noise: None } => {
-            (ConditionStatus::Invalid, Note::new("acted.not_shown").with("table", facts.table))
+            (ConditionStatus::Invalid, note!("acted.not_shown", table = facts.table))
         }
         Acted::Contradicted { stated, recorded, at_s } => {
-            let note = Note::new("acted.contradicted")
-                .with("stated", Arg::figures(stated, 4))
-                .with("recorded", Arg::figures(recorded, 4))
-                .with("unit", Arg::key("unit", facts.level_unit))
-                .with("at", Arg::figures(at_s, 5));
+            let note = note!(
+                "acted.contradicted",
+                stated = Arg::figures(stated, 4),
+                recorded = Arg::figures(recorded, 4),
+                unit = Arg::key("unit", facts.level_unit),
+                at = Arg::figures(at_s, 5)
+            );
             (ConditionStatus::Invalid, note)
         }
     };
-    let required = Note::new("acted.required");
+    let required = note!("acted.required");
     known(record("influence_acted", status, &[], Some(required), note), Some(facts.acted.evidence()))
 }
 
@@ -220,18 +223,17 @@ fn intervals(facts: &ComparedFacts<'_>) -> ConditionRecord {
         .with("missing", facts.missing)
         .with("least", Arg::figures(facts.minimum_interval_s, 3));
     let observed = [("alternations", facts.alternations as f64), ("intervals", facts.found as f64)];
-    let required = Note::new("compared.required").with("n", facts.asked);
+    let required = note!("compared.required", n = facts.asked);
     let evidence = if facts.recorded { Evidence::Recorded } else { Evidence::Declared };
     known(record("influence_intervals", status, &observed, Some(required), note), Some(evidence))
 }
 
 fn temperature(facts: &ComparedFacts<'_>) -> ConditionRecord {
     let id = "influence_temperature";
-    let required = Some(
-        Note::new("compared.required_temperature").with("allowed", Arg::figures(facts.allowed_deg_c, 2)),
-    );
+    let required =
+        Some(note!("compared.required_temperature", allowed = Arg::figures(facts.allowed_deg_c, 2)));
     let Some(found) = facts.temperature else {
-        return record(id, ConditionStatus::Remark, &[], required, Note::new("compared.no_temperature"));
+        return record(id, ConditionStatus::Remark, &[], required, note!("compared.no_temperature"));
     };
     let difference = found.difference().abs();
     let (status, key) = if difference > facts.allowed_deg_c {
@@ -262,9 +264,9 @@ fn beside(found: &Following, facts: &ComparedFacts<'_>) -> ConditionRecord {
     };
     let note = found.note(key).with("chance", chance(found));
     let required = if warm {
-        Note::new("compared.required_temperature").with("allowed", Arg::figures(facts.allowed_deg_c, 2))
+        note!("compared.required_temperature", allowed = Arg::figures(facts.allowed_deg_c, 2))
     } else {
-        Note::new("compared.required_beside")
+        note!("compared.required_beside")
     };
     let id = format!("influence_beside.{}", found.what.channel);
     let judged = record(id, status, &[("difference", found.difference().abs())], Some(required), note);

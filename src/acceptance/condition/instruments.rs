@@ -1,7 +1,7 @@
 //! Calibration of the instruments on the day of the test.
 
 use super::facts::{Condition, Facts, record};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Instruments;
@@ -21,7 +21,7 @@ impl Condition for Instruments {
                 };
                 let due = instrument.calibration_due.map(|d| d.to_string()).unwrap_or_default();
                 let note = Note::new(key).with("instrument", instrument.name.clone()).with("due", due);
-                let required = Note::new("note.required.calibration").with("date", facts.today.to_string());
+                let required = note!("note.required.calibration", date = facts.today.to_string());
                 record("calibration", status, &[], Some(required), note)
             })
             .collect()

@@ -13,7 +13,7 @@
 use super::facts::{Condition, Facts, GyroFact, id_of, record};
 use super::plausibility::{NOISE_RATIO_LIMIT, mean_shows_earth_rate, white_noise_range};
 use super::unit_slip;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand;
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::recording::Role;
@@ -74,9 +74,11 @@ fn of_gyro(gyro: &GyroFact, typical: f64, facts: &Facts<'_>) -> Option<Condition
         note = note.with("why", why);
     }
     let observed = [("least_arw", low), ("greatest_arw", high)];
-    let required = Note::new("noise_level.required")
-        .with("typical", Arg::Stated(typical))
-        .with("factor", Arg::Stated(NOISE_RATIO_LIMIT));
+    let required = note!(
+        "noise_level.required",
+        typical = Arg::Stated(typical),
+        factor = Arg::Stated(NOISE_RATIO_LIMIT)
+    );
     Some(record(id_of("noise_level", &gyro.channel, facts), status, &observed, Some(required), note))
 }
 

@@ -1,7 +1,7 @@
 //! What was done to the output before it was recorded: coarse steps, smoothing. Remarks only.
 
 use super::facts::{Condition, Facts, GyroFact, record};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Output;
@@ -24,27 +24,17 @@ fn of_gyro(gyro: &GyroFact) -> Vec<ConditionRecord> {
     };
     let mut found = Vec::new();
     let mut remark = |note: Note| {
-        let required = Note::new("output.required");
+        let required = note!("output.required");
         let id = format!("output.{}", gyro.channel);
         found.push(record(id, ConditionStatus::Remark, &[("sample_deg_h", sample)], Some(required), note));
     };
     if let Some(step) = gyro.quantization_step_deg_h.filter(|q| *q > COARSE_STEP * sample) {
-        remark(
-            Note::new("output.coarse")
-                .with("channel", gyro.channel.clone())
-                .with("step", step)
-                .with("ratio", step / sample),
-        );
+        remark(note!("output.coarse", channel = gyro.channel.clone(), step, ratio = step / sample));
     }
     if let Some(n) = gyro.angle_random_walk {
         let white = 60.0 * n / gyro.tau0_s.sqrt();
         if sample < SMOOTHED_SCATTER * white {
-            remark(
-                Note::new("output.smoothed")
-                    .with("channel", gyro.channel.clone())
-                    .with("sample", sample)
-                    .with("white", white),
-            );
+            remark(note!("output.smoothed", channel = gyro.channel.clone(), sample, white));
         }
     }
     found

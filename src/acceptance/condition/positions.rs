@@ -3,7 +3,7 @@
 
 use super::facts::record;
 use super::unit_slip::{self, UnitSlip};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 /// What a channel makes of the Earth's rotation in several positions.
@@ -52,34 +52,34 @@ pub fn judge_stretches(stated: usize, missing: usize) -> ConditionRecord {
 /// Judges whether positions show the Earth's rotation as it is.
 pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
     let id = if fact.several { format!("known_earth.{}", fact.channel) } else { "known_earth".to_owned() };
-    let required = Some(Note::new("known.required.earth"));
+    let required = Some(note!("known.required.earth"));
     let observed = [("factor", fact.factor)];
     let allowed = 4.0 * fact.standard;
     let shown = Arg::figures(fact.factor, 4);
     let invalid =
         |note: Note| record(id.clone(), ConditionStatus::Invalid, &observed, required.clone(), note);
     if let Some((first, second)) = fact.software.first() {
-        return invalid(
-            Note::new("known.software").with("first", first.as_str()).with("second", second.as_str()),
-        );
+        return invalid(note!("known.software", first = first.as_str(), second = second.as_str()));
     }
     if let Some((other, their)) = &fact.turned_instead {
-        return invalid(
-            Note::new("known.software_axis")
-                .with("channel", fact.channel.as_str())
-                .with("other", other.as_str())
-                .with("theirs", Arg::figures(*their, 4))
-                .with("factor", shown),
-        );
+        return invalid(note!(
+            "known.software_axis",
+            channel = fact.channel.as_str(),
+            other = other.as_str(),
+            theirs = Arg::figures(*their, 4),
+            factor = shown
+        ));
     }
     let error = (fact.factor - 1.0).abs();
     let unjudged = !fact.limited && error > allowed.max(MAX_UNJUDGED_ERROR);
     if unjudged && error <= MAX_FACTOR_ERROR {
         let status = if fact.judged { ConditionStatus::Invalid } else { ConditionStatus::Remark };
-        let note = Note::new("known.gain")
-            .with("factor", shown)
-            .with("uncertainty", Arg::figures(fact.standard, 2))
-            .with("allowed", Arg::Stated(1e6 * MAX_UNJUDGED_ERROR));
+        let note = note!(
+            "known.gain",
+            factor = shown,
+            uncertainty = Arg::figures(fact.standard, 2),
+            allowed = Arg::Stated(1e6 * MAX_UNJUDGED_ERROR)
+        );
         return record(id, status, &observed, required, note);
     }
     if error <= allowed.max(MAX_FACTOR_ERROR) {
@@ -88,7 +88,7 @@ pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
         return record(id, ConditionStatus::Ok, &observed, required, note);
     }
     if (fact.factor + 1.0).abs() <= allowed.max(MAX_FACTOR_ERROR) {
-        return invalid(Note::new("known.reversed").with("factor", shown));
+        return invalid(note!("known.reversed", factor = shown));
     }
     // A factor that is not known to a tenth says nothing of units, nor of a latitude.
     let known = allowed <= 0.1 * fact.factor.abs();
@@ -96,7 +96,7 @@ pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
     let off = |m: &UnitSlip| (m.factor * fact.factor - 1.0).abs();
     let usual = units().any(|m| m.usual && off(&m) <= MAX_FACTOR_ERROR);
     if fact.factor.abs() <= allowed.max(MAX_FACTOR_ERROR) && !usual {
-        return invalid(Note::new("known.not_turned").with("factor", shown));
+        return invalid(note!("known.not_turned", factor = shown));
     }
     let mistake =
         units().filter(|m| off(m) <= (allowed / fact.factor.abs()).max(MAX_FACTOR_ERROR)).min_by(|a, b| {
@@ -104,19 +104,18 @@ pub fn judge_earth(fact: &EarthFact) -> ConditionRecord {
             off(a).total_cmp(&off(b))
         });
     if let Some(mistake) = mistake {
-        let note =
-            Note::new("on_table.mistaken").with("factor", shown).with("mistake", Arg::from(mistake.note));
+        let note = note!("on_table.mistaken", factor = shown, mistake = Arg::from(mistake.note));
         return invalid(note);
     }
     let sine = fact.latitude_deg.map(|l| l.to_radians().sin() * fact.factor);
     match sine.filter(|s| s.abs() <= 1.0 && known) {
-        Some(sine) => invalid(
-            Note::new("known.latitude")
-                .with("factor", shown)
-                .with("stated", Arg::figures(fact.latitude_deg.unwrap_or(0.0), 4))
-                .with("fits", Arg::figures(sine.asin().to_degrees(), 3)),
-        ),
-        None => invalid(Note::new("known.off").with("factor", shown)),
+        Some(sine) => invalid(note!(
+            "known.latitude",
+            factor = shown,
+            stated = Arg::figures(fact.latitude_deg.unwrap_or(0.0), 4),
+            fits = Arg::figures(sine.asin().to_degrees(), 3)
+        )),
+        None => invalid(note!("known.off", factor = shown)),
     }
 }
 

@@ -1,7 +1,7 @@
 //! The measured sample rate against the declared one.
 
 use super::facts::{Condition, Facts, record};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct SampleRate;
@@ -15,11 +15,13 @@ impl Condition for SampleRate {
             .collect();
         let Some(declared_hz) = facts.procedure.sample_rate_hz else { return records };
         let tolerance = facts.procedure.sample_rate_tolerance;
-        let required = Note::new("note.required.sample_rate")
-            .with("hz", Arg::Stated(declared_hz))
-            .with("percent", Arg::Stated(tolerance * 100.0));
+        let required = note!(
+            "note.required.sample_rate",
+            hz = Arg::Stated(declared_hz),
+            percent = Arg::Stated(tolerance * 100.0)
+        );
         if !facts.has_stamps {
-            let note = Note::new("note.condition.rate_unmeasured").with("declared_hz", declared_hz);
+            let note = note!("note.condition.rate_unmeasured", declared_hz);
             records.push(record("sample_rate", ConditionStatus::Remark, &[], Some(required), note));
             return records;
         }

@@ -2,7 +2,7 @@
 //! mistake.
 
 use super::facts::{Condition, Facts, record};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::temperature::findings::{MIN_SPAN_DEG_C, Schedule as Run};
 use crate::temperature::segments::Segment;
@@ -20,9 +20,11 @@ impl Condition for Schedule {
         let Some(test) = &facts.procedure.temperature_test else { return vec![] };
         let channel = Arg::Text(test.channel.clone());
         let invalid = |id: &str, key: &'static str| {
-            let required = Note::new("schedule.required.course")
-                .with("low", Arg::Stated(test.low_deg_c))
-                .with("high", Arg::Stated(test.high_deg_c));
+            let required = note!(
+                "schedule.required.course",
+                low = Arg::Stated(test.low_deg_c),
+                high = Arg::Stated(test.high_deg_c)
+            );
             vec![record(
                 id,
                 ConditionStatus::Invalid,
@@ -34,15 +36,17 @@ impl Condition for Schedule {
         let Some(run) = facts.schedule else { return invalid("temperature_course", "schedule.missing") };
         if run.missing > MAX_MISSING_SHARE {
             let percent = Arg::figures(100.0 * run.missing, 3);
-            let note = Note::new("schedule.holes").with("channel", channel).with("percent", percent);
+            let note = note!("schedule.holes", channel, percent);
             return vec![record("temperature_course", ConditionStatus::Invalid, &[], None, note)];
         }
         let width = run.reached.high - run.reached.low;
         if width < MIN_SPAN_DEG_C {
-            let note = Note::new("schedule.flat")
-                .with("channel", channel)
-                .with("value", Arg::figures(0.5 * (run.reached.low + run.reached.high), 4))
-                .with("width", Arg::figures(width, 2));
+            let note = note!(
+                "schedule.flat",
+                channel,
+                value = Arg::figures(0.5 * (run.reached.low + run.reached.high), 4),
+                width = Arg::figures(width, 2)
+            );
             return vec![record("temperature_course", ConditionStatus::Invalid, &[], None, note)];
         }
         let mut out = vec![ends(run, test, facts)];
@@ -63,11 +67,13 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
     let (low, high) = (run.reached.low, run.reached.high);
     let missed_low = low - test.low_deg_c > test.end_tolerance_deg_c - guard;
     let missed_high = test.high_deg_c - high > test.end_tolerance_deg_c - guard;
-    let required = Note::new("schedule.required.ends")
-        .with("low", Arg::Stated(test.low_deg_c))
-        .with("high", Arg::Stated(test.high_deg_c))
-        .with("tolerance", Arg::Stated(test.end_tolerance_deg_c))
-        .with("ramps", test.ramps_each_way);
+    let required = note!(
+        "schedule.required.ends",
+        low = Arg::Stated(test.low_deg_c),
+        high = Arg::Stated(test.high_deg_c),
+        tolerance = Arg::Stated(test.end_tolerance_deg_c),
+        ramps = test.ramps_each_way
+    );
     let last = run.segments.last();
     let cut = last.filter(|s| {
         s.kind.is_ramp() && facts.duration_s - s.to_s < CUT_WITHIN_S.max(0.005 * facts.duration_s)
@@ -88,18 +94,18 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
     let (status, note) = if let Some(key) = other_scale((low, high), test).or_else(|| reversed(run, test)) {
         (ConditionStatus::Invalid, Note::new(key).with("low", c(low)).with("high", c(high)))
     } else if complete {
-        (ConditionStatus::Ok, Note::new("schedule.ends").with("low", c(low)).with("high", c(high)))
+        (ConditionStatus::Ok, note!("schedule.ends", low = c(low), high = c(high)))
     } else if let Some(s) = aborted {
         let end = if s.kind == SegmentKind::Heating { test.high_deg_c } else { test.low_deg_c };
-        let note = Note::new("schedule.aborted")
-            .with("at", c(s.ends_deg_c))
-            .with("end", Arg::Stated(end))
-            .with("time_h", Arg::figures(s.to_s / 3600.0, 4));
+        let note = note!(
+            "schedule.aborted",
+            at = c(s.ends_deg_c),
+            end = Arg::Stated(end),
+            time_h = Arg::figures(s.to_s / 3600.0, 4)
+        );
         (ConditionStatus::Invalid, note)
     } else if let Some(s) = turned.first() {
-        let note = Note::new("schedule.turned")
-            .with("at", c(s.ends_deg_c))
-            .with("time_h", Arg::figures(s.to_s / 3600.0, 4));
+        let note = note!("schedule.turned", at = c(s.ends_deg_c), time_h = Arg::figures(s.to_s / 3600.0, 4));
         (ConditionStatus::Invalid, note)
     } else if missed_low || missed_high {
         let shown = low - test.low_deg_c <= test.end_tolerance_deg_c + guard
@@ -108,7 +114,7 @@ fn ends(run: &Run, test: &TemperatureTest, facts: &Facts<'_>) -> ConditionRecord
         let note = Note::new(key).with("low", c(low)).with("high", c(high)).with("guard", c(guard));
         (ConditionStatus::Invalid, note)
     } else {
-        let note = Note::new("schedule.too_few").with("up", up).with("down", down);
+        let note = note!("schedule.too_few", up, down);
         (ConditionStatus::Invalid, note)
     };
     record("temperature_course", status, &observed, Some(required), note)
@@ -184,7 +190,7 @@ fn correlation(pairs: &[(f64, f64)]) -> f64 {
 fn overshoot(run: &Run, test: &TemperatureTest, allowed: f64) -> ConditionRecord {
     let beyond = (run.reached.high - test.high_deg_c).max(test.low_deg_c - run.reached.low).max(0.0);
     let ok = beyond <= allowed;
-    let required = Note::new("schedule.required.overshoot").with("allowed", Arg::Stated(allowed));
+    let required = note!("schedule.required.overshoot", allowed = Arg::Stated(allowed));
     let note =
         Note::new(if ok { "schedule.overshoot" } else { "schedule.overshot" }).with("beyond", c(beyond));
     let status = if ok { ConditionStatus::Ok } else { ConditionStatus::Remark };
@@ -198,7 +204,7 @@ fn rates(run: &Run, test: &TemperatureTest) -> ConditionRecord {
         low = low.max(nominal * (1.0 - test.ramp_rate_tolerance));
         high = high.min(nominal * (1.0 + test.ramp_rate_tolerance));
     }
-    let required = Note::new("schedule.required.rate").with("low", c(low)).with("high", c(high));
+    let required = note!("schedule.required.rate", low = c(low), high = c(high));
     let ramps: Vec<_> = run.segments.iter().filter(|s| s.kind.is_ramp()).collect();
     // How far the ramp is inside, less its guard: the worst decides.
     let inside = |rate: f64| (rate - low).min(high - rate);
@@ -208,7 +214,7 @@ fn rates(run: &Run, test: &TemperatureTest) -> ConditionRecord {
         margin(a).total_cmp(&margin(b))
     });
     let Some(worst) = worst else {
-        let note = Note::new("schedule.no_ramp");
+        let note = note!("schedule.no_ramp");
         return record("ramp_rate", ConditionStatus::Invalid, &[], Some(required), note);
     };
     let (rate, u) = (worst.rate_deg_c_h.abs(), guard(worst.rate_uncertainty_deg_c_h));
@@ -235,10 +241,12 @@ const LEAST_DWELL_SHARE: f64 = 0.9;
 
 /// Every dwell between ramps long and quiet enough.
 fn dwells(run: &Run, test: &TemperatureTest, least_s: f64) -> ConditionRecord {
-    let required = Note::new("schedule.required.dwell")
-        .with("minutes", Arg::Stated(least_s / 60.0))
-        .with("tolerance", Arg::Stated(100.0 * (1.0 - LEAST_DWELL_SHARE)))
-        .with("drift", Arg::Stated(test.dwell_drift_deg_c_h));
+    let required = note!(
+        "schedule.required.dwell",
+        minutes = Arg::Stated(least_s / 60.0),
+        tolerance = Arg::Stated(100.0 * (1.0 - LEAST_DWELL_SHARE)),
+        drift = Arg::Stated(test.dwell_drift_deg_c_h)
+    );
     // Between two ramps there must be one; after the last ramp it need not be there.
     let mut shortest: Option<(f64, f64, f64)> = None;
     for (i, ramp) in run.segments.iter().enumerate().filter(|(_, s)| s.kind.is_ramp()) {
@@ -256,11 +264,11 @@ fn dwells(run: &Run, test: &TemperatureTest, least_s: f64) -> ConditionRecord {
     }
     let none = run.segments.iter().all(|s| s.kind != SegmentKind::Dwell);
     if none && shortest.is_some() {
-        let note = Note::new("schedule_dwell.none");
+        let note = note!("schedule_dwell.none");
         return record("dwell", ConditionStatus::Invalid, &[("shortest_s", 0.0)], Some(required), note);
     }
     let Some((length, _, at)) = shortest else {
-        let note = Note::new("schedule.no_dwell");
+        let note = note!("schedule.no_dwell");
         return record("dwell", ConditionStatus::Remark, &[], Some(required), note);
     };
     let restless = run

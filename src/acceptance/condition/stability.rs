@@ -3,7 +3,7 @@
 
 use super::facts::{Condition, Facts, record};
 use super::stability_track::{Extreme, StabilityFacts, StabilityKey};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Temperature;
@@ -65,17 +65,19 @@ struct Requirement<'a> {
 /// plus k·u; between, it is not shown, and that is not enough.
 fn judge(required: &Requirement<'_>, facts: &Facts<'_>) -> ConditionRecord {
     let unit = Arg::key("unit", required.unit);
-    let sentence = Note::new("note.required.held")
-        .with("nominal", Arg::Stated(required.nominal))
-        .with("tolerance", Arg::Stated(required.tolerance))
-        .with("unit", unit.clone());
+    let sentence = note!(
+        "note.required.held",
+        nominal = Arg::Stated(required.nominal),
+        tolerance = Arg::Stated(required.tolerance),
+        unit = unit.clone()
+    );
     let id = if required.key.position == 0 {
         required.key.condition.to_owned()
     } else {
         format!("{}.{}", required.key.condition, required.channel)
     };
     let Some(track) = facts.stability.get(&required.key) else {
-        let note = Note::new("note.condition.no_data").with("channel", required.channel);
+        let note = note!("note.condition.no_data", channel = required.channel);
         return record(id, ConditionStatus::Invalid, &[], Some(sentence), note);
     };
     let worst = worst(track, required.nominal);

@@ -4,7 +4,7 @@
 use super::checks::CheckLog;
 use super::facts::record;
 use super::unit_slip::{self, UnitSlip};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::units::RateUnit;
 
@@ -167,7 +167,7 @@ fn inner_axis_still(facts: &TableFacts) -> Option<ConditionRecord> {
     let note = Note::new(key)
         .with("inner", RateUnit::up_to(outer).figures(inner, 3))
         .with("outer", RateUnit::up_to(outer).figures(outer, 4));
-    let required = Note::new("on_table.required.inner_rests");
+    let required = note!("on_table.required.inner_rests");
     Some(record("inner_axis_still", status, &[("inner_deg_s", inner / 3600.0)], Some(required), note))
 }
 
@@ -182,11 +182,9 @@ fn earth_sign(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionReco
     // Without a limit on the bias nothing that is judged rests on it.
     let status =
         if channel.bias_limit.is_some() { ConditionStatus::Invalid } else { ConditionStatus::Remark };
-    let note = Note::new("on_table.earth_sign")
-        .with("bias", Arg::figures(bias, 4))
-        .with("earth", Arg::figures(earth, 4));
+    let note = note!("on_table.earth_sign", bias = Arg::figures(bias, 4), earth = Arg::figures(earth, 4));
     let id = id_of("table_earth_rate", channel, facts);
-    Some(record(id, status, &[("bias_deg_h", bias)], Some(Note::new("on_table.required.earth_sign")), note))
+    Some(record(id, status, &[("bias_deg_h", bias)], Some(note!("on_table.required.earth_sign")), note))
 }
 
 impl TableFacts {
@@ -216,7 +214,7 @@ fn steps(facts: &TableFacts) -> ConditionRecord {
         .with("low", facts.rate(facts.lowest))
         .with("high", facts.rate(facts.highest));
     let observed = [("steps", facts.steps as f64), ("levels", facts.levels as f64)];
-    record("table_steps", status, &observed, Some(Note::new("on_table.required.steps")), note)
+    record("table_steps", status, &observed, Some(note!("on_table.required.steps")), note)
 }
 
 /// Whether full scale was reached, on every side that was turned to.
@@ -241,9 +239,11 @@ fn reached(facts: &TableFacts) -> Option<ConditionRecord> {
         .with("low", facts.rate(facts.lowest))
         .with("high", facts.rate(facts.highest))
         .with("full", facts.rate(full));
-    let required = Note::new("on_table.required.reached")
-        .with("full", facts.rate(full))
-        .with("tolerance", Arg::figures(100.0 * facts.tolerance, 2));
+    let required = note!(
+        "on_table.required.reached",
+        full = facts.rate(full),
+        tolerance = Arg::figures(100.0 * facts.tolerance, 2)
+    );
     Some(record("table_reached", status, &[("worst_deg_s", worst / 3600.0)], Some(required), note))
 }
 
@@ -268,8 +268,7 @@ fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
         .with("percent", Arg::figures(100.0 * difference, 3))
         .with("angle", facts.rate(rate * factor))
         .with("rate", facts.rate(rate));
-    let required =
-        Note::new("on_table.required.agreement").with("tolerance", Arg::figures(100.0 * facts.tolerance, 2));
+    let required = note!("on_table.required.agreement", tolerance = Arg::figures(100.0 * facts.tolerance, 2));
     Some(record("table_agreement", status, &[("difference", difference)], Some(required), note))
 }
 
@@ -277,18 +276,18 @@ fn agreement(facts: &TableFacts) -> Option<ConditionRecord> {
 /// the axis that turns, nothing but a turn of the inner axis tells.
 fn response(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord> {
     let id = id_of("table_response", channel, facts);
-    let required = Some(
-        Note::new("on_table.required.response")
-            .with("low", Arg::Stated(*ACCEPTED_FACTORS.start()))
-            .with("high", Arg::Stated(*ACCEPTED_FACTORS.end())),
-    );
+    let required = Some(note!(
+        "on_table.required.response",
+        low = Arg::Stated(*ACCEPTED_FACTORS.start()),
+        high = Arg::Stated(*ACCEPTED_FACTORS.end())
+    ));
     let Some(factor) = channel.factor else {
-        let note = Note::new("on_table.no_line");
+        let note = note!("on_table.no_line");
         return (!facts.about_outer).then(|| record(id, ConditionStatus::Invalid, &[], required, note));
     };
     let observed = [("factor", factor)];
     if ACCEPTED_FACTORS.contains(&factor) {
-        let note = Note::new("on_table.follows").with("factor", Arg::figures(factor, 5));
+        let note = note!("on_table.follows", factor = Arg::figures(factor, 5));
         return Some(record(id, ConditionStatus::Ok, &observed, required, note));
     }
     let note = response_error(channel, factor, facts);
@@ -299,9 +298,7 @@ fn response(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord
 fn response_error(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> Note {
     let shown = Arg::figures(factor, 4);
     let mistakes = unit_slip::rate_factors(&channel.unit);
-    let mistaken = |why: Note| {
-        Note::new("on_table.mistaken").with("factor", shown.clone()).with("mistake", Arg::from(why))
-    };
+    let mistaken = |why: Note| note!("on_table.mistaken", factor = shown.clone(), mistake = Arg::from(why));
     // An exchange of unit leaves next to nothing of the output, which is known well all the same.
     let resolved = factor.abs() > 10.0 * channel.standard;
     let exchanged = |m: &&UnitSlip| m.usual && ACCEPTED_FACTORS.contains(&(m.factor * factor));
@@ -313,25 +310,29 @@ fn response_error(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> Not
     });
     if factor.abs() < 0.1 && factor.abs() < 20.0 * channel.standard.max(0.005) {
         return match other {
-            Some(other) if facts.channels.len() > 2 => Note::new("table_motion.one_axis")
-                .with("channel", channel.channel.as_str())
-                .with("other", other.channel.as_str())
-                .with("factor", shown),
-            Some(other) => Note::new("on_table.another_axis")
-                .with("channel", channel.channel.as_str())
-                .with("other", other.channel.as_str())
-                .with("factor", shown),
-            None => Note::new("on_table.does_not_follow").with("factor", shown),
+            Some(other) if facts.channels.len() > 2 => note!(
+                "table_motion.one_axis",
+                channel = channel.channel.as_str(),
+                other = other.channel.as_str(),
+                factor = shown
+            ),
+            Some(other) => note!(
+                "on_table.another_axis",
+                channel = channel.channel.as_str(),
+                other = other.channel.as_str(),
+                factor = shown
+            ),
+            None => note!("on_table.does_not_follow", factor = shown),
         };
     }
     if ACCEPTED_FACTORS.contains(&-factor) {
-        return Note::new("on_table.reversed").with("factor", shown);
+        return note!("on_table.reversed", factor = shown);
     }
     let off = |m: &UnitSlip| (m.factor * factor.abs()).ln().abs();
     let nearest = mistakes.into_iter().min_by(|a, b| off(a).total_cmp(&off(b))).filter(|m| off(m) < 0.1);
     match nearest {
         Some(mistake) => mistaken(mistake.note),
-        None => Note::new("on_table.off").with("factor", shown),
+        None => note!("on_table.off", factor = shown),
     }
 }
 
@@ -346,13 +347,15 @@ fn settling(facts: &TableFacts) -> Option<ConditionRecord> {
     } else {
         ConditionStatus::Remark
     };
-    let note = Note::new("table_motion.settling_short")
-        .with("steps", s.steps)
-        .with("of", facts.steps)
-        .with("stated", Arg::Stated(s.stated_s))
-        .with("needed", Arg::figures(s.needed_s, 2));
+    let note = note!(
+        "table_motion.settling_short",
+        steps = s.steps,
+        of = facts.steps,
+        stated = Arg::Stated(s.stated_s),
+        needed = Arg::figures(s.needed_s, 2)
+    );
     let observed = [("needed_s", s.needed_s), ("stated_s", s.stated_s)];
-    Some(record("table_settling", status, &observed, Some(Note::new("table_motion.required.settled")), note))
+    Some(record("table_settling", status, &observed, Some(note!("table_motion.required.settled")), note))
 }
 
 /// Stamps of a unit that the angle and the rate of the table contradict; `None` where they do not.
@@ -361,8 +364,8 @@ fn stamps(facts: &TableFacts) -> Option<ConditionRecord> {
     let mistake = unit_slip::time_factors()
         .into_iter()
         .find(|m| (factor / m.factor - 1.0).abs() < TIME_SLIP_TOLERANCE)?;
-    let note = Note::new("table_motion.stamps").with("mistake", Arg::from(mistake.note));
-    let required = Note::new("table_motion.required.stamps");
+    let note = note!("table_motion.stamps", mistake = Arg::from(mistake.note));
+    let required = note!("table_motion.required.stamps");
     Some(record("table_stamps", ConditionStatus::Invalid, &[("factor", factor)], Some(required), note))
 }
 
@@ -376,9 +379,9 @@ pub fn judge_scale(channel: &str, factor: f64) -> Option<ConditionRecord> {
         return None;
     }
     let high = || Arg::Stated(MAX_SCALE_FACTOR);
-    let note = Note::new("plausible.scale").with("channel", Arg::Text(channel.to_owned()));
+    let note = note!("plausible.scale", channel = Arg::Text(channel.to_owned()));
     let note = note.with("value", Arg::figures(factor, 5)).with("high", high());
-    let required = Note::new("plausible.scale_required").with("high", high());
+    let required = note!("plausible.scale_required", high = high());
     let observed = [("factor", factor)];
     Some(record("table_scale", ConditionStatus::Invalid, &observed, Some(required), note))
 }

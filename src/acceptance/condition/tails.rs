@@ -2,7 +2,7 @@
 //! too small.
 
 use super::facts::{Condition, Facts, GyroFact, id_of, record};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct Tails;
@@ -18,19 +18,21 @@ impl Condition for Tails {
             if !shape.is_short() {
                 return None;
             }
-            let note = Note::new("tails.short")
-                .with("channel", gyro.channel.clone())
-                .with("kurtosis", shape.excess_kurtosis)
-                .with("error", shape.kurtosis_error())
-                .with("beyond", shape.beyond)
-                .with("sigma", shape.sigma)
-                .with("expected", shape.expected_beyond);
+            let note = note!(
+                "tails.short",
+                channel = gyro.channel.clone(),
+                kurtosis = shape.excess_kurtosis,
+                error = shape.kurtosis_error(),
+                beyond = shape.beyond,
+                sigma = shape.sigma,
+                expected = shape.expected_beyond
+            );
             let observed = [
                 ("excess_kurtosis", shape.excess_kurtosis),
                 ("beyond", shape.beyond as f64),
                 ("expected_beyond", shape.expected_beyond),
             ];
-            let required = Some(Note::new("tails.required"));
+            let required = Some(note!("tails.required"));
             let id = id_of("tails", &gyro.channel, facts);
             Some(record(id, ConditionStatus::Invalid, &observed, required, note))
         };

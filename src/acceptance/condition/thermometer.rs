@@ -4,7 +4,7 @@ pub use super::facts::Thermometer;
 
 use super::facts::record;
 use crate::config::procedure::Procedure;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, note};
 use crate::measurand::SCALE_FACTOR_TEMPERATURE_SENSITIVITY;
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::temperature::StartAsked;
@@ -56,12 +56,12 @@ pub fn judge_scale_of_temperature(t: &Thermometer) -> Option<ConditionRecord> {
     });
     let note = match of_room {
         Some((unit, meant)) => {
-            Note::new("units.thermometer").with("unit", unit).with("meant", Arg::figures(meant, 3))
+            note!("units.thermometer", unit, meant = Arg::figures(meant, 3))
         }
         None if LABORATORY_DEG_C.contains(&-t.mean_deg_c) => {
-            Note::new("units.thermometer_sign").with("meant", Arg::figures(-t.mean_deg_c, 3))
+            note!("units.thermometer_sign", meant = Arg::figures(-t.mean_deg_c, 3))
         }
-        None if !UNIT_DEG_C.contains(&t.mean_deg_c) => Note::new("units.thermometer_impossible"),
+        None if !UNIT_DEG_C.contains(&t.mean_deg_c) => note!("units.thermometer_impossible"),
         None => return None,
     };
     let note = note
@@ -69,7 +69,7 @@ pub fn judge_scale_of_temperature(t: &Thermometer) -> Option<ConditionRecord> {
         .with("value", Arg::figures(as_read, 4))
         .with("declared", t.unit.as_str());
     let status = if t.counts { ConditionStatus::Invalid } else { ConditionStatus::Remark };
-    let required = Note::new("units.required").with("unit", t.unit.as_str());
+    let required = note!("units.required", unit = t.unit.as_str());
     let observed = [("mean_deg_c", t.mean_deg_c)];
     Some(record(format!("units.{}", t.channel), status, &observed, Some(required), note))
 }

@@ -1,7 +1,7 @@
 //! The serial number that the recording states against the one under which it is tested.
 
 use super::facts::{Condition, Facts, record};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::ingest::serial::plain;
 use crate::record::{ConditionRecord, ConditionStatus};
 
@@ -31,7 +31,7 @@ impl Condition for UnitNamed {
             Note::new(key).with("stated", format!("`{stated}`")).with("given", given.unwrap_or_default());
         let required = given
             .filter(|_| !facts.serial_of_recording)
-            .map(|given| Note::new("unit_named.required").with("serial", given));
+            .map(|given| note!("unit_named.required", serial = given));
         vec![record("unit_named", status, &[], required, note)]
     }
 }

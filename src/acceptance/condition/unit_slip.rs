@@ -1,6 +1,6 @@
 //! UnitSlips of unit and of decimal mark, by the factor that they put on the values.
 
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::units::Unit;
 
 /// A wrong unit or a misplaced decimal mark.
@@ -59,7 +59,7 @@ pub(super) fn rate_factors(declared: &str) -> Vec<UnitSlip> {
         }
     }
     for (name, factor) in &factors {
-        add(1.0 / factor, false, Note::new("mistake.twice").with("unit", *name).with("declared", declared));
+        add(1.0 / factor, false, note!("mistake.twice", unit = *name, declared));
     }
     list
 }
@@ -67,27 +67,22 @@ pub(super) fn rate_factors(declared: &str) -> Vec<UnitSlip> {
 /// The slips that stamps in seconds can have: factor from the time as read to the time that was meant.
 pub(super) fn time_factors() -> Vec<UnitSlip> {
     let of = |factor: f64, note: Note| UnitSlip { factor, usual: false, note };
-    let one = |factor: f64, unit: &str| of(factor, Note::new("mistake.time_unit").with("unit", unit));
+    let one = |factor: f64, unit: &str| of(factor, note!("mistake.time_unit", unit));
     vec![
         one(1e-3, "ms"),
         one(1e-6, "µs"),
         one(1e-9, "ns"),
         one(60.0, "min"),
         one(3600.0, "h"),
-        of(1e3, Note::new("mistake.time_thousandth")),
-        of(1e6, Note::new("mistake.time_millionth")),
+        of(1e3, note!("mistake.time_thousandth")),
+        of(1e6, note!("mistake.time_millionth")),
     ]
 }
 
 /// One sentence of several that could each be true.
 pub(super) fn either(mut notes: Vec<Note>) -> Option<Note> {
     let last = notes.pop()?;
-    Some(
-        notes
-            .into_iter()
-            .rev()
-            .fold(last, |rest, note| Note::new("mistake.or").with("one", note).with("other", rest)),
-    )
+    Some(notes.into_iter().rev().fold(last, |rest, note| note!("mistake.or", one = note, other = rest)))
 }
 
 #[cfg(test)]

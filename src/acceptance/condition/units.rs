@@ -4,7 +4,7 @@ use super::facts::{Condition, Facts, record};
 use super::stability_track::StabilityKey;
 use super::thermometer::judge_scale_of_temperature;
 use crate::config::procedure::model::TemperatureCondition;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::recording::column_inference;
 use crate::units::{Affine, Unit};
@@ -29,7 +29,7 @@ impl Condition for Units {
 }
 
 fn invalid(channel: &str, declared: &str, note: Note) -> ConditionRecord {
-    let required = Note::new("units.required").with("unit", declared);
+    let required = note!("units.required", unit = declared);
     record(format!("units.{channel}"), ConditionStatus::Invalid, &[], Some(required), note)
 }
 
@@ -51,11 +51,13 @@ fn named(spec: &crate::config::procedure::model::ChannelSpec, facts: &Facts<'_>)
     if (factor - 1.0).abs() < 1e-9 && offset.abs() < 1e-9 {
         return None;
     }
-    let note = Note::new("units.contradict")
-        .with("column", format!("`{}`", column.name))
-        .with("stated", stated.text())
-        .with("declared", declared.text())
-        .with("channel", spec.channel.id.clone());
+    let note = note!(
+        "units.contradict",
+        column = format!("`{}`", column.name),
+        stated = stated.text(),
+        declared = declared.text(),
+        channel = spec.channel.id.clone()
+    );
     Some(invalid(&spec.channel.id, declared.text(), note))
 }
 
@@ -80,12 +82,14 @@ fn by_value(position: usize, c: &TemperatureCondition, facts: &Facts<'_>) -> Opt
     };
     let unit = ["degF", "K", "degC"].into_iter().find(|u| near(u))?;
     let meant = Unit::parse(unit).and_then(|u| u.convert(as_read, &inside)).ok()?;
-    let note = Note::new("units.temperature")
-        .with("channel", c.channel.clone())
-        .with("value", as_read)
-        .with("declared", declared.as_str())
-        .with("unit", unit)
-        .with("meant", meant)
-        .with("nominal", Arg::Stated(c.nominal_deg_c));
+    let note = note!(
+        "units.temperature",
+        channel = c.channel.clone(),
+        value = as_read,
+        declared = declared.as_str(),
+        unit,
+        meant,
+        nominal = Arg::Stated(c.nominal_deg_c)
+    );
     Some(invalid(&c.channel, declared, note))
 }

@@ -1,7 +1,7 @@
 //! Whether the warm-up left out was long enough.
 
 use super::facts::{Condition, Facts, record};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 
 pub(super) struct WarmUp;
@@ -37,7 +37,7 @@ impl Condition for WarmUp {
                 observed.push(("residual_deg_h", fact.residual_deg_h));
                 observed.push(("time_constant_s", fact.time_constant_s));
             }
-            let required = Note::new("note.required.warm_up").with("minutes", Arg::Stated(warm_up_s / 60.0));
+            let required = note!("note.required.warm_up", minutes = Arg::Stated(warm_up_s / 60.0));
             records.push(record("warm_up", status, &observed, Some(required), note));
         }
         records

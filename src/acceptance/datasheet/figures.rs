@@ -1,7 +1,7 @@
 //! Figures of a data sheet, as data.
 
 use crate::figure::{Axis, Figure, Layer, Panel, Scale, Style};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::record::{
     DataSheet, SheetCurve, SheetOf, SheetQuantity, SheetScale, SheetTemperatureCurve, SheetUnitCurve,
 };
@@ -46,7 +46,7 @@ fn sigma_tau(curve: &SheetCurve, several: bool) -> Figure {
             y: axis("axis.allan_deviation", "deg/h", Scale::Log),
             layers,
         }],
-        remarks: vec![Note::new("datasheet.figure.sigma_tau_remark").with("n", curve.units.len())],
+        remarks: vec![note!("datasheet.figure.sigma_tau_remark", n = curve.units.len())],
     }
 }
 
@@ -94,7 +94,7 @@ fn over_temperature(curve: &SheetTemperatureCurve, several: bool) -> Figure {
             y: axis("datasheet.axis.bias", "deg/h", Scale::Linear),
             layers,
         }],
-        remarks: vec![Note::new("datasheet.figure.over_temperature_remark").with("n", curve.units.len())],
+        remarks: vec![note!("datasheet.figure.over_temperature_remark", n = curve.units.len())],
     }
 }
 

@@ -14,7 +14,7 @@ mod units;
 pub use rows::apply;
 pub use units::{Refusal, TestedUnit, select};
 
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::lot::free::units_for_largest;
 use crate::lot::tolerance::Promise;
 use crate::record::{DATASHEET_FORMAT, DataSheet, Message, Program, SheetCondition, SheetResult};
@@ -28,13 +28,13 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
     let lots: BTreeSet<&str> = units.iter().map(TestedUnit::lot_name).collect();
     let quantities = quantity::quantities(&units, promise);
     if let Some(n) = units_for_largest(promise).filter(|n| units.len() < *n) {
-        notes.push(
-            Note::new("datasheet.note.largest")
-                .with("n", units.len())
-                .with("needed", n)
-                .with("proportion", 100.0 * promise.proportion)
-                .with("confidence", 100.0 * promise.confidence),
-        );
+        notes.push(note!(
+            "datasheet.note.largest",
+            n = units.len(),
+            needed = n,
+            proportion = 100.0 * promise.proportion,
+            confidence = 100.0 * promise.confidence
+        ));
     }
     DataSheet {
         format: DATASHEET_FORMAT.to_owned(),

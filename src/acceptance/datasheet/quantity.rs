@@ -3,7 +3,7 @@
 use super::outlook::{outlook, risks};
 use super::units::TestedUnit;
 use crate::estimate::{Interval, UpperLimit, normal_quantile};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::lot::population::{
     Central, LEAST_VALUES, LOTS_FOR_SPREAD, Method, NOT_NORMAL, Of, Population, Reading, Side, Unit,
 };
@@ -112,8 +112,7 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
     let (rows, others): (Vec<Row<'_>>, Vec<Row<'_>>) = rows.into_iter().partition(|r| r.told.unit == unit);
     let mut notes: Vec<Note> = vec![];
     if !others.is_empty() {
-        notes
-            .push(Note::new("datasheet.note.other_unit").with("n", others.len()).with("unit", unit.as_str()));
+        notes.push(note!("datasheet.note.other_unit", n = others.len(), unit = unit.as_str()));
     }
     let scale = scale(of.2, &rows);
     let lots = lots(&rows);
@@ -133,7 +132,7 @@ fn quantity(of: Key<'_>, units: &[TestedUnit], promise: Promise) -> Option<Sheet
             say(&mut notes, p, bounded, count, scale);
             notes.extend(said_of_common(common, &rows, scale));
         }
-        None => notes.push(Note::new("datasheet.note.too_few").with("n", valued).with("needed", needed)),
+        None => notes.push(note!("datasheet.note.too_few", n = valued, needed)),
     }
     let back = |v: f64| if scale == SheetScale::Log { v.exp() } else { v };
     let to = |v: f64| if scale == SheetScale::Log { v.ln() } else { v };
@@ -237,7 +236,7 @@ fn on_scale(rows: &[Row<'_>], lots: &[usize], scale: SheetScale, notes: &mut Vec
     let mut known: Vec<f64> = rows.iter().filter_map(|r| r.own(scale)).collect();
     let without = rows.iter().filter(|r| r.value().is_some()).count() - known.len();
     if without > 0 {
-        notes.push(Note::new("datasheet.note.no_interval").with("n", without));
+        notes.push(note!("datasheet.note.no_interval", n = without));
     }
     let usual = crate::numeric::order::upper_median(&mut known);
     let to = |v: f64| if scale == SheetScale::Log { v.ln() } else { v };
@@ -285,13 +284,13 @@ fn method(method: Method) -> &'static str {
 /// What must be known with the quantity.
 fn say(notes: &mut Vec<Note>, p: &Population, bounded: usize, lots: usize, scale: SheetScale) {
     if bounded > 0 {
-        notes.push(Note::new("datasheet.note.bounded").with("n", bounded));
+        notes.push(note!("datasheet.note.bounded", n = bounded));
     }
     if p.below_values() > 0 {
-        notes.push(Note::new("datasheet.note.common_bound").with("n", p.below_values()));
+        notes.push(note!("datasheet.note.common_bound", n = p.below_values()));
     }
     if lots > 1 && lots < LOTS_FOR_SPREAD {
-        notes.push(Note::new("datasheet.note.few_lots").with("n", lots).with("needed", LOTS_FOR_SPREAD));
+        notes.push(note!("datasheet.note.few_lots", n = lots, needed = LOTS_FOR_SPREAD));
     }
     if p.measurement() > p.between_units() {
         notes.push("datasheet.note.noisy".into());

@@ -1,7 +1,7 @@
 //! A data sheet with the rows that a sheet file chooses.
 
 use crate::config::sheet::{SheetFile, SheetRow};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::record::{DataSheet, Message, SheetQuantity, SheetScale};
 use crate::units::Unit;
 
@@ -13,8 +13,7 @@ pub fn apply(sheet: &mut DataSheet, file: &SheetFile) {
         let mut found = all.iter().filter(|q| is_of(q, row)).cloned().peekable();
         if found.peek().is_none() {
             let channel = row.channel.clone().map(|c| format!(" ({c})")).unwrap_or_default();
-            let note =
-                Note::new("datasheet.note.no_row").with("id", row.measurand.id).with("channel", channel);
+            let note = note!("datasheet.note.no_row", id = row.measurand.id, channel);
             sheet.notes.push(Message::from(note));
         }
         for mut quantity in found {
@@ -22,7 +21,7 @@ pub fn apply(sheet: &mut DataSheet, file: &SheetFile) {
             quantity.footnote.clone_from(&row.footnote);
             let converted = row.unit.as_ref().map(|unit| convert(&mut quantity, unit));
             if converted == Some(false) {
-                let note = Note::new("datasheet.note.other_dimension").with("unit", quantity.unit.as_str());
+                let note = note!("datasheet.note.other_dimension", unit = quantity.unit.as_str());
                 quantity.notes.push(Message::from(note));
             }
             sheet.quantities.push(quantity);

@@ -2,7 +2,7 @@
 
 use super::compensation_table::Table;
 use crate::estimate::Verdict;
-use crate::i18n::{Arg, LocalText, Note};
+use crate::i18n::{Arg, LocalText, Note, note};
 use crate::output::sha256;
 use crate::record::{ProcedureRecord, RunRecord, SheetProcedure, read};
 use std::collections::BTreeSet;
@@ -79,7 +79,7 @@ impl TestedUnit {
         let path = file.display().to_string();
         let serial = result.unit_under_test.serial.as_deref().map(str::trim).unwrap_or_default().to_owned();
         if serial.is_empty() {
-            return Err(Note::new("datasheet.refused.no_serial").with("path", path));
+            return Err(note!("datasheet.refused.no_serial", path));
         }
         Ok(TestedUnit { serial, path, sha256: sha256(bytes), result, tables })
     }
@@ -151,12 +151,12 @@ pub fn select(results: Vec<TestedUnit>) -> Result<Selected, Refusal> {
     let revisions: BTreeSet<&str> = procedures.iter().map(|p| p.revision.as_str()).collect();
     if revisions.len() > 1 {
         let list = revisions.iter().copied().collect::<Vec<_>>().join(", ");
-        notes.push(Note::new("datasheet.note.revisions").with("revisions", list));
+        notes.push(note!("datasheet.note.revisions", revisions = list));
     }
     let lots: BTreeSet<&str> = units.iter().map(TestedUnit::lot_name).collect();
     notes.push(match lots.len() {
         1 => "datasheet.note.one_lot".into(),
-        n => Note::new("datasheet.note.lots").with("n", n),
+        n => note!("datasheet.note.lots", n),
     });
     let judged = |u: &TestedUnit| {
         u.result.measurands.iter().any(|m| m.limit.is_some()) || u.result.verdict == Verdict::Pass

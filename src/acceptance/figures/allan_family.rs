@@ -2,7 +2,7 @@
 
 use super::draw;
 use crate::figure::{Figure, Style};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::measurand::GyroEvidence;
 use crate::noise::family::Estimator;
 use crate::noise::intervals::{BoundedPoint, bounded};
@@ -39,7 +39,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     });
     let drawn = of_curves(&shown.collect::<Vec<_>>(), &gyro.channel, gyro.several, "deg/h");
     let hours = gyro.longest_stretch_s / 3600.0;
-    Some(Figure { remarks: vec![Note::new("figure.remark.record").with("hours", hours)], ..drawn })
+    Some(Figure { remarks: vec![note!("figure.remark.record", hours)], ..drawn })
 }
 
 /// A deviation at averaging times in s.

@@ -4,7 +4,7 @@
 use super::draw;
 use crate::estimate::normal_quantile;
 use crate::figure::{Figure, Panel, Style};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::measurand::GyroEvidence;
 use crate::noise::autocorrelation::{Autocorrelation, of_series, of_spectrum};
 use crate::noise::residual::ResidualCorrelation;
@@ -43,7 +43,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         if let Some(acf) = of_series(&coarse, LONG_LAGS.min(coarse.len() / 4)) {
             let block_s = gyro.tau0_s * blocks.block_len as f64 * merge as f64;
             panels.push(panel(&acf, block_s, "axis.lag_of_means", false));
-            remarks.push(Note::new("figure.remark.autocorrelation_blocks").with("seconds", block_s));
+            remarks.push(note!("figure.remark.autocorrelation_blocks", seconds = block_s));
             if let (Some(left), true) = (&gyro.goodness.correlation, blocks.block_len > 1) {
                 let lags = left.coefficients.len();
                 // Far shorter lags would be one stroke at the edge of the axis above.
@@ -51,7 +51,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
                     lags as f64 * left.step_s >= MIN_AXIS_SHARE * (acf.coefficients.len() as f64 * block_s);
                 let lag = if spans { "axis.lag_of_means" } else { "lag_axis.of_residual" };
                 panels.push(residual(left, lags, lag));
-                remarks.push(Note::new("figure.fit.residual_blocks").with("seconds", left.step_s));
+                remarks.push(note!("figure.fit.residual_blocks", seconds = left.step_s));
             }
         }
     }

@@ -2,7 +2,7 @@
 
 use super::draw;
 use crate::figure::{Figure, Style};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::measurand::GyroEvidence;
 
 /// Draws the histogram; `None` when the channel never changes.
@@ -42,12 +42,12 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
                 draw::line(normal, Style::Model, "figure.legend.normal"),
             ],
         )],
-        vec![
-            Note::new("figure.remark.moments")
-                .with("sigma", sigma)
-                .with("skewness", h.skewness)
-                .with("kurtosis", h.excess_kurtosis)
-                .with("n", h.samples),
-        ],
+        vec![note!(
+            "figure.remark.moments",
+            sigma,
+            skewness = h.skewness,
+            kurtosis = h.excess_kurtosis,
+            n = h.samples
+        )],
     ))
 }

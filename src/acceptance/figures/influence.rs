@@ -69,7 +69,7 @@ fn over_level(found: &Comparison, k: usize, name: &str) -> Panel {
         ),
     ];
     if !name.is_empty() {
-        let text = crate::i18n::Note::new("figure_influence.axis_name").with("axis", name);
+        let text = crate::i18n::note!("figure_influence.axis_name", axis = name);
         layers.push(draw::label((high, 0.0), text));
     }
     draw::panel(

@@ -3,7 +3,7 @@
 use super::draw;
 use crate::estimate::normal_quantile;
 use crate::figure::{Figure, Style};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, note};
 use crate::rate_table::TableRun;
 use crate::rate_table::blocks::TURN_ARCSEC;
 use crate::rate_table::scale_factor::ScaleFactor;
@@ -93,7 +93,7 @@ pub fn figure(run: &TableRun, channel: &ScaleFactor, several: bool) -> Option<Fi
     ];
     for i in 0..4 {
         let degrees = 90.0 * f64::from(i);
-        let text = Note::new("figure_polar.angle").with("angle", Arg::decimals(degrees, 0));
+        let text = note!("figure_polar.angle", angle = Arg::decimals(degrees, 0));
         layers.push(draw::label(place(degrees.to_radians(), 1.15 * largest), text));
     }
     Some(draw::figure(
@@ -102,6 +102,6 @@ pub fn figure(run: &TableRun, channel: &ScaleFactor, several: bool) -> Option<Fi
         &channel.channel,
         several,
         vec![draw::panel(draw::polar("figure_polar.axis", ""), draw::polar("figure_polar.axis", ""), layers)],
-        vec![Note::new("figure_polar.rings").with("value", Arg::figures(largest, 2))],
+        vec![note!("figure_polar.rings", value = Arg::figures(largest, 2))],
     ))
 }

@@ -3,7 +3,7 @@
 use super::draw;
 use crate::estimate::normal_quantile;
 use crate::figure::{Figure, Style};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::rate_table::known::Positions;
 
 /// Draws the positions of a channel.
@@ -27,7 +27,7 @@ pub fn figure(found: &Positions, several: bool) -> Figure {
         if found.means[..i].iter().all(|other| (other.earth - p.earth).abs() > room) {
             let names: Vec<&str> =
                 means().filter(|o| (o.earth - p.earth).abs() <= room).map(|o| o.name.as_str()).collect();
-            let text = Note::new("figure_positions.name").with("name", names.join(", "));
+            let text = note!("figure_positions.name", name = names.join(", "));
             layers.push(draw::label((p.earth, p.output), text));
         }
     }

@@ -2,7 +2,7 @@
 
 use super::draw;
 use crate::figure::{Figure, Style};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, note};
 use crate::measurand::GyroEvidence;
 
 /// Width of a bar in standard deviations.
@@ -55,14 +55,14 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
                 draw::line(normal, Style::Model, "figure.legend.normal"),
             ],
         )],
-        vec![
-            Note::new("figure.fit.residual_moments")
-                .with("n", amplitude.values)
-                .with("seconds", whitened.step_s)
-                .with("skewness", number(amplitude.skewness))
-                .with("kurtosis", number(amplitude.excess_kurtosis))
-                .with("beyond", amplitude.beyond)
-                .with("expected", number(amplitude.expected_beyond)),
-        ],
+        vec![note!(
+            "figure.fit.residual_moments",
+            n = amplitude.values,
+            seconds = whitened.step_s,
+            skewness = number(amplitude.skewness),
+            kurtosis = number(amplitude.excess_kurtosis),
+            beyond = amplitude.beyond,
+            expected = number(amplitude.expected_beyond)
+        )],
     ))
 }

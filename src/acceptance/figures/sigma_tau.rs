@@ -3,7 +3,7 @@
 use super::{draw, parts, sigma_tau_limits};
 use crate::estimate::normal_quantile;
 use crate::figure::{Figure, Layer, Style};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand::GyroEvidence;
 use crate::noise::composite::{Part, Propagated};
 use crate::noise::data::NoiseType;
@@ -81,7 +81,7 @@ pub fn figure(gyro: &GyroEvidence, highest: &dyn Fn(&str) -> Option<f64>) -> Fig
             draw::log("axis.allan_deviation", "deg/h"),
             layers,
         )],
-        vec![Note::new("figure.remark.record").with("hours", longest_s / 3600.0)],
+        vec![note!("figure.remark.record", hours = longest_s / 3600.0)],
     )
 }
 

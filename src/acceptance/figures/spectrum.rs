@@ -3,7 +3,7 @@
 use super::{draw, parts};
 use crate::estimate::chi_square_quantile;
 use crate::figure::{Figure, Layer, Panel, Style};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, note};
 use crate::measurand::GyroEvidence;
 use crate::noise::composite::Damped;
 use crate::noise::residual::BandRatio;
@@ -89,7 +89,7 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         &gyro.channel,
         gyro.several,
         panels,
-        vec![Note::new("figure.remark.resolution").with("hz", step_hz)],
+        vec![note!("figure.remark.resolution", hz = step_hz)],
     ))
 }
 
@@ -98,7 +98,7 @@ fn line_labels(gyro: &GyroEvidence, at: &dyn Fn(f64) -> Option<(f64, f64)>) -> V
     let mut strongest: Vec<_> = gyro.lines.iter().filter(|l| l.harmonic_of.is_none()).collect();
     strongest.sort_by(|a, b| b.amplitude_deg_h.total_cmp(&a.amplitude_deg_h));
     let label = |frequency_hz: f64| {
-        let text = Note::new("figure_label.line").with("frequency", Arg::figures(frequency_hz, 4));
+        let text = note!("figure_label.line", frequency = Arg::figures(frequency_hz, 4));
         Some(draw::label(at(frequency_hz)?, text))
     };
     strongest.into_iter().take(MAX_LABELS).filter_map(|l| label(l.frequency_hz)).collect()

@@ -3,7 +3,7 @@
 use super::draw;
 use crate::config::procedure::Procedure;
 use crate::figure::{Figure, Layer, Panel, Style};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand::GyroEvidence;
 use crate::temperature::SegmentKind;
 use crate::temperature::course::{legendre, legendre_slopes, rate_per_minute};
@@ -44,7 +44,7 @@ pub fn figures(
         ));
     }
     if let Some(a) = analysis.filter(|_| wanted("temperature_residual")) {
-        let remark = Note::new("figure_thermal.averaged").with("average_s", Arg::figures(a.average_s, 4));
+        let remark = note!("figure_thermal.averaged", average_s = Arg::figures(a.average_s, 4));
         out.push(make(
             "temperature_residual",
             "figure.title.temperature_residual",
@@ -115,7 +115,7 @@ fn over_temperature(a: &Analysis) -> (Vec<Panel>, Vec<Note>) {
     ];
     let panel =
         draw::panel(draw::linear("axis.temperature", "degC"), draw::linear("axis.rate", "deg/h"), layers);
-    let remark = Note::new("figure_thermal.averaged").with("average_s", Arg::figures(merged.block_s, 4));
+    let remark = note!("figure_thermal.averaged", average_s = Arg::figures(merged.block_s, 4));
     (vec![panel], vec![remark, noise_of_fit(p.best.fitted.noise, a.course.len() as f64 * a.course.block_s)])
 }
 
@@ -127,10 +127,12 @@ fn noise_of_fit([n, b, k]: [f64; 3], length_s: f64) -> Note {
     let seen = |value: f64, moves: f64, key: &'static str, none: &'static str| {
         if moves > least { Note::new(key).with("value", Arg::figures(value, 3)) } else { none.into() }
     };
-    Note::new("figure_thermal.noise")
-        .with("n", Arg::figures(n, 3))
-        .with("b", seen(b, b, "figure_thermal.flicker", "figure_thermal.no_flicker"))
-        .with("k", seen(k, k * hours.sqrt(), "figure_thermal.walk", "figure_thermal.no_walk"))
+    note!(
+        "figure_thermal.noise",
+        n = Arg::figures(n, 3),
+        b = seen(b, b, "figure_thermal.flicker", "figure_thermal.no_flicker"),
+        k = seen(k, k * hours.sqrt(), "figure_thermal.walk", "figure_thermal.no_walk")
+    )
 }
 
 fn decimated(points: Vec<(f64, f64)>) -> Vec<(f64, f64)> {

@@ -4,7 +4,7 @@ use super::draw;
 use crate::acceptance::condition::stability_track::Band;
 use crate::acceptance::test_kind::Reading;
 use crate::figure::{Figure, Layer, Panel, Style};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::noise::envelope::Envelope;
 use crate::record::Window;
 use crate::recording::Role;
@@ -98,7 +98,7 @@ fn panels(
     let mut remarks = vec![];
     if rate.bin_len > 1 {
         let seconds = rate.bin_len as f64 * tau0_s;
-        remarks.push(Note::new("figure.remark.averaged").with("seconds", seconds));
+        remarks.push(note!("figure.remark.averaged", seconds));
     }
     (panels, remarks)
 }

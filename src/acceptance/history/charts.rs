@@ -2,7 +2,7 @@
 
 use super::selection::{Group, Selection, Tested};
 use crate::estimate::{Limits, normal_quantile};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::lot::capability::{self, Capability};
 use crate::lot::control_chart::{Chart, LEAST_VALUES, Measured, SETTLED_VALUES};
 use crate::record::{
@@ -58,14 +58,10 @@ fn chart(
     let chart = Chart::of(&measured);
     match &chart {
         None if points.len() < LEAST_VALUES => {
-            notes.push(
-                Note::new("history.note.few_values").with("n", points.len()).with("needed", LEAST_VALUES),
-            );
+            notes.push(note!("history.note.few_values", n = points.len(), needed = LEAST_VALUES));
         }
         Some(_) if points.len() < SETTLED_VALUES => {
-            notes.push(
-                Note::new("history.note.unsettled").with("n", points.len()).with("needed", SETTLED_VALUES),
-            );
+            notes.push(note!("history.note.unsettled", n = points.len(), needed = SETTLED_VALUES));
         }
         _ => {}
     }
@@ -123,7 +119,7 @@ fn capable(
 ) -> Option<HistoryCapability> {
     let limits = limits?;
     if points.len() < capability::LEAST_VALUES {
-        let note = Note::new("history.note.no_capability").with("n", points.len());
+        let note = note!("history.note.no_capability", n = points.len());
         notes.push(note.with("needed", capability::LEAST_VALUES));
         return None;
     }

@@ -6,7 +6,7 @@ pub mod figures;
 mod selection;
 mod units;
 
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{
     HISTORY_FORMAT, HistoryAsked, HistoryChart, HistoryChartOf, HistoryRecord, HistoryResult, Message,
     Program,
@@ -47,19 +47,19 @@ fn notes(selection: &Selection<'_>, charts: &[HistoryChart]) -> Vec<Note> {
         .iter()
         .filter(|c| c.of == HistoryChartOf::Bench && c.control.as_ref().is_some_and(|c| !c.in_control))
         .map(|c| {
-            Note::new("history.note.bench")
-                .with("station", c.station.clone().unwrap_or_default())
-                .with("serial", c.serial.clone().unwrap_or_default())
-                .with("quantity", Arg::key("measurand", &c.quantity.measurand))
-                .into()
+            note!(
+                "history.note.bench",
+                station = c.station.clone().unwrap_or_default(),
+                serial = c.serial.clone().unwrap_or_default(),
+                quantity = Arg::key("measurand", &c.quantity.measurand)
+            )
+            .into()
         })
         .collect();
     if !wander.is_empty() {
         let n = wander.len();
         let shown = wander.into_iter().take(NAMED).collect();
-        notes.push(
-            Note::new("history.note.wander").with("n", n).with("benches", Arg::Several(shown, "; ".into())),
-        );
+        notes.push(note!("history.note.wander", n, benches = Arg::Several(shown, "; ".into())));
     }
     let counts = counts::counts(selection);
     for (key, n) in [

@@ -6,7 +6,7 @@ use crate::acceptance::condition::stability_track::{StabilityFacts, StabilityTra
 use crate::acceptance::reading::tidy;
 use crate::criticism;
 use crate::estimate::Objection;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::ingest::{IngestError, IngestErrorKind, Plan, Source, StreamReport, TimeBaseSpec, prepare};
 use crate::measurand::GyroEvidence;
 use crate::measurand::evidence::Course;
@@ -163,7 +163,7 @@ fn time_base(
 
 /// Why a time column cannot serve.
 fn why(column: &str, reason: impl Into<Arg>) -> Note {
-    Note::new("inspect.of_column").with("column", column).with("what", reason)
+    note!("inspect.of_column", column, what = reason)
 }
 
 fn spec(time: &TimeBase) -> TimeBaseSpec {

@@ -1,6 +1,6 @@
 //! Quantities with a unit that reads well.
 
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::units::RateUnit;
 
 fn amount(key: &'static str, value: f64, digits: usize) -> Arg {
@@ -32,7 +32,7 @@ pub(super) fn time(s: f64) -> Arg {
 
 /// A length of time in s and in h.
 pub(super) fn time_both(s: f64) -> Arg {
-    Note::new("amount.s_and_h").with("s", plain(s, 4)).with("h", plain(s / 3600.0, 3)).into()
+    note!("amount.s_and_h", s = plain(s, 4), h = plain(s / 3600.0, 3)).into()
 }
 
 /// A number with significant digits and without idle zeros behind the decimal mark.

@@ -5,7 +5,7 @@ use super::columns::{Content, Listed};
 use super::layout::{CONTINUED, Page, word};
 use super::quantity::{count, plain, time};
 use super::{show_gyro, support};
-use crate::i18n::{Arg, Lang, Localize, Note, decimal};
+use crate::i18n::{Arg, Lang, Localize, Note, decimal, note};
 use crate::ingest::{ChannelFacts, Packing, Source};
 use crate::recording::Role;
 use crate::recording::clock::Measured;
@@ -42,7 +42,7 @@ fn file(page: &mut Page, source: &Source, found: &Inspection) {
         joined(page, found);
     }
     if found.report.facts.bytes > 0 && found.report.files.len() < 2 {
-        let size = Note::new("inspect.bytes").with("bytes", count(found.report.facts.bytes));
+        let size = note!("inspect.bytes", bytes = count(found.report.facts.bytes));
         page.row(word("inspect.size"), size);
         page.row("SHA-256", found.report.facts.sha256.as_str());
     }
@@ -54,19 +54,21 @@ fn file(page: &mut Page, source: &Source, found: &Inspection) {
         page.row(label, format!("{key}: {value}"));
     }
     for serial in source.stated_serials() {
-        page.row(CONTINUED, Note::new("inspect.stated.serial").with("serial", serial));
+        page.row(CONTINUED, note!("inspect.stated.serial", serial));
     }
 }
 
 /// The files of a recording of several.
 fn joined(page: &mut Page, found: &Inspection) {
     for file in &found.report.files {
-        let note = Note::new("time_base.file")
-            .with("file", file.path.display().to_string())
-            .with("rows", count(file.facts.rows))
-            .with("start", file.start.clone().unwrap_or_else(|| "-".to_owned()))
-            .with("length", if found.time.is_known() { time(file.duration_s) } else { "-".into() })
-            .with("sha256", file.facts.sha256.as_str());
+        let note = note!(
+            "time_base.file",
+            file = file.path.display().to_string(),
+            rows = count(file.facts.rows),
+            start = file.start.clone().unwrap_or_else(|| "-".to_owned()),
+            length = if found.time.is_known() { time(file.duration_s) } else { "-".into() },
+            sha256 = file.facts.sha256.as_str()
+        );
         page.row(word("time_base.joined"), note);
     }
 }
@@ -174,7 +176,7 @@ fn remark(column: &Listed, facts: Option<&ChannelFacts>) -> Option<Note> {
     }
     let unitless = matches!(column.guess.role, Role::Auxiliary | Role::Counter);
     let guessed = !column.guess.unit_is_named && !unitless;
-    guessed.then(|| Note::new("inspect.unit_guessed").with("reason", column.guess.reason.clone()))
+    guessed.then(|| note!("inspect.unit_guessed", reason = column.guess.reason.clone()))
 }
 
 fn time_base(page: &mut Page, found: &Inspection) {
@@ -183,7 +185,7 @@ fn time_base(page: &mut Page, found: &Inspection) {
     let source = |page: &mut Page, note: Note| page.row(word("inspect.source"), note);
     match &found.time {
         TimeBase::Rows(Some(why)) | TimeBase::Declared(_, Some(why)) => {
-            source(page, Note::new("inspect.stamps_unusable").with("why", why.clone()));
+            source(page, note!("inspect.stamps_unusable", why = why.clone()));
         }
         TimeBase::Rows(None) | TimeBase::Declared(_, None) => {}
         TimeBase::Stamps(name) => {
@@ -193,16 +195,15 @@ fn time_base(page: &mut Page, found: &Inspection) {
         }
     }
     if let TimeBase::Rows(_) = &found.time {
-        let note = Note::new("inspect.rows_counted").with("rows", count(report.rows));
+        let note = note!("inspect.rows_counted", rows = count(report.rows));
         page.row(word("inspect.rate"), note);
         return;
     }
     if let TimeBase::Declared(hz, _) = &found.time {
-        source(page, Note::new("inspect.declared").with("rate", plain(*hz, 6)));
+        source(page, note!("inspect.declared", rate = plain(*hz, 6)));
     }
-    let rate = Note::new("inspect.rate_is")
-        .with("rate", plain(1.0 / found.tau0_s, 6))
-        .with("interval", interval(found.tau0_s));
+    let rate =
+        note!("inspect.rate_is", rate = plain(1.0 / found.tau0_s, 6), interval = interval(found.tau0_s));
     page.row(word("inspect.rate"), rate);
     let stamped = matches!(found.time, TimeBase::Stamps(_));
     if stamped {
@@ -218,7 +219,7 @@ fn time_base(page: &mut Page, found: &Inspection) {
 fn rate_of_stamps(page: &mut Page, found: &Inspection) {
     if let Some(given) = found.declared_hz {
         let off = (given * found.tau0_s - 1.0) * 100.0;
-        let note = Note::new("inspect.rate_given").with("given", plain(given, 6)).with("off", plain(off, 2));
+        let note = note!("inspect.rate_given", given = plain(given, 6), off = plain(off, 2));
         page.row(CONTINUED, note);
     }
     if let Some(clock) = &found.report.clock {
@@ -236,26 +237,26 @@ fn stamps(page: &mut Page, found: &Inspection) {
         page.row(word("inspect.start"), start.as_str());
     } else {
         let start = decimals(report.first_stamp_s, 3);
-        page.row(word("inspect.start"), Note::new("inspect.start_at").with("s", start));
+        page.row(word("inspect.start"), note!("inspect.start_at", s = start));
     }
     if let Some(jitter) = report.jitter_s {
         let note = if jitter > 1e-6 * found.tau0_s {
-            Note::new("inspect.jitter_is")
-                .with("jitter", time(jitter))
-                .with("percent", plain(100.0 * jitter / found.tau0_s, 2))
+            note!(
+                "inspect.jitter_is",
+                jitter = time(jitter),
+                percent = plain(100.0 * jitter / found.tau0_s, 2)
+            )
         } else {
-            Note::new("inspect.jitter_none")
+            note!("inspect.jitter_none")
         };
         page.row(word("inspect.jitter"), note);
     }
     let i = &report.integrity;
     let note = match (i.gaps, i.duplicate_timestamps, i.backward_timestamps) {
-        (0, 0, 0) => Note::new("inspect.unbroken"),
-        (gaps, duplicate, backward) => Note::new("inspect.broken")
-            .with("gaps", gaps)
-            .with("missing", i.missing_samples)
-            .with("duplicate", duplicate)
-            .with("backward", backward),
+        (0, 0, 0) => note!("inspect.unbroken"),
+        (gaps, duplicate, backward) => {
+            note!("inspect.broken", gaps, missing = i.missing_samples, duplicate, backward)
+        }
     };
     page.row(word("inspect.breaks"), note);
     list(page, found, &["gap", "duplicate_timestamp", "backward_timestamp", "rollover"]);
@@ -265,13 +266,13 @@ fn stamps(page: &mut Page, found: &Inspection) {
 fn clock_facts(page: &mut Page, clock: &Measured) {
     let ppm = clock.uncertainty_s / clock.interval_s * 1e6;
     if ppm > 0.001 {
-        page.row(CONTINUED, Note::new("time_base.uncertainty").with("ppm", plain(ppm, 2)));
+        page.row(CONTINUED, note!("time_base.uncertainty", ppm = plain(ppm, 2)));
     }
     if let (Some(drift), Some(sigma)) = (clock.drift, clock.drift_uncertainty)
         && drift.abs() > 4.0 * sigma
         && drift.abs() > 1e-7
     {
-        let note = Note::new("time_base.drift").with("ppm", plain(drift * 1e6, 2));
+        let note = note!("time_base.drift", ppm = plain(drift * 1e6, 2));
         page.row(CONTINUED, note.with("sigma", plain(sigma * 1e6, 2)));
     }
 }
@@ -322,19 +323,21 @@ fn list(page: &mut Page, found: &Inspection, kinds: &[&str]) {
     let timed = found.time.is_known();
     for fault in all.take(MAX_LISTED) {
         let place = match fault.time_s.filter(|_| timed) {
-            Some(t) => Note::new("inspect.fault_at_time").with("row", fault.row).with("time", decimals(t, 6)),
-            None => Note::new("inspect.fault_at").with("row", fault.row),
+            Some(t) => note!("inspect.fault_at_time", row = fault.row, time = decimals(t, 6)),
+            None => note!("inspect.fault_at", row = fault.row),
         };
         let channel = fault.channel.as_deref().filter(|c| !fault.seen.say(Lang::En).contains(c));
         let what = Arg::from(fault.seen.clone());
         let row = match channel {
-            Some(channel) => Note::new("inspect.fault_of").with("channel", channel),
-            None => Note::new("inspect.fault_row"),
+            Some(channel) => note!("inspect.fault_of", channel),
+            None => note!("inspect.fault_row"),
         };
         let row = match &fault.file {
-            Some(file) => Note::new("time_base.fault_in")
-                .with("file", file.as_str())
-                .with("row", row.with("place", place).with("what", what)),
+            Some(file) => note!(
+                "time_base.fault_in",
+                file = file.as_str(),
+                row = row.with("place", place).with("what", what)
+            ),
             None => row.with("place", place).with("what", what),
         };
         page.row(CONTINUED, row);

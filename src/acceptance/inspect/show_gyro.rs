@@ -3,7 +3,7 @@
 use super::collect::{DrivenChannel, Gyro, Inspection};
 use super::layout::{CONTINUED, Page, word};
 use super::quantity::{plain, rate, rates, time};
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand::ANGLE_RANDOM_WALK;
 use crate::noise::family::Estimator;
 use crate::noise::lines::SpectralLine;
@@ -31,17 +31,17 @@ pub(super) fn gyros(page: &mut Page, found: &Inspection) {
     }
     if found.gyros.is_empty() {
         page.heading(word("inspect.gyro"));
-        page.row(word("inspect.found"), Note::new("inspect.gyro_needs_rate"));
+        page.row(word("inspect.found"), note!("inspect.gyro_needs_rate"));
     }
     for gyro in &found.gyros {
-        page.heading(Note::new("inspect.gyro_channel").with("name", gyro.name.as_str()));
+        page.heading(note!("inspect.gyro_channel", name = gyro.name.as_str()));
         one(page, found, gyro);
     }
 }
 
 fn one(page: &mut Page, found: &Inspection, gyro: &Gyro) {
     if gyro.digest.samples < 2 {
-        page.row(word("inspect.found"), Note::new("inspect.gyro_no_value"));
+        page.row(word("inspect.found"), note!("inspect.gyro_no_value"));
         return;
     }
     let key = match gyro.motion {
@@ -52,7 +52,7 @@ fn one(page: &mut Page, found: &Inspection, gyro: &Gyro) {
     let still = !gyro.motion.is_motion();
     page.row(word("inspect.mean"), Note::new(key).with("mean", rate(gyro.digest.mean)));
     if mean_taken_out(gyro) {
-        page.row(CONTINUED, Note::new("inspect.mean_taken_out"));
+        page.row(CONTINUED, note!("inspect.mean_taken_out"));
     }
     page.row(word("inspect.motion"), motion(gyro));
     if still {
@@ -63,28 +63,30 @@ fn one(page: &mut Page, found: &Inspection, gyro: &Gyro) {
         };
         page.row(word("inspect.noise"), note);
     } else if let Some(quiet) = gyro.quietest_deg_h {
-        let note = Note::new("inspect.noise_quietest").with("sigma", rate(quiet));
+        let note = note!("inspect.noise_quietest", sigma = rate(quiet));
         page.row(word("inspect.noise"), note);
     }
     let sample_noise = if still { sample_deviation(gyro) } else { gyro.quietest_deg_h.unwrap_or(0.0) };
     let step = found.report.channels.get(gyro.slot).and_then(|c| c.values.quantization_step);
     if let Some(step) = step.filter(|s| *s > 1e-3 * sample_noise) {
-        let note = Note::new("inspect.step_is").with("step", rate(step));
+        let note = note!("inspect.step_is", step = rate(step));
         let mut told = vec![Arg::from(note)];
         if sample_noise > 0.0 {
             let ratio = plain(step / sample_noise, 2);
-            told.push(Note::new("inspect.step_ratio").with("ratio", ratio).into());
+            told.push(note!("inspect.step_ratio", ratio).into());
         }
         page.row(word("inspect.step"), Arg::Several(told, " ".into()));
     }
     page.row(word("inspect.lines"), lines(gyro));
     let swing = gyro.angle.max_deg - gyro.angle.min_deg;
     if let Motion::Moved { .. } = gyro.motion {
-        let note = Note::new("inspect.angle_is")
-            .with("end", plain(gyro.angle.end_deg, 4))
-            .with("low", plain(gyro.angle.min_deg, 4))
-            .with("high", plain(gyro.angle.max_deg, 4))
-            .with("swing", plain(swing, 4));
+        let note = note!(
+            "inspect.angle_is",
+            end = plain(gyro.angle.end_deg, 4),
+            low = plain(gyro.angle.min_deg, 4),
+            high = plain(gyro.angle.max_deg, 4),
+            swing = plain(swing, 4)
+        );
         page.row(word("inspect.angle"), note);
     }
 }
@@ -104,17 +106,15 @@ fn mean_taken_out(gyro: &Gyro) -> bool {
 fn motion(gyro: &Gyro) -> Note {
     match gyro.motion {
         Motion::Rest { scatter_deg_h, beyond_noise } if beyond_noise > 3.0 => {
-            Note::new("inspect.at_rest_drifting")
-                .with("scatter", rate(scatter_deg_h))
-                .with("ratio", plain(beyond_noise, 2))
+            note!("inspect.at_rest_drifting", scatter = rate(scatter_deg_h), ratio = plain(beyond_noise, 2))
         }
-        Motion::Rest { .. } => Note::new("inspect.at_rest"),
-        Motion::Carried => Note::new("inspect.carried"),
-        Motion::Slow { scatter_deg_h } => Note::new("inspect.slow").with("scatter", rate(scatter_deg_h)),
-        Motion::Moved { scatter_deg_h, farthest_deg_h } => Note::new("inspect.moved")
-            .with("scatter", rate(scatter_deg_h))
-            .with("farthest", rate(farthest_deg_h)),
-        Motion::Unknown => Note::new("inspect.motion_unknown"),
+        Motion::Rest { .. } => note!("inspect.at_rest"),
+        Motion::Carried => note!("inspect.carried"),
+        Motion::Slow { scatter_deg_h } => note!("inspect.slow", scatter = rate(scatter_deg_h)),
+        Motion::Moved { scatter_deg_h, farthest_deg_h } => {
+            note!("inspect.moved", scatter = rate(scatter_deg_h), farthest = rate(farthest_deg_h))
+        }
+        Motion::Unknown => note!("inspect.motion_unknown"),
     }
 }
 
@@ -129,12 +129,12 @@ pub(super) fn described(gyro: &Gyro) -> bool {
 /// What a check contradicts of a quantity.
 pub(super) fn contradicted(gyro: &Gyro, measurand: &str) -> Option<Note> {
     let objection = gyro.objections.iter().find(|o| o.finding.measurands.contains(&measurand))?;
-    Some(
-        Note::new("inspect.contradicted")
-            .with("check", Arg::key("criticism", objection.check))
-            .with("found", objection.finding.found.clone())
-            .with("advice", objection.finding.advice.clone()),
-    )
+    Some(note!(
+        "inspect.contradicted",
+        check = Arg::key("criticism", objection.check),
+        found = objection.finding.found.clone(),
+        advice = objection.finding.advice.clone()
+    ))
 }
 
 /// What the Allan deviation reads where no model holds: at one sample, 1, 10 and 100 s, as far as T/5.
@@ -151,30 +151,33 @@ fn allan(found: &Inspection, gyro: &Gyro) -> Note {
             continue;
         };
         last = p.m;
-        let note = Note::new("inspect.allan_at")
-            .with("sigma", rate(p.deviation))
-            .with("tau", time(p.m as f64 * found.tau0_s));
+        let note =
+            note!("inspect.allan_at", sigma = rate(p.deviation), tau = time(p.m as f64 * found.tau0_s));
         shown.push(note.into());
     }
-    Note::new("inspect.noise_undescribed")
-        .with("misfit", plain(gyro.identification.misfit.per_dof, 2))
-        .with("points", if shown.is_empty() { "-".into() } else { Arg::Several(shown, ", ".into()) })
+    note!(
+        "inspect.noise_undescribed",
+        misfit = plain(gyro.identification.misfit.per_dof, 2),
+        points = if shown.is_empty() { "-".into() } else { Arg::Several(shown, ", ".into()) }
+    )
 }
 
 fn noise(found: &Inspection, gyro: &Gyro) -> Note {
     let estimate = gyro.identification.read_angle_random_walk();
     let length = time(gyro.digest.samples as f64 * found.tau0_s);
     match (estimate.value, estimate.interval95(), &estimate.upper_limit) {
-        (Some(n), Some(interval), _) => Note::new("inspect.noise_is")
-            .with("n", plain(n, 3))
-            .with("low", plain(interval.low, 3))
-            .with("high", plain(interval.high, 3))
-            .with("length", length),
-        (Some(n), None, _) => Note::new("inspect.noise_about").with("n", plain(n, 3)).with("length", length),
+        (Some(n), Some(interval), _) => note!(
+            "inspect.noise_is",
+            n = plain(n, 3),
+            low = plain(interval.low, 3),
+            high = plain(interval.high, 3),
+            length
+        ),
+        (Some(n), None, _) => note!("inspect.noise_about", n = plain(n, 3), length),
         (None, _, Some(limit)) => {
-            Note::new("inspect.noise_below").with("limit", plain(limit.value, 3)).with("length", length)
+            note!("inspect.noise_below", limit = plain(limit.value, 3), length)
         }
-        (None, _, None) => Note::new("inspect.noise_unknown").with("length", length),
+        (None, _, None) => note!("inspect.noise_unknown", length),
     }
 }
 
@@ -196,16 +199,16 @@ fn lines(gyro: &Gyro) -> Arg {
         return word(key);
     }
     let at = |l: &&SpectralLine| {
-        Arg::from(
-            Note::new("inspect.line_at")
-                .with("frequency", plain(l.frequency_hz, 5))
-                .with("amplitude", rate(l.amplitude_deg_h))
-                .with("excess", plain(l.excess, 2)),
-        )
+        Arg::from(note!(
+            "inspect.line_at",
+            frequency = plain(l.frequency_hz, 5),
+            amplitude = rate(l.amplitude_deg_h),
+            excess = plain(l.excess, 2)
+        ))
     };
     let mut shown: Vec<Arg> = all.iter().take(MAX_LINES).map(at).collect();
     if all.len() > MAX_LINES {
-        shown.push(Note::new("inspect.lines_more").with("n", all.len() - MAX_LINES).into());
+        shown.push(note!("inspect.lines_more", n = all.len() - MAX_LINES).into());
     }
     let shown = Arg::Several(shown, "; ".into());
     if gyro.motion.is_motion() {
@@ -223,18 +226,20 @@ pub(super) fn others(page: &mut Page, found: &Inspection) {
     page.heading(word("inspect.others"));
     for t in &found.temperatures {
         let (up, down) = t.runs;
-        let range = Note::new("inspect.temperature_is")
-            .with("name", t.name.as_str())
-            .with("low", plain(t.min_deg_c, 4))
-            .with("high", plain(t.max_deg_c, 4))
-            .with("range", plain(t.range(), 3));
+        let range = note!(
+            "inspect.temperature_is",
+            name = t.name.as_str(),
+            low = plain(t.min_deg_c, 4),
+            high = plain(t.max_deg_c, 4),
+            range = plain(t.range(), 3)
+        );
         let mut told = vec![Arg::from(range)];
         if let Some(steepest) = t.steepest_deg_c_h {
             let rate = plain(steepest.abs(), 3);
-            told.push(Note::new("inspect.temperature_rate").with("rate", rate).into());
+            told.push(note!("inspect.temperature_rate", rate).into());
         }
         if t.range() >= 1.0 && found.time.is_known() {
-            let runs = Note::new("inspect.temperature_runs");
+            let runs = note!("inspect.temperature_runs");
             told.push(runs.with("up", u64::from(up)).with("down", u64::from(down)).into());
         }
         told.push(".".into());
@@ -250,11 +255,13 @@ pub(super) fn others(page: &mut Page, found: &Inspection) {
         } else {
             (per_deg_s, f.unit.clone().into())
         };
-        let note = Note::new("inspect.follows")
-            .with("name", f.name.as_str())
-            .with("correlation", Arg::figures(f.correlation, 6))
-            .with("slope", plain(slope, 5))
-            .with("unit", unit);
+        let note = note!(
+            "inspect.follows",
+            name = f.name.as_str(),
+            correlation = Arg::figures(f.correlation, 6),
+            slope = plain(slope, 5),
+            unit
+        );
         page.row(CONTINUED, note);
     }
 }
@@ -265,15 +272,11 @@ fn driven(d: &DrivenChannel) -> Arg {
     } else {
         rates(d.facts.min, d.facts.max)
     };
-    let range = Note::new("inspect.table_is")
-        .with("name", d.name.as_str())
-        .with("low", low)
-        .with("high", high)
-        .with("unit", unit);
+    let range = note!("inspect.table_is", name = d.name.as_str(), low, high, unit);
     let rest = match d.facts.levels.len() {
-        _ if d.facts.min == d.facts.max => Note::new("inspect.table_still"),
-        0 => Note::new("inspect.table_sweeps"),
-        n => Note::new("inspect.table_levels").with("n", n),
+        _ if d.facts.min == d.facts.max => note!("inspect.table_still"),
+        0 => note!("inspect.table_sweeps"),
+        n => note!("inspect.table_levels", n),
     };
     Arg::Several(vec![range.into(), rest.into()], " ".into())
 }

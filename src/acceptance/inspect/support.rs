@@ -6,7 +6,7 @@ use super::layout::{CONTINUED, Page, word};
 use super::quantity::{count, names, plain, rates, time, time_both};
 use super::show_gyro::{contradicted, described, strongest};
 use crate::criticism::temperature::MIN_RANGE_DEG_C;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::measurand::{BIAS_INSTABILITY, STATIC_BIAS};
 use crate::noise::data::NoiseType;
 use crate::noise::expected::expected_upper_limit;
@@ -26,7 +26,7 @@ pub(super) fn statements(page: &mut Page, found: &Inspection) {
     let gyro = found.channels.iter().any(|c| c.role.is_gyro());
     let counts = found.listed.iter().any(|c| c.counts_of_a_gyro());
     if !gyro && !counts {
-        page.row(word("inspect.tests"), Note::new("inspect.no_gyro_no_test"));
+        page.row(word("inspect.tests"), note!("inspect.no_gyro_no_test"));
         return;
     }
     assumed(page, found);
@@ -45,7 +45,7 @@ fn assumed(page: &mut Page, found: &Inspection) {
     let of = |c: &&super::columns::Listed| c.guess.role.is_gyro() && !c.guess.unit_is_named;
     let list = names(found.listed.iter().filter(of).map(|c| c.name.as_str()));
     if !list.is_empty() {
-        page.row(word("inspect.unit"), Note::new("inspect.unit_assumed").with("columns", list));
+        page.row(word("inspect.unit"), note!("inspect.unit_assumed", columns = list));
     }
 }
 
@@ -60,30 +60,30 @@ fn table_moves(found: &Inspection) -> Option<&DrivenChannel> {
 
 fn static_test(found: &Inspection) -> Note {
     if let Some(table) = table_moves(found) {
-        return Note::new("inspect.static_table").with("name", table.name.as_str());
+        return note!("inspect.static_table", name = table.name.as_str());
     }
     if !found.time.is_known() {
-        return Note::new("inspect.static_no_time");
+        return note!("inspect.static_no_time");
     }
     if found.gyros.is_empty() {
-        return Note::new("inspect.static_counts");
+        return note!("inspect.static_counts");
     }
     let of = |wanted: fn(&Motion) -> bool| {
         names(found.gyros.iter().filter(|g| wanted(&g.motion)).map(|g| g.name.as_str()))
     };
     let moved = of(|m| matches!(m, Motion::Moved { .. }));
     if !moved.is_empty() {
-        return Note::new("inspect.static_moved").with("channels", moved);
+        return note!("inspect.static_moved", channels = moved);
     }
     let slow = of(|m| matches!(m, Motion::Slow { .. }));
     if !slow.is_empty() {
-        return Note::new("inspect.static_slow").with("channels", slow);
+        return note!("inspect.static_slow", channels = slow);
     }
     if found.gyros.iter().any(|g| g.motion == Motion::Unknown) {
-        return Note::new("inspect.static_too_few");
+        return note!("inspect.static_too_few");
     }
     if let Some(contradicted) = found.gyros.iter().find_map(|g| contradicted(g, STATIC_BIAS.id)) {
-        return Note::new("inspect.static_contradicted").with("why", contradicted);
+        return note!("inspect.static_contradicted", why = contradicted);
     }
     let length = found.gyros.iter().map(|g| usable_s(found, g)).fold(f64::INFINITY, f64::min);
     let key = if length >= STATIC_TEST_S { "inspect.static_yes" } else { "inspect.static_short" };
@@ -103,28 +103,25 @@ fn averaging(page: &mut Page, found: &Inspection) {
     let stretches = &shortest.digest.deviations.stretches;
     let longest_s = stretches.longest() as f64 * found.tau0_s;
     let label = word("inspect.averaging");
-    let note = Note::new("inspect.averaging_is")
-        .with("floor", time_both(longest_s / 10.0))
-        .with("fit", time_both(longest_s / 5.0));
+    let note =
+        note!("inspect.averaging_is", floor = time_both(longest_s / 10.0), fit = time_both(longest_s / 5.0));
     page.row(label, note);
     if stretches.count() > 1 {
-        let note = Note::new("inspect.averaging_broken")
-            .with("n", count(stretches.count()))
-            .with("longest", time(longest_s));
+        let note = note!("inspect.averaging_broken", n = count(stretches.count()), longest = time(longest_s));
         page.row(CONTINUED, note);
     }
 }
 
 /// A statement on one channel.
 fn of_channel(gyro: &Gyro, statement: Note) -> Note {
-    Note::new("inspect.of_column").with("column", gyro.name.as_str()).with("what", statement)
+    note!("inspect.of_column", column = gyro.name.as_str(), what = statement)
 }
 
 fn flicker(page: &mut Page, found: &Inspection) {
     let mut label = word("inspect.flicker");
     for gyro in resting(found) {
         if !described(gyro) {
-            let note = Note::new("inspect.flicker_undescribed");
+            let note = note!("inspect.flicker_undescribed");
             page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
             continue;
         }
@@ -138,15 +135,15 @@ fn flicker(page: &mut Page, found: &Inspection) {
             expected_upper_limit(NoiseType::Flicker, &background, gyro.digest.samples, found.tau0_s);
         let note = match (smallest, estimate.value, estimate.upper_limit) {
             (Some(smallest), Some(b), _) => {
-                Note::new("inspect.flicker_found").with("b", plain(b, 3)).with("smallest", plain(smallest, 2))
+                note!("inspect.flicker_found", b = plain(b, 3), smallest = plain(smallest, 2))
             }
-            (Some(smallest), None, Some(limit)) => Note::new("inspect.flicker_bounded")
-                .with("limit", plain(limit.value, 3))
-                .with("smallest", plain(smallest, 2)),
+            (Some(smallest), None, Some(limit)) => {
+                note!("inspect.flicker_bounded", limit = plain(limit.value, 3), smallest = plain(smallest, 2))
+            }
             (Some(smallest), None, None) => {
-                Note::new("inspect.flicker_smallest").with("smallest", plain(smallest, 2))
+                note!("inspect.flicker_smallest", smallest = plain(smallest, 2))
             }
-            (None, _, _) => Note::new("inspect.flicker_unknown"),
+            (None, _, _) => note!("inspect.flicker_unknown"),
         };
         page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
     }
@@ -154,7 +151,7 @@ fn flicker(page: &mut Page, found: &Inspection) {
 
 fn temperature(found: &Inspection) -> Note {
     let widest = found.temperatures.iter().max_by(|a, b| a.range().total_cmp(&b.range()));
-    let Some(widest) = widest else { return Note::new("inspect.temperature_none") };
+    let Some(widest) = widest else { return note!("inspect.temperature_none") };
     let about = |key| {
         Note::new(key)
             .with("name", widest.name.as_str())
@@ -180,7 +177,7 @@ fn temperature(found: &Inspection) -> Note {
 
 fn scale_factor(found: &Inspection) -> Note {
     let Some(table) = found.driven.iter().find(|d| d.role == Role::TableRate) else {
-        return Note::new("inspect.scale_no_table");
+        return note!("inspect.scale_no_table");
     };
     let facts = &table.facts;
     let (low, high, unit) = rates(facts.min, facts.max);
@@ -223,9 +220,7 @@ fn known_angle(page: &mut Page, found: &Inspection) {
     let Some(most) = most.filter(|g| table_moves(found).is_none() && swing(g) <= MAX_TURN_DEG) else {
         return;
     };
-    let note = Note::new("inspect.known_angle_is")
-        .with("name", most.name.as_str())
-        .with("swing", plain(swing(most), 4));
+    let note = note!("inspect.known_angle_is", name = most.name.as_str(), swing = plain(swing(most), 4));
     page.row(word("inspect.known_angle"), note);
 }
 
@@ -264,17 +259,19 @@ fn clock(page: &mut Page, found: &Inspection) {
 
 fn clock_note(remark: &ClockRemark, tau0_s: f64) -> Note {
     match *remark {
-        ClockRemark::Off { line_hz, mains_hz, factor } => Note::new("inspect.clock_off")
-            .with("line", plain(line_hz, 5))
-            .with("mains", plain(mains_hz, 4))
-            .with("percent", plain((factor - 1.0) * 100.0, 2))
-            .with("rate", plain(1.0 / (tau0_s * factor), 4))
-            .with("shown", plain(1.0 / tau0_s, 5)),
+        ClockRemark::Off { line_hz, mains_hz, factor } => note!(
+            "inspect.clock_off",
+            line = plain(line_hz, 5),
+            mains = plain(mains_hz, 4),
+            percent = plain((factor - 1.0) * 100.0, 2),
+            rate = plain(1.0 / (tau0_s * factor), 4),
+            shown = plain(1.0 / tau0_s, 5)
+        ),
         ClockRemark::AtNyquist { line_hz } => {
-            Note::new("inspect.clock_nyquist").with("line", plain(line_hz, 5))
+            note!("inspect.clock_nyquist", line = plain(line_hz, 5))
         }
         ClockRemark::Alias { line_hz, mains_hz } => {
-            Note::new("inspect.clock_alias").with("line", plain(line_hz, 5)).with("mains", plain(mains_hz, 4))
+            note!("inspect.clock_alias", line = plain(line_hz, 5), mains = plain(mains_hz, 4))
         }
     }
 }
@@ -285,6 +282,6 @@ fn earth_rate(page: &mut Page, found: &Inspection) {
     }
     let means: Vec<f64> = found.gyros.iter().map(|g| g.digest.mean).collect();
     if let Some(length) = earth(&means) {
-        page.row(word("inspect.earth"), Note::new("inspect.earth_is").with("length", plain(length, 4)));
+        page.row(word("inspect.earth"), note!("inspect.earth_is", length = plain(length, 4)));
     }
 }

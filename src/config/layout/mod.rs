@@ -6,7 +6,7 @@ pub mod tables;
 pub use read::{load, parse};
 
 use crate::config::diagnostics::Problems;
-use crate::i18n::Note;
+use crate::i18n::note;
 pub use sagnac_ingest::layout::{Layout, LayoutFile};
 use sagnac_ingest::{IngestError, IngestErrorKind};
 use std::path::Path;
@@ -18,8 +18,8 @@ pub(crate) fn refused(path: &Path, problems: &Problems) -> IngestError {
     };
     let more = problems.list.len() - 1;
     let note = match more {
-        0 => Note::new("ingest.raw.problem"),
-        _ => Note::new("ingest.raw.problems").with("more", more),
+        0 => note!("ingest.raw.problem"),
+        _ => note!("ingest.raw.problems", more),
     };
     let mut error =
         IngestError::new(IngestErrorKind::Layout, path, note.with("problem", first.message.clone()));
@@ -30,7 +30,7 @@ pub(crate) fn refused(path: &Path, problems: &Problems) -> IngestError {
         error = error.found(&first.token);
     }
     match &first.help {
-        Some(help) => error.hint(Note::new("ingest.raw.hint.help").with("help", help.clone())),
+        Some(help) => error.hint(note!("ingest.raw.hint.help", help = help.clone())),
         None => error,
     }
 }

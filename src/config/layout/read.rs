@@ -7,7 +7,7 @@ use crate::config::reader::Reader;
 use crate::config::section::Section;
 use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::units::{Affine, Unit};
 use sagnac_ingest::layout::{ByteOrder, Field, NumberType};
 use sagnac_ingest::layout::{Checksum, Layout, LayoutColumn, MAX_COLUMNS, MAX_RECORD_BYTES, Sum};
@@ -41,7 +41,7 @@ pub fn parse(name: &str, bytes: &[u8]) -> Result<Layout, Problems> {
 fn whole(value: Option<f64>, section: &Section, key: &str, reader: &mut Reader<'_>) -> Option<u64> {
     let value = value?;
     if value.fract() != 0.0 || value < 0.0 {
-        let message = Note::new("reading.whole").with("key", key);
+        let message = note!("reading.whole", key);
         reader.error(&section.span_of(key), message, None);
         return None;
     }
@@ -71,7 +71,7 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Option<Layout> {
     }
     names(&tables.fields, root, &columns, reader);
     if columns.len() > MAX_COLUMNS {
-        let message = Note::new("layout.columns").with("most", MAX_COLUMNS);
+        let message = note!("layout.columns", most = MAX_COLUMNS);
         reader.error(&root.span_of("field"), message, None);
     }
     let mut end = taken.iter().map(|t| t.to).max().unwrap_or(0);
@@ -87,13 +87,12 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Option<Layout> {
     if record_bytes < end {
         let last = taken.iter().max_by_key(|t| t.to).filter(|t| t.to == end);
         let what = last.map_or("checksum", |t| t.what.as_str());
-        let message =
-            Note::new("layout.too_short").with("bytes", record_bytes).with("what", what).with("end", end);
-        let help = Note::new("layout.write_bytes").with("end", end);
+        let message = note!("layout.too_short", bytes = record_bytes, what, end);
+        let help = note!("layout.write_bytes", end);
         reader.error(&root.span_of("record_bytes"), message, Some(help));
     }
     if record_bytes > MAX_RECORD_BYTES {
-        let message = Note::new("layout.too_long").with("most", MAX_RECORD_BYTES).with("bytes", record_bytes);
+        let message = note!("layout.too_long", most = MAX_RECORD_BYTES, bytes = record_bytes);
         reader.error(&root.span, message, None);
         return None;
     }
@@ -101,7 +100,7 @@ fn build(root: &Section, reader: &mut Reader<'_>) -> Option<Layout> {
         && c.to > record_bytes
     {
         let at = tables.checksum.map(|keys| keys.section.span_of("to")).unwrap_or_default();
-        reader.error(&at, Note::new("layout.to_beyond").with("bytes", record_bytes), None);
+        reader.error(&at, note!("layout.to_beyond", bytes = record_bytes), None);
     }
     (record_bytes > 0).then_some(Layout {
         header_bytes,
@@ -128,7 +127,7 @@ fn sync(text: Option<&str>, root: &Section, reader: &mut Reader<'_>) -> Vec<u8> 
             bytes
         }
         _ => {
-            let help = Note::new("layout.write_sync").with("most", MAX_SYNC_BYTES);
+            let help = note!("layout.write_sync", most = MAX_SYNC_BYTES);
             reader.error(&root.span_of("sync"), "layout.sync", Some(help));
             Vec::new()
         }
@@ -147,8 +146,7 @@ struct Taken {
 fn overlap(place: &Taken, taken: &[Taken], span: &Span, reader: &mut Reader<'_>) {
     let clash = |t: &&Taken| t.from < place.to && place.from < t.to && !(t.bits && place.bits);
     if let Some(other) = taken.iter().find(clash) {
-        let message =
-            Note::new("layout.overlap").with("one", place.what.as_str()).with("other", other.what.as_str());
+        let message = note!("layout.overlap", one = place.what.as_str(), other = other.what.as_str());
         reader.error(span, message, Some("layout.own_bytes".into()));
     }
 }
@@ -170,7 +168,7 @@ fn field(
     let to =
         count.checked_mul(kind.bytes()).and_then(|n| n.checked_add(from)).filter(|n| *n <= MAX_RECORD_BYTES);
     let Some(to) = to else {
-        let message = Note::new("layout.field_beyond").with("most", MAX_RECORD_BYTES);
+        let message = note!("layout.field_beyond", most = MAX_RECORD_BYTES);
         reader.error(&section.span_of("offset"), message, None);
         return None;
     };
@@ -211,7 +209,7 @@ fn bits(keys: &FieldKeys, kind: NumberType, reader: &mut Reader<'_>) -> Option<(
         return None;
     }
     if !kind.is_whole() {
-        let message = Note::new("layout.needs_whole").with("key", key);
+        let message = note!("layout.needs_whole", key);
         reader.error(&section.span_of(key), message, None);
         return None;
     }
@@ -220,7 +218,7 @@ fn bits(keys: &FieldKeys, kind: NumberType, reader: &mut Reader<'_>) -> Option<(
     let mask = if given("mask") { whole(keys.mask, section, "mask", reader)? } else { all };
     let shift = if given("shift") { whole(keys.shift, section, "shift", reader)? as u32 } else { 0 };
     if mask == 0 || mask & !all != 0 {
-        let message = Note::new("layout.mask").with("width", u64::from(width));
+        let message = note!("layout.mask", width = u64::from(width));
         reader.error(&section.span_of("mask"), message, None);
         return None;
     }
@@ -257,7 +255,7 @@ fn names(fields: &[FieldKeys], root: &Section, columns: &[LayoutColumn], reader:
     for keys in fields {
         let Some(name) = keys.name.as_deref() else { continue };
         if !seen.insert(name) {
-            let message = Note::new("layout.field_twice").with("name", name);
+            let message = note!("layout.field_twice", name);
             reader.error(&keys.section.span_of("name"), message, Some("layout.own_name".into()));
         }
     }
@@ -291,14 +289,14 @@ fn checksum(
     }
     if from >= to {
         let key = if given("to") { "to" } else { "from" };
-        let message = Note::new("layout.no_bytes").with("from", from).with("to", to);
+        let message = note!("layout.no_bytes", from, to);
         reader.error(&section.span_of(key), message, None);
         return None;
     }
     if from < at + sum.bytes() && at < to {
         let key = if given("to") { "to" } else { "from" };
         let message = "layout.own_sum";
-        reader.error(&section.span_of(key), message, Some(Note::new("layout.stands_at").with("at", at)));
+        reader.error(&section.span_of(key), message, Some(note!("layout.stands_at", at)));
         return None;
     }
     Some(Checksum { sum, word, at, from, to, order })

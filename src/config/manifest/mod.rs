@@ -11,7 +11,7 @@ use crate::config::reader::Reader;
 use crate::config::section::Section;
 use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::record::UnitUnderTest;
 use sagnac_ingest::layout::LayoutFile;
 use sagnac_ingest::multi_file::PartSpec;
@@ -148,7 +148,7 @@ fn files(tables: ManifestTables, folder: &Path, reader: &mut Reader<'_>) -> Vec<
     match (&tables.files, root.entry("file").is_some()) {
         (Some(_), true) => {
             let at = root.span_of("files");
-            complain(reader, &at, Note::new("manifest.both"), Some("manifest.help.both"));
+            complain(reader, &at, note!("manifest.both"), Some("manifest.help.both"));
             vec![]
         }
         (None, false) => {
@@ -157,7 +157,7 @@ fn files(tables: ManifestTables, folder: &Path, reader: &mut Reader<'_>) -> Vec<
                 complain(
                     reader,
                     &root.span.clone(),
-                    Note::new("manifest.no_files"),
+                    note!("manifest.no_files"),
                     Some("manifest.help.no_files"),
                 );
             }
@@ -178,7 +178,7 @@ fn by_list(
     let mut real: BTreeMap<PathBuf, usize> = BTreeMap::new();
     let most = sagnac_ingest::multi_file::MAX_FILES;
     if let Some(beyond) = listed.get(most) {
-        complain(reader, &beyond.section.span, Note::new("manifest.too_many").with("most", most), None);
+        complain(reader, &beyond.section.span, note!("manifest.too_many", most), None);
         return found;
     }
     for FileKeys { path, sha256, phase, section } in listed {
@@ -189,7 +189,7 @@ fn by_list(
             continue;
         };
         if let Some(line) = real.get(&canonical) {
-            let note = Note::new("manifest.twice").with("path", text.as_str()).with("line", *line);
+            let note = note!("manifest.twice", path = text.as_str(), line = *line);
             complain(reader, &at, note, Some("manifest.help.twice"));
             continue;
         }
@@ -198,8 +198,7 @@ fn by_list(
         if let Some(other) = found.last().filter(|f| f.phase != phase && !several_phases) {
             let span = if phase.is_some() { section.span_of("phase") } else { section.span.clone() };
             let word = |p: &Option<String>| p.clone().unwrap_or_else(|| "-".to_owned());
-            let note =
-                Note::new("manifest.phases").with("phase", word(&phase)).with("other", word(&other.phase));
+            let note = note!("manifest.phases", phase = word(&phase), other = word(&other.phase));
             complain(reader, &reader.source.inside_quotes(&span), note, Some("manifest.help.phases"));
         }
         found.push(ManifestFile { path, sha256, phase });
@@ -211,20 +210,18 @@ fn by_list(
 fn hash_holds(stated: &str, path: &Path, section: &Section, reader: &mut Reader<'_>) -> bool {
     let at = reader.source.inside_quotes(&section.span_of("sha256"));
     if stated.len() != 64 || !stated.chars().all(|c| c.is_ascii_hexdigit()) {
-        complain(reader, &at, Note::new("manifest.no_hash"), Some("manifest.help.no_hash"));
+        complain(reader, &at, note!("manifest.no_hash"), Some("manifest.help.no_hash"));
         return false;
     }
     match byte_stream::digest(path) {
         Ok(found) if found.sha256.eq_ignore_ascii_case(stated) => true,
         Ok(found) => {
-            let note = Note::new("manifest.wrong_hash")
-                .with("path", path.display().to_string())
-                .with("found", found.sha256);
+            let note = note!("manifest.wrong_hash", path = path.display().to_string(), found = found.sha256);
             complain(reader, &at, note, Some("manifest.help.wrong_hash"));
             false
         }
         Err(e) => {
-            complain(reader, &at, Note::new("manifest.unreadable").with("reason", e.note()), None);
+            complain(reader, &at, note!("manifest.unreadable", reason = e.note()), None);
             false
         }
     }
@@ -245,10 +242,10 @@ fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>
     };
     names.sort_by_cached_key(|f| natural(&f.to_string_lossy()));
     if names.is_empty() {
-        let note = Note::new("manifest.no_match").with("folder", folder.display().to_string());
+        let note = note!("manifest.no_match", folder = folder.display().to_string());
         complain(reader, &at, note, Some("manifest.help.no_match"));
     } else if names.len() > most {
-        complain(reader, &at, Note::new("manifest.too_many").with("most", most), None);
+        complain(reader, &at, note!("manifest.too_many", most), None);
         return vec![];
     }
     let mut found = Vec::new();

@@ -11,7 +11,7 @@ use crate::config::text_file::{self, Wording};
 use crate::effect::{
     self, ClaimedMean, Column, Drivers, EFFECTS, Earth, Effect, Param, Temperature, Value, Values,
 };
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::noise::model::NoiseModel;
 use sagnac_core::spelling::nearest;
 use std::path::Path;
@@ -103,11 +103,11 @@ impl EffectKeys {
         let kind = self.kind.as_deref()?;
         let Some(effect) = effect::find(kind) else {
             let help = match nearest(kind, EFFECTS.iter().map(|e| e.kind())) {
-                Some(near) => Note::new("keyed.help.did_you_mean_value").with("value", near),
-                None => Note::new("model_file.help.kinds"),
+                Some(near) => note!("keyed.help.did_you_mean_value", value = near),
+                None => note!("model_file.help.kinds"),
             };
             let at = reader.source.inside_quotes(&self.section.span_of("kind"));
-            reader.error(&at, Note::new("model_file.no_kind").with("kind", shorten(kind)), Some(help));
+            reader.error(&at, note!("model_file.no_kind", kind = shorten(kind)), Some(help));
             return None;
         };
         let mut values = Values::new();
@@ -125,11 +125,11 @@ impl EffectKeys {
         {
             let all = effect.params().iter().chain(effect.list_params());
             let missing: Vec<&str> = all.map(|p| p.name).filter(|n| !values.contains_key(*n)).collect();
-            let message = Note::new("model_file.missing").with("kind", effect.kind());
+            let message = note!("model_file.missing", kind = effect.kind());
             let help = if missing.is_empty() {
-                Note::new("model_file.help.unfit")
+                note!("model_file.help.unfit")
             } else {
-                Note::new("model_file.help.missing").with("names", missing.join(", "))
+                note!("model_file.help.missing", names = missing.join(", "))
             };
             reader.error(&self.section.span_of("kind"), message, Some(help));
         }
@@ -143,7 +143,7 @@ fn value(effect: &'static dyn Effect, named: &Named, reader: &mut Reader<'_>) ->
     let outside = |p: &Param, v: f64| !(p.lower..=p.upper).contains(&v);
     let wrong = |p: &Param, reader: &mut Reader<'_>| {
         let bounds = crate::config::spec::Range::between(p.lower, p.upper).describe(p.unit);
-        let message = Note::new("keyed.out_of_range").with("key", p.name).with("range", bounds);
+        let message = note!("keyed.out_of_range", key = p.name, range = bounds);
         reader.error(&named.span, message, None);
     };
     match (&named.given, find(effect.params()), find(effect.list_params())) {
@@ -166,19 +166,11 @@ fn value(effect: &'static dyn Effect, named: &Named, reader: &mut Reader<'_>) ->
             Some(Value::Text(text.clone()))
         }
         (_, Some(_), _) => {
-            reader.error(
-                &named.span,
-                Note::new("model_file.no_number").with("name", named.name.as_str()),
-                None,
-            );
+            reader.error(&named.span, note!("model_file.no_number", name = named.name.as_str()), None);
             None
         }
         (_, _, Some(_)) => {
-            reader.error(
-                &named.span,
-                Note::new("model_file.no_list").with("name", named.name.as_str()),
-                None,
-            );
+            reader.error(&named.span, note!("model_file.no_list", name = named.name.as_str()), None);
             None
         }
         _ => {
@@ -192,18 +184,17 @@ fn unknown(effect: &'static dyn Effect, named: &Named, reader: &mut Reader<'_>) 
     let numbers = effect.params().iter().chain(effect.list_params()).map(|p| p.name);
     let known: Vec<&str> = numbers.chain(effect.text_params().iter().copied()).collect();
     let help = match nearest(&named.name, known.iter().copied()) {
-        Some(near) => Note::new("keyed.help.did_you_mean").with("name", near),
-        None if known.is_empty() => Note::new("model_file.help.no_parameters"),
-        None => Note::new("keyed.help.known").with("keys", known.join(", ")),
+        Some(near) => note!("keyed.help.did_you_mean", name = near),
+        None if known.is_empty() => note!("model_file.help.no_parameters"),
+        None => note!("keyed.help.known", keys = known.join(", ")),
     };
-    let message =
-        Note::new("model_file.no_parameter").with("kind", effect.kind()).with("name", shorten(&named.name));
+    let message = note!("model_file.no_parameter", kind = effect.kind(), name = shorten(&named.name));
     reader.error(&named.at, message, Some(help));
 }
 
 fn plan(keys: SimulationKeys, reader: &mut Reader<'_>) -> SimulationPlan {
     if keys.seed.is_some_and(|s| s.fract() != 0.0) {
-        let message = Note::new("reading.whole").with("key", "seed");
+        let message = note!("reading.whole", key = "seed");
         reader.error(&keys.section.span_of("seed"), message, None);
     }
     let seed = keys.seed.map(|s| s as u64);
@@ -218,12 +209,11 @@ fn drivers(tables: Vec<DriverKeys>, reader: &mut Reader<'_>) -> Vec<Profile> {
         };
         let place = |key: &str| keys.section.span_of(key);
         if found.iter().any(|p| p.column == column) {
-            let message = Note::new("model_file.driver_twice").with("column", column.name());
+            let message = note!("model_file.driver_twice", column = column.name());
             reader.error(&reader.source.inside_quotes(&place("column")), message, None);
         }
         if time_s.len() != value.len() {
-            let message =
-                Note::new("model_file.points").with("times", time_s.len()).with("values", value.len());
+            let message = note!("model_file.points", times = time_s.len(), values = value.len());
             reader.error(&place("value"), message, Some("model_file.help.points".into()));
         }
         if time_s.windows(2).any(|w| w[1] < w[0]) {

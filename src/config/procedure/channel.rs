@@ -5,7 +5,7 @@ use super::reader::Reader;
 use super::recording_options;
 use super::section::Section;
 use super::tables::ChannelKeys;
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::recording::{Channel, Role};
 use crate::units::Unit;
 
@@ -76,7 +76,7 @@ pub(super) fn rollover(keys: &ChannelKeys, role: Role, reader: &mut Reader<'_>) 
         Role::Counter => "count",
         Role::AccumulatedAngle => "arcsec",
         other => {
-            let note = Note::new("time_base.rollover_role").with("role", other.id());
+            let note = note!("time_base.rollover_role", role = other.id());
             reader.error(&at, note, None);
             return None;
         }
@@ -86,7 +86,7 @@ pub(super) fn rollover(keys: &ChannelKeys, role: Role, reader: &mut Reader<'_>) 
         Role::AccumulatedAngle => "rollover = \"360 deg\"",
         _ => "rollover = \"86400 s\"",
     };
-    let example = || Note::new("keyed.help.example").with("example", example);
+    let example = || note!("keyed.help.example", example);
     match quantity::parse(text, unit, true, false) {
         Ok(period) if period > 0.0 => Some(period),
         Ok(_) => {
@@ -113,22 +113,22 @@ fn suits(unit: &Unit, in_file: &str, role: Role, section: &Section, reader: &mut
     let scaled = section.entry("scale").is_some();
     let at = section.span_of(if scaled { "scale" } else { "unit" });
     let counts = Unit::parse("count").is_ok_and(|c| c.same_dimension(unit));
-    let message = if scaled { Note::new("check.scale_and_role") } else { Note::new("check.unit_and_role") };
+    let message = if scaled { note!("check.scale_and_role") } else { note!("check.unit_and_role") };
     let message = message
         .with("unit", in_file)
         .with("given", unit.describe())
         .with("role", role.id())
         .with("wanted", wanted.describe());
     let help = if scaled {
-        Note::new("check.help.product").with("unit", wanted.text())
+        note!("check.help.product", unit = wanted.text())
     } else if counts {
-        Note::new("check.help.count").with("unit", wanted.text())
+        note!("check.help.count", unit = wanted.text())
     } else if role == Role::Rate && Unit::parse("arcsec").is_ok_and(|u| u.same_dimension(unit)) {
-        Note::new("check.help.angles")
+        note!("check.help.angles")
     } else if role == Role::AngleIncrement && Unit::parse("deg/h").is_ok_and(|u| u.same_dimension(unit)) {
-        Note::new("check.help.rates")
+        note!("check.help.rates")
     } else {
-        Note::new("check.help.unit").with("unit", wanted.text())
+        note!("check.help.unit", unit = wanted.text())
     };
     reader.error(&at, message, Some(help));
     None

@@ -10,7 +10,7 @@ use crate::config::layout;
 use crate::config::manifest::{self, Manifest, is_manifest};
 use crate::config::model;
 use crate::config::text_file;
-use crate::i18n::{Arg, Lang, LocalText, Localize, Note, visible};
+use crate::i18n::{Arg, Lang, LocalText, Localize, Note, note, visible};
 use sagnac_ingest::layout::Layout;
 use std::path::Path;
 
@@ -109,7 +109,7 @@ pub fn check_report(paths: &[&Path], lang: Lang, answer: Answer<'_>) -> CheckRep
         }
     }
     if paths.len() > 1 {
-        let total = Note::new("check.total").with("files", paths.len()).with("failed", report.failed);
+        let total = note!("check.total", files = paths.len(), failed = report.failed);
         report.text.push_str(&format!("{}\n", total.with("warnings", told.len()).say(lang)));
     }
     report
@@ -136,7 +136,7 @@ fn sentences(checked: &Checked, procedures: &[&Loaded<Procedure>]) -> Vec<Note> 
         Checked::Limits(l) => {
             let names: Vec<&str> =
                 pairs::belonging(&l.value, procedures).iter().map(|p| p.value.id.as_str()).collect();
-            let with = Note::new("check.with_procedures").with("names", names.join(", "));
+            let with = note!("check.with_procedures", names = names.join(", "));
             std::iter::once(limits_sentence(l)).chain((!names.is_empty()).then_some(with)).collect()
         }
         Checked::Manifest(m) => vec![manifest_sentence(m)],
@@ -158,7 +158,7 @@ fn nameless_instruments<'a>(procedures: impl IntoIterator<Item = &'a Loaded<Proc
         }
     }
     let list: Vec<Arg> = names.into_iter().map(|name| Arg::from(name.clone())).collect();
-    (!list.is_empty()).then(|| Note::new("check.no_serial").with("names", Arg::Several(list, ", ".into())))
+    (!list.is_empty()).then(|| note!("check.no_serial", names = Arg::Several(list, ", ".into())))
 }
 
 /// What is worth knowing of a phase: what its own files say, and that no verdict can come from them.
@@ -170,7 +170,7 @@ fn of_phase(phase: &Phase) -> Vec<Problem> {
         .set
         .limits
         .is_empty()
-        .then(|| Note::new("check.no_limits").with("procedure", phase.procedure.value.id.as_str()));
+        .then(|| note!("check.no_limits", procedure = phase.procedure.value.id.as_str()));
     let path = phase.limits.as_ref().map_or(phase.procedure.path.as_str(), |l| l.path.as_str());
     found.extend(effective.idle.or(unjudged).map(|note| Problem::remark_on_file(path, note)));
     found
@@ -203,19 +203,21 @@ fn limits_sentence(l: &Loaded<LimitsFile>) -> Note {
 }
 
 fn manifest_sentence(m: &Manifest) -> Note {
-    Note::new("manifest.sound").with("count", m.files.len())
+    note!("manifest.sound", count = m.files.len())
 }
 
 fn layout_sentence(l: &Layout) -> Note {
-    Note::new("layout.sound").with("bytes", l.record_bytes).with("count", l.names().count())
+    note!("layout.sound", bytes = l.record_bytes, count = l.names().count())
 }
 
 fn phased_sentence(p: &Phased) -> Note {
     let phases: Vec<&str> = p.phases.iter().map(|phase| phase.id.as_str()).collect();
-    Note::new("phases.sound")
-        .with("id", p.identity.id.as_str())
-        .with("revision", p.identity.revision.as_str())
-        .with("phases", phases.join(", "))
+    note!(
+        "phases.sound",
+        id = p.identity.id.as_str(),
+        revision = p.identity.revision.as_str(),
+        phases = phases.join(", ")
+    )
 }
 
 /// True when the file says that it holds limits.

@@ -10,7 +10,7 @@ use super::section::Section;
 use super::slips;
 use super::tables::limits::{LimitKeys, ReferenceKeys, TypicalValues};
 use crate::estimate::{Limit, Rule};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::measurand::Measurand;
 use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
 
@@ -132,15 +132,13 @@ fn not_measured(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Vec<Problem
     let mut warnings = vec![];
     for limit in &file.value.set.limits {
         if !procedure.measures(limit.measurand.id, limit.channel.as_deref()) {
-            let message = Note::new("check.not_judged").with("procedure", procedure.id.as_str());
-            let help = Note::new("check.help.measure").with("id", limit.measurand.id);
+            let message = note!("check.not_judged", procedure = procedure.id.as_str());
+            let help = note!("check.help.measure", id = limit.measurand.id);
             warnings.push(file.source.warning(&limit.span, message).help(help));
         } else if let Some(channel) = limit.channel.as_deref()
             && procedure.channel(channel).is_none()
         {
-            let message = Note::new("check.no_such_channel")
-                .with("procedure", procedure.id.as_str())
-                .with("channel", channel);
+            let message = note!("check.no_such_channel", procedure = procedure.id.as_str(), channel);
             warnings.push(file.source.warning(&limit.span, message));
         } else if let Some(message) = scale_factor_unit::other_unit(procedure, limit) {
             warnings.push(file.source.warning(&limit.span, message));
@@ -240,7 +238,7 @@ fn read_limit(keys: LimitKeys, references: &[Reference], reader: &mut Reader<'_>
     let units: Vec<&'static str> =
         ["min", "max", "max_abs"].into_iter().filter_map(|key| section.recorded_unit(key)).collect();
     if units.windows(2).any(|pair| pair[0] != pair[1]) || keys.factor.is_some() && measurand.unit.is_empty() {
-        let help = Note::new("keyed_more.help.as_recorded").with("units", AS_RECORDED.join(", "));
+        let help = note!("keyed_more.help.as_recorded", units = AS_RECORDED.join(", "));
         reader.error(&section.span, about("check.limit_as_recorded", measurand), Some(help));
         return None;
     }
@@ -271,7 +269,7 @@ fn bounds_are_stated_once(section: &Section, measurand: &Measurand, reader: &mut
     }
     let others = |key: &str| BOUNDS.iter().any(|k| *k != key && states(k));
     if let Some(key) = ["max_abs", "factor"].into_iter().find(|key| states(key) && others(key)) {
-        let message = Note::new("check.stands_alone").with("key", key);
+        let message = note!("check.stands_alone", key);
         reader.error(&section.span_of(key), message, Some("check.help.stands_alone".into()));
         return None;
     }
@@ -313,7 +311,7 @@ fn bounds_by_factor(
     let made = by_factor(measurand, factor, reference.record.value);
     if made.is_none() {
         let value = reference.record.value.to_string();
-        let message = Note::new("check.factor_gives_none").with("value", value);
+        let message = note!("check.factor_gives_none", value);
         reader.error(&at, message, Some("check.help.max_for_factor".into()));
     }
     made
@@ -329,10 +327,12 @@ fn bounds_can_be_met(
     if let (Some(low), Some(high)) = (min, max)
         && low > high
     {
-        let message = Note::new("check.min_above_max")
-            .with("low", low.to_string())
-            .with("high", high.to_string())
-            .with("unit", measurand.unit);
+        let message = note!(
+            "check.min_above_max",
+            low = low.to_string(),
+            high = high.to_string(),
+            unit = measurand.unit
+        );
         reader.error(&section.span_of("min"), message, Some("check.help.nothing_meets".into()));
         return None;
     }

@@ -2,7 +2,7 @@
 
 use super::diagnostics::Problems;
 use super::model::{ChannelSpec, Loaded, Procedure};
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::recording::ColumnRef;
 use sagnac_ingest::{IngestError, Source};
 
@@ -13,9 +13,11 @@ pub fn missing_columns(procedure: &Loaded<Procedure>, source: &Source) -> Option
     let mut first = None;
     for spec in procedure.value.channels.iter().filter(|c| c.required) {
         let Err(error) = source.resolve(&spec.channel.column) else { continue };
-        let message = Note::new("ingest_error.plain")
-            .with("place", source.path().display().to_string())
-            .with("message", error.message().clone());
+        let message = note!(
+            "ingest_error.plain",
+            place = source.path().display().to_string(),
+            message = error.message().clone()
+        );
         let mut problem = procedure.source.error(&spec.column_span, message);
         problem.help = hint(spec, &procedure.value, source, &error);
         problems.list.push(problem);

@@ -12,7 +12,7 @@ use crate::config::read_tables::checked;
 use crate::config::shipped::{self, Shipped};
 use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
-use crate::i18n::{LocalText, Note};
+use crate::i18n::{LocalText, note};
 use crate::record::{ClauseRecord, ProcedureRecord};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -173,7 +173,7 @@ fn stated(phases: Vec<PhaseKeys>, home: Home<'_>, reader: &mut Reader<'_>) -> Ve
                 || id.starts_with(&format!("{}.", other.id))
         };
         if let Some(other) = list.iter().find(|o| clash(o)) {
-            let message = Note::new("phases.twice").with("id", id.as_str()).with("other", other.id.as_str());
+            let message = note!("phases.twice", id = id.as_str(), other = other.id.as_str());
             reader.error(&section.span_of("id"), message, None);
         }
         list.push(Stated { id, title: keys.title, procedure, limits });

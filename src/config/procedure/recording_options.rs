@@ -2,7 +2,7 @@
 
 use super::reader::Reader;
 use super::tables::{ChannelKeys, RecordingTable};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::recording::{ColumnRef, Role};
 use sagnac_ingest::{ReadOptions, StampOptions};
 
@@ -22,7 +22,7 @@ fn stamps(channel: &ChannelKeys, reader: &mut Reader<'_>) -> Option<StampOptions
     let section = &channel.section;
     let key = ["stamp", "date_column", "week_column"].into_iter().find(|k| section.entry(k).is_some())?;
     if let Some(role) = channel.role.filter(|role| *role != Role::Time) {
-        let message = Note::new("reading.not_time").with("key", key).with("role", role.id());
+        let message = note!("reading.not_time", key, role = role.id());
         reader.error(&section.span_of(key), message, None);
         return None;
     }

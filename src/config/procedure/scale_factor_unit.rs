@@ -2,7 +2,7 @@
 
 use super::limit_set::LimitSpec;
 use super::model::Procedure;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::recording::Role;
 use crate::units::Unit;
 
@@ -33,11 +33,7 @@ pub fn other_unit(procedure: &Procedure, limit: &LimitSpec) -> Option<Note> {
     channels.find_map(|id| {
         let (unit, _) = scale_factor_unit(procedure, id);
         (unit != given).then(|| {
-            Note::new("check.limit_other_unit")
-                .with("measurand", limit.measurand.id)
-                .with("channel", id)
-                .with("unit", unit)
-                .with("given", given)
+            note!("check.limit_other_unit", measurand = limit.measurand.id, channel = id, unit, given)
         })
     })
 }

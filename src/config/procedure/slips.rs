@@ -5,7 +5,7 @@ use super::limit_set::{FastUnit, LimitSet, LimitSpec};
 use super::model::{ChannelSpec, Procedure};
 use super::reader::Reader;
 use super::section::Section;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::units::Unit;
 
 /// Unit of rates in results.
@@ -47,9 +47,9 @@ pub(super) fn of_set(set: &LimitSet, source: &SourceText) -> Vec<Problem> {
         if let Some(fast) = set.fast_units.iter().find(|f| f.limit == limit.span) {
             let other = set.limits.iter().find(|l| slow(l) && largest(l) < bound / FAST_DEG_H);
             let why = if let Some(other) = other {
-                Note::new("check.slip.other_limit").with("measurand", other.measurand.id)
+                note!("check.slip.other_limit", measurand = other.measurand.id)
             } else if bound > IMPLAUSIBLE_DEG_H && limit.measurand.drift {
-                Note::new("check.slip.size")
+                note!("check.slip.size")
             } else {
                 continue;
             };
@@ -59,15 +59,17 @@ pub(super) fn of_set(set: &LimitSet, source: &SourceText) -> Vec<Problem> {
             && limit.span != typical.1
             && !(1.0 / FAR..=FAR).contains(&(bound / typical.0.abs()))
         {
-            let message = Note::new("check.slip.ratio")
-                .with("measurand", limit.measurand.id)
-                .with("limit", shown(bound))
-                .with("typical", shown(typical.0))
-                .with("unit", limit.measurand.unit);
+            let message = note!(
+                "check.slip.ratio",
+                measurand = limit.measurand.id,
+                limit = shown(bound),
+                typical = shown(typical.0),
+                unit = limit.measurand.unit
+            );
             found.push(source.warning(&limit.span, message).help("check.help.unit_meant"));
         }
         if limit.measurand.signed && limit.limit.min.is_none() {
-            let message = Note::new("check.slip.one_sided").with("measurand", limit.measurand.id);
+            let message = note!("check.slip.one_sided", measurand = limit.measurand.id);
             found.push(source.warning(&limit.span, message).help("check.help.max_abs"));
         }
     }
@@ -86,7 +88,7 @@ pub(super) fn against_channels(procedure: &Procedure, set: &LimitSet, source: &S
             continue;
         };
         if channels.all(|c| size(&c.unit_in_file).is_some_and(|s| s < FAST_DEG_H)) {
-            let why = Note::new("check.slip.channel").with("channel", first.0).with("unit", first.1);
+            let why = note!("check.slip.channel", channel = first.0, unit = first.1);
             found.push(in_fast_unit(fast, largest(limit), why, source));
         }
     }
@@ -111,10 +113,7 @@ fn typical(set: &LimitSet, limit: &LimitSpec) -> Option<(f64, Span)> {
 }
 
 fn in_fast_unit(fast: &FastUnit, bound: f64, why: Note, source: &SourceText) -> Problem {
-    let message = Note::new("check.slip.fast_unit")
-        .with("unit", fast.unit.as_str())
-        .with("value", shown(bound))
-        .with("why", why);
+    let message = note!("check.slip.fast_unit", unit = fast.unit.as_str(), value = shown(bound), why);
     source.warning(&fast.value, message).help("check.help.unit_meant")
 }
 

@@ -2,7 +2,7 @@
 
 use crate::config::spec::Word;
 use crate::config::table::words;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::UnitUnderTest;
 
 /// Something that must be known of a unit.
@@ -65,7 +65,7 @@ pub fn unknown(unit: &UnitUnderTest, serial_required: bool, required: &[UnitFact
     let names: Vec<Arg> =
         required.iter().filter(|f| !f.is_known(unit)).map(|f| Arg::Key(f.name().to_owned())).collect();
     if !names.is_empty() {
-        notes.push(Note::new("error.unit_data_missing").with("names", Arg::Several(names, ", ".into())));
+        notes.push(note!("error.unit_data_missing", names = Arg::Several(names, ", ".into())));
     }
     notes
 }

@@ -5,7 +5,7 @@ use super::model::{ChannelSpec, EarthRate, MeasurandOptions, MeasurandSpec, Proc
 use super::reader::{Reader, meant, shorten};
 use super::section::Section;
 use crate::config::table::Table;
-use crate::i18n::Note;
+use crate::i18n::{Note, note};
 use crate::measurand::{self, EARTH_RATE_OPTION, Options, Test};
 use crate::recording::{ColumnRef, Role};
 use sagnac_core::spelling::nearest;
@@ -38,10 +38,12 @@ pub(super) fn warnings(procedure: &Procedure, root: &Section, source: &SourceTex
     let column = |c: &ChannelSpec| c.channel.column.clone();
     for (i, channel) in procedure.channels.iter().enumerate() {
         if let Some(other) = procedure.channels[..i].iter().find(|o| column(o) == column(channel)) {
-            let message = Note::new("check.same_column")
-                .with("first", other.channel.id.as_str())
-                .with("second", channel.channel.id.as_str())
-                .with("column", shown(&channel.channel.column));
+            let message = note!(
+                "check.same_column",
+                first = other.channel.id.as_str(),
+                second = channel.channel.id.as_str(),
+                column = shown(&channel.channel.column)
+            );
             found.push(source.warning(&channel.span, message));
         }
     }
@@ -49,7 +51,7 @@ pub(super) fn warnings(procedure: &Procedure, root: &Section, source: &SourceTex
         let Some(measurand) = section.measurand("id") else { continue };
         let asked = procedure.measurands.iter().find(|m| m.measurand.id == measurand.id);
         let Some(why) = asked.and_then(|spec| super::obtainable::never(procedure, spec)) else { continue };
-        let message = Note::new("check.never_shown").with("id", measurand.id).with("why", why);
+        let message = note!("check.never_shown", id = measurand.id, why);
         found.push(source.warning(&section.span_of("id"), message));
     }
     if root.table("conditions").is_none_or(|c| c.entry("minimum_duration").is_none()) {
@@ -73,7 +75,7 @@ fn channels(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     for section in sections {
         if let Some(id) = section.text("id") {
             if seen.contains(&id) {
-                let message = Note::new("check.second_channel").with("id", id.as_str());
+                let message = note!("check.second_channel", id = id.as_str());
                 reader.error(&section.span_of("id"), message, Some("check.help.second_channel".into()));
             }
             seen.push(id);
@@ -81,7 +83,7 @@ fn channels(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
         if section.word("role") == Some("time") {
             let id = section.text("id").unwrap_or_default();
             if let Some(first) = &time {
-                let message = Note::new("check.second_time").with("first", first.as_str());
+                let message = note!("check.second_time", first = first.as_str());
                 reader.error(&section.span_of("role"), message, Some("check.help.second_time".into()));
             } else {
                 time = Some(id);
@@ -137,9 +139,9 @@ fn channel_of(
         let known: Vec<String> = root.tables("channel").iter().filter_map(|s| s.text("id")).collect();
         let help = match nearest(&id, known.iter().map(String::as_str)) {
             Some(near) => meant(near),
-            None => Note::new("check.help.declared").with("channels", known.join(", ")),
+            None => note!("check.help.declared", channels = known.join(", ")),
         };
-        reader.error(&at, Note::new("check.undeclared").with("id", shorten(&id)), Some(help));
+        reader.error(&at, note!("check.undeclared", id = shorten(&id)), Some(help));
         return;
     };
     let role = Role::ALL.iter().copied().find(|r| Some(r.id()) == declared.word("role"));
@@ -151,7 +153,7 @@ fn channel_of(
             .filter(|c| suits(c.channel.role))
             .map(|c| c.channel.id.as_str())
             .collect();
-        let help = Note::new("check.help.suiting").with("channels", fits.join(", "));
+        let help = note!("check.help.suiting", channels = fits.join(", "));
         reader.error(&at, message, (!fits.is_empty()).then_some(help));
     }
 }
@@ -199,7 +201,7 @@ fn temperature_test(procedure: &Procedure, root: &Section, reader: &mut Reader<'
                 .iter()
                 .any(|c| c.channel.id == command && c.channel.role == Role::Temperature)
         {
-            let message = Note::new("check_temperature.command").with("id", shorten(&command));
+            let message = note!("check_temperature.command", id = shorten(&command));
             reader.error(&section.span_of("command"), message, None);
         }
         let value = |key| section.number(key);
@@ -252,7 +254,7 @@ fn temperature_test(procedure: &Procedure, root: &Section, reader: &mut Reader<'
     for section in root.tables("measurand") {
         let Some(measurand) = section.measurand("id") else { continue };
         if moves && measurand.test() == Test::Static && !measurand.from_site {
-            let message = Note::new("check_temperature.static").with("id", measurand.id);
+            let message = note!("check_temperature.static", id = measurand.id);
             reader.error(&section.span_of("id"), message, None);
         }
         let table = match measurand.test() {
@@ -261,8 +263,7 @@ fn temperature_test(procedure: &Procedure, root: &Section, reader: &mut Reader<'
             _ => continue,
         };
         if root.table(table).is_none() {
-            let message =
-                Note::new("check_temperature.needs_table").with("id", measurand.id).with("table", table);
+            let message = note!("check_temperature.needs_table", id = measurand.id, table);
             reader.error(&section.span_of("id"), message, None);
         }
     }
@@ -277,10 +278,12 @@ fn provable(section: &Section, unit: &str, reader: &mut Reader<'_>) {
         return;
     };
     if k * u >= tolerance {
-        let message = Note::new("check.not_provable")
-            .with("factor", k.to_string())
-            .with("uncertainty", format!("{u} {unit}"))
-            .with("tolerance", format!("{tolerance} {unit}"));
+        let message = note!(
+            "check.not_provable",
+            factor = k.to_string(),
+            uncertainty = format!("{u} {unit}"),
+            tolerance = format!("{tolerance} {unit}")
+        );
         reader.error(&section.span_of("sensor_uncertainty"), message, Some("check.help.not_provable".into()));
     }
 }
@@ -299,7 +302,7 @@ fn site(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
         channel_of(axis, procedure, root, Role::is_gyro, "check.needs_gyro", reader);
         let id = axis.text("channel").unwrap_or_default();
         if seen.contains(&id) {
-            let message = Note::new("check.second_direction").with("id", id.as_str());
+            let message = note!("check.second_direction", id = id.as_str());
             reader.error(&axis.span_of("channel"), message, None);
         }
         seen.push(id);
@@ -317,13 +320,13 @@ fn measurands(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
             other.measurand("id") == Some(measurand) && (a == b || a.is_none() || b.is_none())
         });
         if clash {
-            let message = Note::new("check.declared_twice").with("id", measurand.id);
+            let message = note!("check.declared_twice", id = measurand.id);
             reader.error(&section.span_of("id"), message, Some("check.help.declared_twice".into()));
         }
         let options = section.table("options");
         let removes = options.and_then(|o| o.word(EARTH_RATE_OPTION)) != Some("keep");
         if measurand.needs_site(&Options { remove_earth_rate: removes }) && !has_site {
-            let message = Note::new("check.needs_site").with("id", measurand.id);
+            let message = note!("check.needs_site", id = measurand.id);
             let help = if measurand.from_site { "check.help.site" } else { "check.help.site_or_keep" };
             reader.error(&section.span_of("id"), message, Some(help.into()));
         }
@@ -331,7 +334,7 @@ fn measurands(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
             let set = options.is_some_and(|o| o.entry(key.name).is_some());
             if set && !measurand.options.contains(&key.name) {
                 let at = options.map_or_else(|| section.span.clone(), |o| o.span_of(key.name));
-                let message = Note::new("check.no_option").with("key", key.name).with("id", measurand.id);
+                let message = note!("check.no_option", key = key.name, id = measurand.id);
                 reader.error(&at, message, None);
             }
         }
@@ -344,11 +347,11 @@ fn limits(procedure: &Procedure, reader: &mut Reader<'_>) {
         if let Some(channel) = limit.channel.as_deref().filter(|c| procedure.channel(c).is_none()) {
             let known: Vec<&str> = procedure.channels.iter().map(|c| c.channel.id.as_str()).collect();
             let help = nearest(channel, known.iter().copied()).map(meant);
-            let message = Note::new("check.limit_of_undeclared").with("channel", shorten(channel));
+            let message = note!("check.limit_of_undeclared", channel = shorten(channel));
             reader.error(&limit.span, message, help);
         } else if !procedure.measures(limit.measurand.id, limit.channel.as_deref()) {
-            let message = Note::new("check.limit_not_measured").with("id", limit.measurand.id);
-            let help = Note::new("check.help.limit_not_measured").with("id", limit.measurand.id);
+            let message = note!("check.limit_not_measured", id = limit.measurand.id);
+            let help = note!("check.help.limit_not_measured", id = limit.measurand.id);
             reader.error(&limit.span, message, Some(help));
         } else if let Some(message) = super::scale_factor_unit::other_unit(procedure, limit) {
             reader.error(&limit.span, message, None);
@@ -356,7 +359,7 @@ fn limits(procedure: &Procedure, reader: &mut Reader<'_>) {
     }
     for reference in &procedure.limits.references {
         if let Some(channel) = reference.channel.as_deref().filter(|c| procedure.channel(c).is_none()) {
-            let message = Note::new("check.reference_of_undeclared").with("channel", shorten(channel));
+            let message = note!("check.reference_of_undeclared", channel = shorten(channel));
             reader.error(&reference.span, message, None);
         }
     }
@@ -372,11 +375,11 @@ fn waivers(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
         let measured = procedure.measurands.iter().map(|m| m.measurand.id);
         let help = match (nearest(&row, measured), measurand::find(&row)) {
             (Some(near), _) => meant(near),
-            (None, Some(_)) => Note::new("check.help.waiver_not_measured"),
+            (None, Some(_)) => note!("check.help.waiver_not_measured"),
             // Anything else may be the id of a condition.
             (None, None) => continue,
         };
-        let message = Note::new("check.no_row").with("row", shorten(&row));
+        let message = note!("check.no_row", row = shorten(&row));
         reader.error(&section.span_of("row"), message, Some(help));
     }
 }
@@ -389,9 +392,11 @@ fn averaging_times(procedure: &Procedure, root: &Section, reader: &mut Reader<'_
         let multiple = samples >= 0.5 && (samples - samples.round()).abs() <= 1e-6 * samples.max(1.0);
         if !multiple {
             let at = root.table("analysis").map_or(0..0, |a| a.span_of("taus"));
-            let message = Note::new("check.tau_no_multiple")
-                .with("tau", format!("{tau} s"))
-                .with("interval", format!("{} s", 1.0 / rate));
+            let message = note!(
+                "check.tau_no_multiple",
+                tau = format!("{tau} s"),
+                interval = format!("{} s", 1.0 / rate)
+            );
             reader.error(&at, message, None);
         }
     }

@@ -10,7 +10,7 @@ use crate::config::reader::{Reader, for_example};
 use crate::config::section::Section;
 use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
-use crate::i18n::Note;
+use crate::i18n::note;
 use std::path::{Path, PathBuf};
 
 /// What is said of a proof file that cannot be read at all.
@@ -108,7 +108,7 @@ fn source(recording: &RecordingKeys, folder: &Path, reader: &mut Reader<'_>) -> 
 /// Says that a table lacks a key that goes with what it says.
 fn missing(section: &Section, key: &'static str, reader: &mut Reader<'_>) {
     let spec = PROOF_FILE.walk().into_iter().find_map(|t| t.key(key));
-    reader.error(&section.span, Note::new("proof_file.lacks").with("key", key), spec.map(for_example));
+    reader.error(&section.span, note!("proof_file.lacks", key), spec.map(for_example));
 }
 
 fn part(from_s: Option<f64>, to_s: Option<f64>, section: &Section, reader: &mut Reader<'_>) -> Part {
@@ -129,7 +129,7 @@ fn claim(keys: ClaimKeys, folder: &Path, reader: &mut Reader<'_>) -> ClaimSource
         return ClaimSource::Identified { part, rate: keys.rate };
     }
     if let Some(key) = ["from", "to", "rate"].into_iter().find(|k| section.entry(k).is_some()) {
-        reader.error(&section.span_of(key), Note::new("proof_file.model_and").with("key", key), None);
+        reader.error(&section.span_of(key), note!("proof_file.model_and", key), None);
     }
     let named = keys.model.and_then(|text| model(&text, section, "model", folder, reader));
     ClaimSource::Model(named.unwrap_or_default())
@@ -176,7 +176,7 @@ fn rule(
             return None;
         }
         if given && !needs.contains(&key) {
-            let note = Note::new("proof_file.foreign").with("must", must).with("key", key);
+            let note = note!("proof_file.foreign", must, key);
             reader.error(&section.span_of(key), note, None);
         }
     }
@@ -192,7 +192,7 @@ fn rule(
             let place = references.iter().position(|r| r.id == id && r.interval.is_some());
             let Some(reference) = place else {
                 let at = reader.source.inside_quotes(&section.span_of("reference"));
-                reader.error(&at, Note::new("proof_file.no_reference").with("id", id), None);
+                reader.error(&at, note!("proof_file.no_reference", id), None);
                 return None;
             };
             Must::Parameter { kinds: keys.kinds, parameter: keys.parameter?, reference }

@@ -8,7 +8,7 @@ use crate::config::reader::Reader;
 use crate::config::section::Section;
 use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
-use crate::i18n::Note;
+use crate::i18n::note;
 use std::path::Path;
 
 /// What is said of a schedule that cannot be read at all.
@@ -53,22 +53,22 @@ fn step(keys: StepKeys, reader: &mut Reader<'_>) -> Option<Step> {
     let there = |key: &str| section.entry(key).is_some();
     let missing: Vec<&str> = needed.iter().copied().filter(|key| !there(key)).collect();
     if !missing.is_empty() {
-        let message = Note::new("schedule_file.missing").with("step", does);
-        let help = Note::new("schedule_file.help.missing").with("names", missing.join(", "));
+        let message = note!("schedule_file.missing", step = does);
+        let help = note!("schedule_file.help.missing", names = missing.join(", "));
         reader.error(&section.span_of("do"), message, Some(help));
         return None;
     }
     let known = |key: &str| key == "do" || needed.contains(&key) || possible.contains(&key);
     for key in section.entries.keys().filter(|key| !known(key)) {
-        let message = Note::new("schedule_file.foreign").with("step", does).with("key", *key);
+        let message = note!("schedule_file.foreign", step = does, key = *key);
         let keys = [needed, possible].concat().join(", ");
-        let help = Note::new("keyed.help.known").with("keys", keys);
+        let help = note!("keyed.help.known", keys);
         reader.error(&section.span_of(key), message, Some(help));
     }
     let count = count(&keys, reader);
     for (key, list) in [("rates_deg_s", &keys.rates_deg_s), ("angles_deg", &keys.angles_deg)] {
         if there(key) && list.is_empty() {
-            reader.error(&section.span_of(key), Note::new("schedule_file.empty").with("key", key), None);
+            reader.error(&section.span_of(key), note!("schedule_file.empty", key), None);
         }
     }
     // Which of the numbers must be there is checked above.
@@ -95,7 +95,7 @@ fn step(keys: StepKeys, reader: &mut Reader<'_>) -> Option<Step> {
 fn count(keys: &StepKeys, reader: &mut Reader<'_>) -> u32 {
     let count = keys.count.unwrap_or(1.0);
     if count.fract() != 0.0 {
-        let message = Note::new("reading.whole").with("key", "count");
+        let message = note!("reading.whole", key = "count");
         reader.error(&keys.section.span_of("count"), message, None);
     }
     count as u32

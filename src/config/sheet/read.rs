@@ -8,7 +8,7 @@ use crate::config::reader::Reader;
 use crate::config::section::Section;
 use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::units::Unit;
 use std::path::Path;
 
@@ -44,8 +44,8 @@ fn row(keys: RowKeys, reader: &mut Reader<'_>) -> Option<SheetRow> {
     if let (Some(unit), Some(own)) = (&keys.unit, &own)
         && !unit.same_dimension(own)
     {
-        let message = Note::new("sheet_file.dimension").with("unit", unit.text()).with("id", measurand.id);
-        let help = Note::new("sheet_file.help.dimension").with("unit", own.text());
+        let message = note!("sheet_file.dimension", unit = unit.text(), id = measurand.id);
+        let help = note!("sheet_file.help.dimension", unit = own.text());
         reader.error(&keys.section.span_of("unit"), message, Some(help));
     }
     let RowKeys { channel, phase, name, unit, footnote, .. } = keys;

@@ -177,7 +177,7 @@ fn places((x, y): (f64, f64), (w, h): (f64, f64)) -> impl Iterator<Item = (Rect,
 mod tests {
     use super::*;
     use crate::figure::{Axis, Figure, Scale, Style};
-    use crate::i18n::Note;
+    use crate::i18n::note;
     use crate::report::svg::render;
 
     const BOX: Rect = Rect { left: 10.0, top: 10.0, width: 20.0, height: 10.0 };
@@ -216,7 +216,7 @@ mod tests {
     }
 
     fn label() -> Layer {
-        Layer::Label { at: (5.0, 0.0), text: Note::new("figure_label.line").with("frequency", 1.5) }
+        Layer::Label { at: (5.0, 0.0), text: note!("figure_label.line", frequency = 1.5) }
     }
 
     #[test]

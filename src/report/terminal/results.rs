@@ -18,9 +18,7 @@ pub fn results(results: &Results, lang: Lang, terminal: Terminal) -> String {
             let view = ExplainView::new(&of.explanation, &[], &of.context, lang);
             explanation(&view, lang, terminal)
         }
-        Record::Comparison(of) => {
-            visible_lines(&table(&CompareView::new(of, &[], lang), lang)).into_owned()
-        }
+        Record::Comparison(of) => visible_lines(&table(&CompareView::new(of, &[], lang), lang)).into_owned(),
         Record::DataSheet(of) => datasheet(&SheetView::new(of, &[], lang), lang, terminal),
         // The units of a lot were told before, a line each.
         Record::Lot(_) => format!("\n{}", page::terminal(&results.record().on_terminal(lang), terminal)),

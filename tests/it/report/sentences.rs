@@ -30,7 +30,10 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/layout/tables.rs", "meanings of words of keys of layouts: documentation, as of procedures"),
     ("src/config/proof/tables.rs", "meanings of words of keys of proofs: documentation, as of procedures"),
     ("src/config/model/tables.rs", "meanings of words of keys of claims: documentation, as of procedures"),
-    ("src/config/schedule/tables.rs", "meanings of words of keys of schedules: documentation, as of procedures"),
+    (
+        "src/config/schedule/tables.rs",
+        "meanings of words of keys of schedules: documentation, as of procedures",
+    ),
     (
         "crates/sagnac-ingest/src/formats/matlab/element_reader.rs",
         "faults of the decoder, quoted as it says them",

@@ -6,7 +6,7 @@
 
 use crate::estimate::{Estimate, Finding, Holds, Interval, Spread};
 use crate::evidence::GyroEvidence;
-use crate::message::Note;
+use crate::message::note;
 use crate::noise::composite::{Composite, Described};
 use crate::noise::data::NoiseType;
 use crate::noise::identification::Identification;
@@ -167,11 +167,10 @@ fn contradiction(estimate: &Estimate, read: &Reading) -> Option<Finding> {
     };
     let note = match (estimate.value, fitted, estimate.upper_limit) {
         _ if !differs => return None,
-        (Some(value), Some(i), _) => Note::new("criticism_found.curve_disagrees")
-            .with("fitted", value)
-            .with("fitted_low", i.low)
-            .with("fitted_high", i.high),
-        (_, _, Some(limit)) => Note::new("criticism_found.curve_exceeds").with("limit", limit.value),
+        (Some(value), Some(i), _) => {
+            note!("criticism_found.curve_disagrees", fitted = value, fitted_low = i.low, fitted_high = i.high)
+        }
+        (_, _, Some(limit)) => note!("criticism_found.curve_exceeds", limit = limit.value),
         _ => return None,
     };
     Some(Finding {
@@ -183,7 +182,7 @@ fn contradiction(estimate: &Estimate, read: &Reading) -> Option<Finding> {
             .with("high", high)
             .with("from_s", read.from_s)
             .with("to_s", read.to_s),
-        advice: Note::new("criticism_advice.allan_curve"),
+        advice: note!("criticism_advice.allan_curve"),
     })
 }
 

@@ -2,7 +2,7 @@
 
 use crate::estimate::{Finding, Holds};
 use crate::influence::repeatability::Repeatability;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 
 /// Finds a run that is another one saved again: it makes the scatter of the runs too small.
 pub(super) fn examine(series: &Repeatability) -> Vec<Finding> {
@@ -25,6 +25,6 @@ pub(super) fn examine(series: &Repeatability) -> Vec<Finding> {
             .with("first", copied.runs.0 + 1)
             .with("second", copied.runs.1 + 1)
             .with("correlation", Arg::figures(copied.correlation.abs(), 2)),
-        advice: Note::new("criticism_advice.copied_run"),
+        advice: note!("criticism_advice.copied_run"),
     }]
 }

@@ -2,7 +2,7 @@
 
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 
 /// Finds the process. Were it there in place of flicker, flicker would be less: an upper bound still holds.
 pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
@@ -13,10 +13,14 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
     vec![Finding {
         measurands: vec!["bias_instability"],
         holds: Holds::UpperBound,
-        found: Note::new("criticism_found.long_process")
-            .with("sigma", process.rms_deg_h)
-            .with("time_s", Arg::rounded(process.decay_time_s, 2)),
-        advice: Note::new("criticism_advice.long_process")
-            .with("hours", Arg::rounded(100.0 * process.decay_time_s / 3600.0, 2)),
+        found: note!(
+            "criticism_found.long_process",
+            sigma = process.rms_deg_h,
+            time_s = Arg::rounded(process.decay_time_s, 2)
+        ),
+        advice: note!(
+            "criticism_advice.long_process",
+            hours = Arg::rounded(100.0 * process.decay_time_s / 3600.0, 2)
+        ),
     }]
 }

@@ -91,15 +91,15 @@ mod tests {
     use super::*;
     use crate::estimate::Holds;
     use crate::evidence::test_evidence::gyro;
-    use crate::message::Note;
+    use crate::message::note;
 
     #[test]
     fn an_objection_reaches_the_estimates_that_rest_on_it_alone() {
         let finding = || Finding {
             measurands: vec!["angle_random_walk"],
             holds: Holds::Nothing,
-            found: Note::new("found"),
-            advice: Note::new("advice"),
+            found: note!("found"),
+            advice: note!("advice"),
         };
         let checks: &[Check<bool>] =
             &[Check { id: "one", examine: true }, Check { id: "other", examine: false }];

@@ -6,7 +6,7 @@
 use super::affected::NOISE;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
-use crate::message::Note;
+use crate::message::note;
 use crate::noise::coarse::RateRounding;
 
 /// Finds a rate that noise does not carry from step to step.
@@ -14,11 +14,11 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
     let (found, more) = match gyro.rounding {
         RateRounding::Harmless => return vec![],
         RateRounding::Forgotten { step_deg_h } => {
-            (Note::new("criticism_found.rate_rounding").with("step", step_deg_h), None)
+            (note!("criticism_found.rate_rounding", step = step_deg_h), None)
         }
-        RateRounding::Constant => (Note::new("criticism_found.constant_rate"), Some("static_bias")),
+        RateRounding::Constant => (note!("criticism_found.constant_rate"), Some("static_bias")),
     };
-    let advice = Note::new("criticism_advice.rate_rounding");
+    let advice = note!("criticism_advice.rate_rounding");
     let measurands = NOISE.into_iter().chain(more).collect();
     vec![Finding { measurands, holds: Holds::Nothing, found, advice }]
 }

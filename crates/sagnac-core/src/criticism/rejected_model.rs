@@ -4,7 +4,7 @@
 use super::affected::{NOISE_OF_FIT, SLOW_NOISE};
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::noise::composite::Part;
 use crate::noise::data::NoiseType;
 use crate::noise::residual::{Departure, View};
@@ -32,8 +32,8 @@ fn undescribed(gyro: &GyroEvidence) -> Option<Finding> {
     (nothing_judged && misfit.probability < UNDESCRIBED_PROBABILITY).then(|| Finding {
         measurands: NOISE_OF_FIT.into_iter().chain(SLOW_NOISE).collect(),
         holds: Holds::Nothing,
-        found: Note::new("criticism_found.undescribed").with("misfit", Arg::rounded(misfit.per_dof, 2)),
-        advice: Note::new("criticism_advice.rejected_model"),
+        found: note!("criticism_found.undescribed", misfit = Arg::rounded(misfit.per_dof, 2)),
+        advice: note!("criticism_advice.rejected_model"),
     })
 }
 
@@ -82,7 +82,7 @@ fn departures(gyro: &GyroEvidence) -> Vec<Finding> {
                 .with("from", Arg::rounded(low, 2))
                 .with("to", Arg::rounded(high, 2))
                 .with("ratio", Arg::rounded(if by_frequency { 1.0 + excess } else { ratio }, 2)),
-            advice: Note::new("criticism_advice.rejected_model"),
+            advice: note!("criticism_advice.rejected_model"),
         });
     }
     found

@@ -4,7 +4,7 @@
 use crate::estimate::{Finding, Holds};
 use crate::evidence::ComparisonEvidence;
 use crate::influence::response::{ByMeans, Response};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 
 /// Everything that rests on the change of the bias between levels.
 const OF_LEVELS: [&str; 4] =
@@ -19,13 +19,12 @@ pub(super) fn examine(compared: &ComparisonEvidence<'_>) -> Vec<Finding> {
     if let Some(response) = bias.response.as_ref().filter(|r| r.goes_on()) {
         return finding(
             said("criticism_found.still_responding", response),
-            Note::new("criticism_advice.still_responding")
-                .with("wait", Arg::figures(response.waiting_s(), 2)),
+            note!("criticism_advice.still_responding", wait = Arg::figures(response.waiting_s(), 2)),
         );
     }
     let contradiction = bias.by_means.iter().find(|b| bias.response.is_none() && b.contradicts());
     contradiction.map_or(vec![], |b| {
-        finding(differ("criticism_found.interval_means", b), Note::new("criticism_advice.interval_means"))
+        finding(differ("criticism_found.interval_means", b), note!("criticism_advice.interval_means"))
     })
 }
 

@@ -8,7 +8,7 @@
 use super::affected::{NOISE, SLOW_NOISE};
 use crate::estimate::{Finding, Holds, normal_probability};
 use crate::evidence::{Course, GyroEvidence};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 use crate::noise::identification::misfit::normal_score;
 
 /// Highest degree of a polynomial that is looked for.
@@ -47,8 +47,8 @@ fn polynomial(gyro: &GyroEvidence) -> Option<Finding> {
     Some(Finding {
         measurands: SLOW_NOISE.to_vec(),
         holds: Holds::Nothing,
-        found: Note::new("criticism_found.polynomial").with("degree", degree),
-        advice: Note::new("criticism_advice.slow_part_removed"),
+        found: note!("criticism_found.polynomial", degree),
+        advice: note!("criticism_advice.slow_part_removed"),
     })
 }
 
@@ -128,10 +128,8 @@ fn hole(gyro: &GyroEvidence) -> Option<Finding> {
             NOISE.into_iter().chain(["static_bias"]).collect()
         },
         holds: Holds::Nothing,
-        found: Note::new("criticism_found.hole")
-            .with("to_hz", Arg::rounded(to_hz, 2))
-            .with("ratio", Arg::rounded(ratio, 2)),
-        advice: Note::new("criticism_advice.slow_part_removed"),
+        found: note!("criticism_found.hole", to_hz = Arg::rounded(to_hz, 2), ratio = Arg::rounded(ratio, 2)),
+        advice: note!("criticism_advice.slow_part_removed"),
     })
 }
 

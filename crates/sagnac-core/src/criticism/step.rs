@@ -3,7 +3,7 @@
 use super::affected::SLOW_NOISE;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::noise::residual::{Jump, View};
 
 /// Log-likelihood by which a step must explain the record better than slow noise, nats: a walk that a record barely shows is
@@ -27,13 +27,15 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
         measurands: SLOW_NOISE.to_vec(),
         holds: Holds::UpperBound,
         found: found_at(&jump, jump.time_s(step_s, whitened.from_s)),
-        advice: Note::new("criticism_advice.step"),
+        advice: note!("criticism_advice.step"),
     }]
 }
 
 fn found_at(jump: &Jump, time_s: f64) -> Note {
-    Note::new("criticism_found.step")
-        .with("time_s", Arg::rounded(time_s, 6))
-        .with("size", Arg::figures(jump.size_deg_h, 3))
-        .with("deviations", Arg::rounded(jump.score.abs(), 2))
+    note!(
+        "criticism_found.step",
+        time_s = Arg::rounded(time_s, 6),
+        size = Arg::figures(jump.size_deg_h, 3),
+        deviations = Arg::rounded(jump.score.abs(), 2)
+    )
 }

@@ -6,7 +6,7 @@
 use super::affected::NOISE;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::{GyroEvidence, Pair};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 use nalgebra::{DMatrix, DVector};
 
 /// Id of this check.
@@ -44,13 +44,15 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
     vec![Finding {
         measurands: NOISE.into_iter().chain(["static_bias"]).collect(),
         holds: Holds::Nothing,
-        found: Note::new("criticism_found.temperature")
-            .with("channel", name.as_str())
-            .with("low", Arg::rounded(followed.low, 3))
-            .with("high", Arg::rounded(followed.high, 3))
-            .with("percent", Arg::rounded(100.0 * followed.share, 2))
-            .with("slope", Arg::rounded(followed.slope, 3)),
-        advice: Note::new("criticism_advice.temperature"),
+        found: note!(
+            "criticism_found.temperature",
+            channel = name.as_str(),
+            low = Arg::rounded(followed.low, 3),
+            high = Arg::rounded(followed.high, 3),
+            percent = Arg::rounded(100.0 * followed.share, 2),
+            slope = Arg::rounded(followed.slope, 3)
+        ),
+        advice: note!("criticism_advice.temperature"),
     }]
 }
 

@@ -3,7 +3,7 @@
 
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::temperature::warm_up::WarmUpFindings;
 
 pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
@@ -21,17 +21,19 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
 /// The contradiction and the advice; `None` where nothing contradicts the decays.
 fn contradiction(found: &WarmUpFindings) -> Option<(Note, Note)> {
     if let Some(smoothed_s) = found.smoothed_s {
-        let said = Note::new("criticism_found.smoothed").with("seconds", Arg::figures(smoothed_s, 2));
+        let said = note!("criticism_found.smoothed", seconds = Arg::figures(smoothed_s, 2));
         return Some((said, "criticism_advice.smoothed".into()));
     }
     if let Some(d) = found.departure {
         let minutes = |s: f64| Arg::figures(s / 60.0, 3);
-        let said = Note::new("criticism_found.leaves_again")
-            .with("from", minutes(d.from_s))
-            .with("to", minutes(d.to_s))
-            .with("off", Arg::figures(d.deg_h, 2))
-            .with("band", Arg::Stated(found.test.band_deg_h))
-            .with("time", minutes(found.time.value));
+        let said = note!(
+            "criticism_found.leaves_again",
+            from = minutes(d.from_s),
+            to = minutes(d.to_s),
+            off = Arg::figures(d.deg_h, 2),
+            band = Arg::Stated(found.test.band_deg_h),
+            time = minutes(found.time.value)
+        );
         return Some((said, "criticism_advice.leaves_again".into()));
     }
     // A unit that was warm before shows no transient either.

@@ -5,7 +5,7 @@
 
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 use crate::noise::composite::{Composite, Part};
 use crate::noise::data::NoiseType;
 use std::f64::consts::PI;
@@ -28,11 +28,15 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
     vec![Finding {
         measurands: vec!["angle_random_walk", "angle_random_walk_white"],
         holds: Holds::Nothing,
-        found: Note::new("criticism_found.white_floor")
-            .with("memory_s", Arg::rounded(shortest_s, 2))
-            .with("length_s", Arg::rounded(gyro.usable_s(), 3)),
-        advice: Note::new("criticism_advice.white_floor")
-            .with("length_s", Arg::rounded(MIN_LENGTH_IN_MEMORIES * shortest_s.max(gyro.tau0_s), 2)),
+        found: note!(
+            "criticism_found.white_floor",
+            memory_s = Arg::rounded(shortest_s, 2),
+            length_s = Arg::rounded(gyro.usable_s(), 3)
+        ),
+        advice: note!(
+            "criticism_advice.white_floor",
+            length_s = Arg::rounded(MIN_LENGTH_IN_MEMORIES * shortest_s.max(gyro.tau0_s), 2)
+        ),
     }]
 }
 

@@ -6,7 +6,7 @@
 use super::descriptor::Measurand;
 use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread};
-use crate::message::Note;
+use crate::message::note;
 use crate::noise::intervals::BoundedPoint;
 use crate::noise::residual::degrees_of_freedom;
 
@@ -41,18 +41,20 @@ const LARGEST_SHARE: f64 = 0.2;
 fn minimum(m: &Measurand, gyro: &GyroEvidence, divisor: f64) -> Estimate {
     let readable = readable(gyro);
     let Some(lowest) = lowest(gyro) else {
-        return m.not_identifiable(&gyro.channel, None, METHOD).note(Note::new("note.minimum_none"));
+        return m.not_identifiable(&gyro.channel, None, METHOD).note(note!("note.minimum_none"));
     };
     let tau_s = lowest.point.m as f64 * gyro.tau0_s;
     let edf = minimum_edf(gyro, lowest);
     let spread = Spread::ChiSquare { dof: edf };
-    let estimate = m
-        .measured(&gyro.channel, lowest.point.deviation / divisor, spread, METHOD)
-        .note(Note::new("note.minimum_at").with("tau_s", tau_s).with("edf", edf));
+    let estimate = m.measured(&gyro.channel, lowest.point.deviation / divisor, spread, METHOD).note(note!(
+        "note.minimum_at",
+        tau_s,
+        edf
+    ));
     if readable.last().is_some_and(|last| last.point.m == lowest.point.m) {
-        estimate.note(Note::new("note.minimum_at_end"))
+        estimate.note(note!("note.minimum_at_end"))
     } else if gyro.identification.bias_instability.value.is_none() {
-        estimate.note(Note::new("note.minimum_no_evidence"))
+        estimate.note(note!("note.minimum_no_evidence"))
     } else {
         estimate
     }

@@ -3,7 +3,7 @@
 use super::descriptor::Measurand;
 use crate::estimate::{Estimate, Spread};
 use crate::influence::comparison::NoiseChange;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 
 /// Change of N at every level.
 pub static ANGLE_RANDOM_WALK_SHIFT: Measurand = Measurand::of_influence(
@@ -19,12 +19,14 @@ fn row(m: &Measurand, change: &NoiseChange) -> Estimate {
     const METHOD: &str = "whittle";
     let (Some(a), Some(b)) = (change.without, change.with) else {
         let none = m.not_identifiable(&change.channel, None, METHOD);
-        return none.note(Note::new("compared.noise_not_shown"));
+        return none.note(note!("compared.noise_not_shown"));
     };
     let spread = Spread::Normal { standard_uncertainty: a.1.hypot(b.1) };
-    m.measured(&change.channel, b.0 - a.0, spread, METHOD).note(
-        Note::new("compared.noise").with("without", Arg::figures(a.0, 4)).with("with", Arg::figures(b.0, 4)),
-    )
+    m.measured(&change.channel, b.0 - a.0, spread, METHOD).note(note!(
+        "compared.noise",
+        without = Arg::figures(a.0, 4),
+        with = Arg::figures(b.0, 4)
+    ))
 }
 
 #[cfg(test)]

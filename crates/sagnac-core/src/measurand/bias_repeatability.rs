@@ -3,7 +3,7 @@
 use super::descriptor::Measurand;
 use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::influence::repeatability::{Repeatability, factors};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::numeric::reml::Combination;
 
 /// Standard deviation between switchings-on.
@@ -55,25 +55,26 @@ fn deviation(m: &Measurand, runs: &Repeatability) -> Estimate {
     let (low, high) = factors(n);
     let typical = (runs.runs.iter().map(|r| r.bias.standard.powi(2)).sum::<f64>() / n as f64).sqrt();
     let (value, spread) = runs.deviation.clone();
-    let told = Note::new("runs.repeatability")
-        .with("n", n)
-        .with("low", Arg::figures(low, 2))
-        .with("high", Arg::figures(high, 3))
-        .with("plain", Arg::figures(runs.plain, 3))
-        .with("noise", Arg::figures(typical, 2));
+    let told = note!(
+        "runs.repeatability",
+        n,
+        low = Arg::figures(low, 2),
+        high = Arg::figures(high, 3),
+        plain = Arg::figures(runs.plain, 3),
+        noise = Arg::figures(typical, 2)
+    );
     shown_or_bounded(m, &runs.channel, value, spread, told)
 }
 
 fn peak_to_peak(m: &Measurand, runs: &Repeatability) -> Estimate {
-    let told =
-        Note::new("runs.range").with("n", runs.runs.len()).with("plain", Arg::figures(runs.range.plain, 3));
+    let told = note!("runs.range", n = runs.runs.len(), plain = Arg::figures(runs.range.plain, 3));
     shown_or_bounded(m, &runs.channel, runs.range.value, runs.range.spread.clone(), told)
 }
 
 fn trend(m: &Measurand, runs: &Repeatability) -> Estimate {
     let n = runs.runs.len();
     match &runs.trend {
-        Some(t) => in_step(runs, measured(m, runs, t).note(Note::new("runs.trend").with("n", n))),
+        Some(t) => in_step(runs, measured(m, runs, t).note(note!("runs.trend", n))),
         None if n >= 4 => in_step(runs, none(m, runs, "runs.not_apart")),
         None => none(m, runs, "runs.no_line"),
     }
@@ -82,10 +83,12 @@ fn trend(m: &Measurand, runs: &Repeatability) -> Estimate {
 fn temperature(m: &Measurand, runs: &Repeatability) -> Estimate {
     match &runs.temperature {
         Some(t) => {
-            let note = Note::new("runs.temperature")
-                .with("percent", Arg::figures(100.0 * t.share, 2))
-                .with("left", Arg::figures(t.left, 3))
-                .with("range", Arg::figures(t.range, 2));
+            let note = note!(
+                "runs.temperature",
+                percent = Arg::figures(100.0 * t.share, 2),
+                left = Arg::figures(t.left, 3),
+                range = Arg::figures(t.range, 2)
+            );
             in_step(runs, measured(m, runs, &t.slope).note(note))
         }
         None if runs.in_step.is_some() => in_step(runs, none(m, runs, "runs.not_apart")),
@@ -105,10 +108,8 @@ fn none(m: &Measurand, runs: &Repeatability, key: &'static str) -> Estimate {
 /// Adds how the temperature went with the order of the runs.
 fn in_step(runs: &Repeatability, row: Estimate) -> Estimate {
     match runs.in_step {
-        None => row.note(Note::new("runs.trend_alone")),
-        Some(r) if r.abs() >= IN_STEP => {
-            row.note(Note::new("runs.in_step").with("correlation", Arg::figures(r, 2)))
-        }
+        None => row.note(note!("runs.trend_alone")),
+        Some(r) if r.abs() >= IN_STEP => row.note(note!("runs.in_step", correlation = Arg::figures(r, 2))),
         Some(_) => row,
     }
 }
@@ -122,7 +123,7 @@ fn shown_or_bounded(m: &Measurand, channel: &str, value: f64, spread: Spread, to
     // The upper end of the interval: whether there is a lower one was decided by the same means, and a limit of one side
     // would miss beside the misses of the intervals.
     let limit = spread.bound(value, 0.975).map(|value| UpperLimit { value, coverage: 0.95 });
-    m.not_identifiable(channel, limit, METHOD).note(told).note(Note::new("runs.not_shown"))
+    m.not_identifiable(channel, limit, METHOD).note(told).note(note!("runs.not_shown"))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::descriptor::Measurand;
 use super::evidence::GyroEvidence;
 use crate::estimate::Estimate;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::noise::identification::{MarkovFound, QuasiPeriodicFound};
 
 /// Standard deviation of Markov noise.
@@ -48,9 +48,8 @@ fn markov<'a>(m: &Measurand, gyro: &'a GyroEvidence, of: fn(&MarkovFound) -> &Es
     let process = |p: &'a MarkovFound| {
         let MarkovFound { sigma, correlation_time } = p;
         let size = sigma.value.unwrap_or(0.0);
-        let place = Note::new("correlated.markov")
-            .with("sigma", size)
-            .with("time_s", correlation_time.value.unwrap_or(f64::NAN));
+        let place =
+            note!("correlated.markov", sigma = size, time_s = correlation_time.value.unwrap_or(f64::NAN));
         (of(p), size, place)
     };
     strongest(m, gyro, gyro.identification.markov.iter().map(process).collect(), "correlated.no_markov")
@@ -64,9 +63,11 @@ fn quasi_periodic<'a>(
     let process = |p: &'a QuasiPeriodicFound| {
         let QuasiPeriodicFound { amplitude, frequency, .. } = p;
         let size = amplitude.value.unwrap_or(0.0);
-        let place = Note::new("correlated.quasi_periodic")
-            .with("rms", size)
-            .with("frequency_hz", frequency.value.unwrap_or(f64::NAN));
+        let place = note!(
+            "correlated.quasi_periodic",
+            rms = size,
+            frequency_hz = frequency.value.unwrap_or(f64::NAN)
+        );
         (of(p), size, place)
     };
     let processes = gyro.identification.quasi_periodic.iter().map(process).collect();
@@ -95,7 +96,7 @@ fn strongest(
     if others.is_empty() {
         return estimate;
     }
-    estimate.note(Note::new("correlated.others").with("others", Arg::Several(others, "; ".into())))
+    estimate.note(note!("correlated.others", others = Arg::Several(others, "; ".into())))
 }
 
 #[cfg(test)]
@@ -124,9 +125,7 @@ mod tests {
         let found = row(&MARKOV_SIGMA, &gyro);
         shows(&found, 0.3, "joint");
         assert_eq!((found.id, found.unit, found.channel.as_str()), ("markov_sigma", "deg/h", "g"));
-        let place = |sigma: f64, time_s: f64| {
-            Arg::from(Note::new("correlated.markov").with("sigma", sigma).with("time_s", time_s))
-        };
+        let place = |sigma: f64, time_s: f64| Arg::from(note!("correlated.markov", sigma, time_s));
         let others = Arg::Several(vec![place(0.1, 500.0), place(0.2, 90.0)], "; ".into());
         assert_eq!(told(&found, "correlated.others", "others"), &others);
         shows(&row(&MARKOV_CORRELATION_TIME, &gyro), 20.0, "joint");
@@ -147,7 +146,7 @@ mod tests {
         shows(&row(&QUASI_PERIODIC_FREQUENCY, &gyro), 0.05, "joint");
         let time = row(&QUASI_PERIODIC_COHERENCE_TIME, &gyro);
         shows(&time, 300.0, "joint");
-        let place = Note::new("correlated.quasi_periodic").with("rms", 0.1).with("frequency_hz", 0.01);
+        let place = note!("correlated.quasi_periodic", rms = 0.1, frequency_hz = 0.01);
         let others = Arg::Several(vec![Arg::from(place)], "; ".into());
         assert_eq!(told(&time, "correlated.others", "others"), &others);
     }

@@ -3,7 +3,7 @@
 use super::descriptor::{Measurand, OfKnownInput, TurnAxis};
 use super::evidence::KnownInputEvidence;
 use crate::estimate::Estimate;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 use crate::rate_table::combine::{evenly, spread};
 use crate::rate_table::turns::Turned;
 
@@ -26,7 +26,7 @@ pub(super) fn of_turn(m: &Measurand, t: &Turned, channel: &str, value: f64, per_
     let scatter = spread(&t.factor, per_factor, &[per_factor * t.by_angle]);
     let spread = evenly(scatter, value, per_factor * t.by_earth);
     m.measured(channel, value, spread, "known_angles")
-        .note(Note::new("known.turns").with("axis", Arg::Text(t.axis.clone())))
+        .note(note!("known.turns", axis = Arg::Text(t.axis.clone())))
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
 use crate::estimate::{Estimate, Spread, UpperLimit};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::rate_table::dead_zone::{DeadZone, Kind, median};
 
 /// Half width of the zone without response.
@@ -44,8 +44,7 @@ pub static RESOLUTION: Measurand = Measurand::of_steps(
     |m, e| {
         let row = |z: &DeadZone| {
             let limit = z.resolution.map(|value| UpperLimit { value, coverage: 0.95 });
-            m.not_identifiable(&z.channel, limit, "smallest_step_shown")
-                .note(Note::new("dead_zone.resolution"))
+            m.not_identifiable(&z.channel, limit, "smallest_step_shown").note(note!("dead_zone.resolution"))
         };
         e.dead_zone.as_ref().map(row).into_iter().collect()
     },
@@ -66,21 +65,19 @@ fn of_form(
 ) -> Vec<Estimate> {
     let Some(z) = &e.dead_zone else { return vec![] };
     if let Some(chance) = z.unexplained {
-        let note = Note::new("dead_zone.no_form").with("percent", Arg::figures(100.0 * chance, 2));
+        let note = note!("dead_zone.no_form", percent = Arg::figures(100.0 * chance, 2));
         return vec![at_most(m, z, None).note(note)];
     }
     if let Some(most) = z.open {
-        return vec![
-            at_most(m, z, None).note(Note::new("dead_zone.open").with("most", Arg::figures(most, 3))),
-        ];
+        return vec![at_most(m, z, None).note(note!("dead_zone.open", most = Arg::figures(most, 3)))];
     }
     if let Some((share, most)) = z.follows.and_then(|(share, most)| Some((share, passes(most)?))) {
-        let note = Note::new("dead_zone.follows").with("percent", Arg::figures(100.0 * share, 2));
+        let note = note!("dead_zone.follows", percent = Arg::figures(100.0 * share, 2));
         return vec![at_most(m, z, most).note(note)];
     }
     let row = of(m, z);
     vec![match z.scale_factor_known {
-        Some(u) => row.note(Note::new("dead_zone_known.scale_factor").with("ppm", Arg::figures(1e6 * u, 3))),
+        Some(u) => row.note(note!("dead_zone_known.scale_factor", ppm = Arg::figures(1e6 * u, 3))),
         None => row,
     }]
 }
@@ -99,7 +96,7 @@ fn threshold(m: &Measurand, z: &DeadZone) -> Estimate {
     let value = median(&z.threshold);
     if value <= 0.0 {
         let value = Spread::Curve(z.threshold.clone()).bound(0.0, 0.95).unwrap_or(0.0);
-        return at_most(m, z, Some(value)).note(Note::new("dead_zone_noise.half_of_any"));
+        return at_most(m, z, Some(value)).note(note!("dead_zone_noise.half_of_any"));
     }
     of_zone(m, z, value, &z.threshold)
 }
@@ -108,15 +105,15 @@ fn noise(m: &Measurand, z: &DeadZone) -> Estimate {
     match &z.rounded {
         Some(r) => {
             let spread = Spread::Curve(r.noise.clone());
-            m.measured(&z.channel, median(&r.noise), spread, METHOD).note(Note::new("dead_zone_noise.shown"))
+            m.measured(&z.channel, median(&r.noise), spread, METHOD).note(note!("dead_zone_noise.shown"))
         }
         None if z.half_width.is_some() && z.noise_bound.is_none() => {
-            at_most(m, z, None).note(Note::new("dead_zone_noise.other_form"))
+            at_most(m, z, None).note(note!("dead_zone_noise.other_form"))
         }
         None if z.half_width.is_some() => {
-            at_most(m, z, z.noise_bound).note(Note::new("dead_zone_noise.not_shown"))
+            at_most(m, z, z.noise_bound).note(note!("dead_zone_noise.not_shown"))
         }
-        None => at_most(m, z, None).note(Note::new("dead_zone_noise.no_zone")),
+        None => at_most(m, z, None).note(note!("dead_zone_noise.no_zone")),
     }
 }
 
@@ -124,11 +121,11 @@ fn noise(m: &Measurand, z: &DeadZone) -> Estimate {
 fn bounded(m: &Measurand, z: &DeadZone, value: f64) -> Estimate {
     let found = at_most(m, z, Some(value));
     match z.between {
-        Some((smallest, apart)) => found.note(
-            Note::new("dead_zone_noise.between_rates")
-                .with("smallest", Arg::figures(smallest, 2))
-                .with("apart", Arg::figures(apart, 2)),
-        ),
+        Some((smallest, apart)) => found.note(note!(
+            "dead_zone_noise.between_rates",
+            smallest = Arg::figures(smallest, 2),
+            apart = Arg::figures(apart, 2)
+        )),
         None => found,
     }
 }
@@ -149,7 +146,7 @@ fn of_zone(m: &Measurand, z: &DeadZone, value: f64, curve: &[(f64, f64)]) -> Est
         .measured(&z.channel, value, Spread::Curve(curve.to_vec()), METHOD)
         .note(Note::new(key).with("centre", Arg::figures(z.centre, 3)));
     if z.others > 0 && z.rounded.is_none() {
-        found.note(Note::new("dead_zone.forms").with("n", z.others))
+        found.note(note!("dead_zone.forms", n = z.others))
     } else {
         found
     }

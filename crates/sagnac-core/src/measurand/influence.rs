@@ -5,7 +5,7 @@ use super::evidence::ComparisonEvidence;
 use crate::estimate::Estimate;
 use crate::influence::Influence;
 use crate::influence::comparison::Comparison;
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::numeric::reml::Combination;
 use crate::rate_table::combine::spread;
 
@@ -96,18 +96,16 @@ fn remarks(found: &Comparison) -> Vec<Note> {
     let without = found.intervals.len() - with;
     let mut notes = vec![Note::new(key).with("without", without).with("with", with)];
     if found.scatter {
-        notes.push(Note::new("compared.scatter"));
+        notes.push(note!("compared.scatter"));
     }
     notes.extend(late(found));
     if let Some(d) = found.too_warm() {
-        notes.push(Note::new("compared.warmer").with("difference", Arg::figures(d.abs(), 2)));
+        notes.push(note!("compared.warmer", difference = Arg::figures(d.abs(), 2)));
     } else if let Some(t) = found.temperature.as_ref().filter(|t| t.follows()) {
         let difference = Arg::figures(t.difference().abs(), 2);
         notes.push(match found.test.temperature_coefficient {
-            Some(c) => Note::new("compared.allowed_for")
-                .with("difference", difference)
-                .with("coefficient", Arg::figures(c, 3)),
-            None => Note::new("compared.not_allowed_for").with("difference", difference),
+            Some(c) => note!("compared.allowed_for", difference, coefficient = Arg::figures(c, 3)),
+            None => note!("compared.not_allowed_for", difference),
         });
     }
     notes.extend(found.disturbing().map(|other| other.note("compared.in_step")));
@@ -117,7 +115,7 @@ fn remarks(found: &Comparison) -> Vec<Note> {
 /// What the values are of, where the bias followed the level late and had settled.
 fn late(found: &Comparison) -> Option<Note> {
     let response = found.response.as_ref().filter(|r| !r.goes_on())?;
-    Some(Note::new("compared.responded").with("time_constant", Arg::figures(response.time_constant_s, 2)))
+    Some(note!("compared.responded", time_constant = Arg::figures(response.time_constant_s, 2)))
 }
 
 #[cfg(test)]

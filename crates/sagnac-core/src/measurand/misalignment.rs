@@ -41,7 +41,7 @@ fn tilt(m: &Measurand, e: &TableEvidence<'_>, axis: usize) -> Vec<Estimate> {
 mod tests {
     use super::super::test_evidence::{combination, near, notes, on_table, shows, student, withholds};
     use super::*;
-    use crate::message::Note;
+    use crate::message::note;
     use crate::rate_table::Setup;
     use crate::rate_table::alignment::Alignment;
     use crate::rate_table::steps::Steps;
@@ -49,7 +49,7 @@ mod tests {
     #[test]
     fn tilts_are_in_mrad_with_the_calibration_of_the_table() {
         let (setup, steps) = (Setup { rate_uncertainty: 4e-3, ..Setup::default() }, Steps::default());
-        let tilts = [Ok(combination(-2e-3, 6e-6)), Err(Note::new("known.no_outer_turns"))];
+        let tilts = [Ok(combination(-2e-3, 6e-6)), Err(note!("known.no_outer_turns"))];
         let alignment = Some(Alignment { channel: "g".into(), tilts, factor: None });
         let e = TableEvidence { alignment, ..on_table(&setup, &steps, None) };
         let rows = MISALIGNMENT_X.evaluate_steps(&e);

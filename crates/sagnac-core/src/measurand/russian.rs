@@ -4,7 +4,7 @@
 use super::descriptor::{Measurand, PowerModel};
 use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread};
-use crate::message::Note;
+use crate::message::{Note, note};
 use crate::noise::windows::{WindowStatistics, edf_of_window_std};
 
 /// Window of the drift figure, s.
@@ -62,15 +62,15 @@ fn of_means(m: &Measurand, gyro: &GyroEvidence, window_s: f64, factor: f64) -> E
     let dof = degrees_of_freedom(gyro, windows);
     let value = windows.standard_deviation * factor;
     let exact_s = windows.exact_s(gyro.tau0_s);
-    let estimate = m.measured(&gyro.channel, value, Spread::ChiSquare { dof }, method).note(
-        Note::new("note.russian_windows")
-            .with("n", windows.n)
-            .with("window_s", window_s)
-            .with("hours", windows.n as f64 * exact_s / 3600.0)
-            .with("dof", dof),
-    );
+    let estimate = m.measured(&gyro.channel, value, Spread::ChiSquare { dof }, method).note(note!(
+        "note.russian_windows",
+        n = windows.n,
+        window_s,
+        hours = windows.n as f64 * exact_s / 3600.0,
+        dof
+    ));
     if (exact_s / window_s - 1.0).abs() > 1e-3 {
-        return estimate.note(Note::new("note.russian_window_rounded").with("exact_s", exact_s));
+        return estimate.note(note!("note.russian_window_rounded", exact_s));
     }
     estimate
 }
@@ -78,9 +78,9 @@ fn of_means(m: &Measurand, gyro: &GyroEvidence, window_s: f64, factor: f64) -> E
 /// Why there are no windows of a length.
 pub(super) fn no_windows(gyro: &GyroEvidence, window_s: f64) -> Note {
     if gyro.samples_fit(window_s) {
-        return Note::new("note.russian_too_short").with("window_s", window_s);
+        return note!("note.russian_too_short", window_s);
     }
-    Note::new("note.russian_window_unfit").with("window_s", window_s).with("interval_s", gyro.tau0_s)
+    note!("note.russian_window_unfit", window_s, interval_s = gyro.tau0_s)
 }
 
 /// Share of its upper limit that random walk is taken to have where the record does not show it (by simulation: so

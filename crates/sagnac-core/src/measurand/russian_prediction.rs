@@ -5,7 +5,7 @@ use super::descriptor::Measurand;
 use super::evidence::GyroEvidence;
 use super::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S, degrees_of_freedom, no_windows};
 use crate::estimate::{Estimate, Spread, chi_square_quantile, normal_probability};
-use crate::message::Note;
+use crate::message::note;
 use crate::noise::composite::{Composite, Part, Propagated};
 use crate::noise::data::NoiseType;
 use crate::noise::prediction::{WindowPrediction, covariance_of, unseen_variance};
@@ -93,7 +93,7 @@ fn drift_predicted(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
     let Some((p, spread)) = predicted(gyro, DRIFT_WINDOW_S) else {
         let none = m.not_identifiable(&gyro.channel, None, method);
         let note = if gyro.windows(DRIFT_WINDOW_S).is_some() {
-            Note::new("note.beyond_model").with("window_s", DRIFT_WINDOW_S)
+            note!("note.beyond_model", window_s = DRIFT_WINDOW_S)
         } else {
             no_windows(gyro, DRIFT_WINDOW_S)
         };
@@ -108,7 +108,7 @@ fn bias_ratio(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
     let both = gyro.windows(DRIFT_WINDOW_S).filter(|w| w.standard_deviation > 0.0).zip(lowest(gyro));
     let Some((windows, minimum)) = both else {
         let none = m.not_identifiable(&gyro.channel, None, method);
-        return none.note(Note::new("compare.note.lacks_a_side"));
+        return none.note(note!("compare.note.lacks_a_side"));
     };
     let value = windows.standard_deviation / minimum.point.deviation;
     let (above, below) = (degrees_of_freedom(gyro, windows), minimum_edf(gyro, minimum));
@@ -147,7 +147,7 @@ fn random_walk_ratio(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
     });
     match ratio {
         Some((value, spread)) => m.measured(&gyro.channel, value, spread, method),
-        None => m.not_identifiable(&gyro.channel, None, method).note(Note::new("compare.note.lacks_a_side")),
+        None => m.not_identifiable(&gyro.channel, None, method).note(note!("compare.note.lacks_a_side")),
     }
 }
 

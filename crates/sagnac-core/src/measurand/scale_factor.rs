@@ -5,7 +5,7 @@ use super::descriptor::{Measurand, OfKnownInput, Stimulus, TurnAxis};
 use super::evidence::{KnownInputEvidence, TableEvidence};
 use super::{cross_axis, sine_response};
 use crate::estimate::{Estimate, Spread};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::rate_table::combine::spread;
 use crate::rate_table::known::Positions;
 use crate::rate_table::scale_factor::{METHOD, ScaleFactor};
@@ -48,7 +48,7 @@ fn scale_factor(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
             let others = [e.setup.rate_uncertainty * (slope.value * factor).abs()];
             m.measured(&e.channel, slope.value * factor, spread(slope, factor.abs(), &others), s.method)
                 .common(&others)
-                .note(Note::new("on_table.at_zero"))
+                .note(note!("on_table.at_zero"))
         })
     } else {
         let Some(line) = &e.line else { return vec![] };
@@ -65,7 +65,7 @@ fn error(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
             let spread = spread(slope, 1e6, &[1e6 * e.setup.rate_uncertainty]);
             m.measured(&e.channel, (slope.value - 1.0) * 1e6, spread, s.method)
                 .common(&[1e6 * e.setup.rate_uncertainty])
-                .note(Note::new("on_table.at_zero"))
+                .note(note!("on_table.at_zero"))
         })];
     }
     let Some(line) = &e.line else { return vec![] };
@@ -85,7 +85,7 @@ fn bias(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
     vec![
         m.measured(&e.channel, found.value, spread(&found, 1.0, &others), METHOD)
             .common(&others)
-            .note(Note::new("on_table.earth_removed").with("earth", Arg::figures(earth.rate_deg_h, 5))),
+            .note(note!("on_table.earth_removed", earth = Arg::figures(earth.rate_deg_h, 5))),
     ]
 }
 
@@ -140,9 +140,9 @@ fn of_positions(m: &Measurand, p: &Positions, value: f64, spread: Spread) -> Est
     const METHOD: &str = "earth_rate_positions";
     // Outputs whose bias was turned with them tell neither scale factor nor bias.
     if p.turned_instead.is_some() || !p.turned_in_software().is_empty() {
-        return m.not_identifiable(&p.channel, None, METHOD).note(Note::new("known.refused"));
+        return m.not_identifiable(&p.channel, None, METHOD).note(note!("known.refused"));
     }
-    m.measured(&p.channel, value, spread, METHOD).note(Note::new("known.positions").with("n", p.means.len()))
+    m.measured(&p.channel, value, spread, METHOD).note(note!("known.positions", n = p.means.len()))
 }
 
 #[cfg(test)]

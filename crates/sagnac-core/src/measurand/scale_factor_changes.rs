@@ -5,7 +5,7 @@ use super::evidence::TableEvidence;
 use super::scale_factor_shape::of_line;
 use super::sine_response;
 use crate::estimate::{Estimate, Spread};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 use crate::rate_table::combine::spread;
 use crate::rate_table::design::Extra;
 use crate::rate_table::design::slope_of;
@@ -67,19 +67,19 @@ fn repeatability(m: &Measurand, line: &ScaleFactor, steps: &Steps) -> Estimate {
     }
     let n = factors.len();
     if n < 2 {
-        return m.not_identifiable(&line.channel, None, METHOD).note(Note::new("on_table.one_cycle"));
+        return m.not_identifiable(&line.channel, None, METHOD).note(note!("on_table.one_cycle"));
     }
     let mean = factors.iter().sum::<f64>() / n as f64;
     let s2 = factors.iter().map(|f| (f - mean) * (f - mean)).sum::<f64>() / (n - 1) as f64;
     let value = 1e6 * s2.sqrt() / line.factor.abs();
     m.measured(&line.channel, value, Spread::ChiSquare { dof: (n - 1) as f64 }, METHOD)
-        .note(Note::new("on_table.cycles").with("n", n))
+        .note(note!("on_table.cycles", n))
 }
 
 fn hysteresis(m: &Measurand, line: &ScaleFactor) -> Estimate {
     // The coefficient is half the gap.
     let Some(half) = line.response.extra(Extra::Approach) else {
-        return m.not_identifiable(&line.channel, None, METHOD).note(Note::new("on_table.one_approach"));
+        return m.not_identifiable(&line.channel, None, METHOD).note(note!("on_table.one_approach"));
     };
     let ppm = line.ppm_of_full_scale();
     m.measured(&line.channel, 2.0 * half.value * ppm, spread(&half, 2.0 * ppm.abs(), &[]), METHOD)
@@ -87,15 +87,13 @@ fn hysteresis(m: &Measurand, line: &ScaleFactor) -> Estimate {
 
 fn temperature_sensitivity(m: &Measurand, line: &ScaleFactor, e: &TableEvidence<'_>) -> Estimate {
     let Some(slope) = line.response.extra(Extra::ScaleOverTemperature) else {
-        return m
-            .not_identifiable(&line.channel, None, METHOD)
-            .note(Note::new("on_table.no_temperature_range"));
+        return m.not_identifiable(&line.channel, None, METHOD).note(note!("on_table.no_temperature_range"));
     };
     let range = line.response.temperature_range.max(1e-9);
     let reading =
         std::f64::consts::SQRT_2 * e.setup.temperature_uncertainty_deg_c / range * slope.value.abs();
     m.measured(&line.channel, slope.value, spread(&slope, 1.0, &[reading]), METHOD)
-        .note(Note::new("on_table.temperature_range").with("range", Arg::figures(range, 3)))
+        .note(note!("on_table.temperature_range", range = Arg::figures(range, 3)))
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
 use super::sine_response;
 use crate::estimate::{Estimate, Spread, UpperLimit};
-use crate::message::Note;
+use crate::message::note;
 use crate::numeric::reml::Combination;
 use crate::rate_table::combine::spread;
 use crate::rate_table::largest::Largest;
@@ -84,7 +84,7 @@ pub static SCALE_FACTOR_ASYMMETRY: Measurand = Measurand::of_steps(
                 let spread = spread(&found, 1e6 / line.factor.abs(), &[]);
                 m.measured(&line.channel, 1e6 * found.value / line.factor, spread, METHOD)
             }
-            None => m.not_identifiable(&line.channel, None, METHOD).note(Note::new("on_table.one_sign")),
+            None => m.not_identifiable(&line.channel, None, METHOD).note(note!("on_table.one_sign")),
         })
     },
 )
@@ -107,10 +107,10 @@ fn largest(
     rate_deg_h: f64,
     factor: f64,
 ) -> Estimate {
-    let at = Note::new("on_table.largest_at").with("rate", line.rate_unit().figures(rate_deg_h, 4));
+    let at = note!("on_table.largest_at", rate = line.rate_unit().figures(rate_deg_h, 4));
     let Some(found) = found else {
         let none = m.not_identifiable(&line.channel, None, METHOD);
-        return none.note(Note::new("on_table.few_levels")).note(at);
+        return none.note(note!("on_table.few_levels")).note(at);
     };
     let factor = factor.abs();
     let value = found.value * factor;
@@ -150,7 +150,7 @@ fn term(m: &Measurand, line: &ScaleFactor, power: usize) -> Estimate {
             let ppm = line.ppm_of_full_scale();
             m.measured(&line.channel, found.value * ppm, spread(&found, ppm.abs(), &[]), METHOD)
         }
-        None => m.not_identifiable(&line.channel, None, METHOD).note(Note::new("on_table.few_levels")),
+        None => m.not_identifiable(&line.channel, None, METHOD).note(note!("on_table.few_levels")),
     }
 }
 

@@ -3,7 +3,7 @@
 use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
 use crate::estimate::{Estimate, Spread};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 use crate::numeric::reml::Combination;
 use crate::rate_table::combine::spread;
 use crate::rate_table::sine::{self, Sine};
@@ -44,7 +44,7 @@ pub(super) fn row(
     let method = "sine_response";
     match &e.sine {
         Some(fit) => of(&OfSine { fit, method }, &fit.fit.coefficient(sine::SLOPE)),
-        None => m.not_identifiable(&e.channel, None, method).note(Note::new("on_table.no_sine")),
+        None => m.not_identifiable(&e.channel, None, method).note(note!("on_table.no_sine")),
     }
 }
 
@@ -52,11 +52,11 @@ pub(super) fn row(
 pub(super) fn residual(m: &Measurand, e: &TableEvidence<'_>) -> Estimate {
     row(m, e, |s, _| {
         let of_full_scale = 1e6 * s.fit.rms / e.full_scale_deg_h();
-        m.measured(&e.channel, of_full_scale, Spread::ChiSquare { dof: s.fit.dof }, s.method).note(
-            Note::new("on_table.sine_left")
-                .with("rms", Arg::figures(s.fit.rms * RAD_S * 1e3, 3))
-                .with("line", Arg::figures(s.fit.rms_of_line * RAD_S * 1e3, 3)),
-        )
+        m.measured(&e.channel, of_full_scale, Spread::ChiSquare { dof: s.fit.dof }, s.method).note(note!(
+            "on_table.sine_left",
+            rms = Arg::figures(s.fit.rms * RAD_S * 1e3, 3),
+            line = Arg::figures(s.fit.rms_of_line * RAD_S * 1e3, 3)
+        ))
     })
 }
 
@@ -67,13 +67,13 @@ pub(super) fn temperature_sensitivity(m: &Measurand, e: &TableEvidence<'_>) -> E
         if range <= 0.0 {
             return m
                 .not_identifiable(&e.channel, None, s.method)
-                .note(Note::new("on_table.no_temperature_range"));
+                .note(note!("on_table.no_temperature_range"));
         }
         let gain = s.fit.fit.coefficient(sine::GAIN_OVER_TEMPERATURE);
         let value = gain.value / slope.value;
         let reading = std::f64::consts::SQRT_2 * e.setup.temperature_uncertainty_deg_c / range * value.abs();
         m.measured(&e.channel, value, spread(&gain, 1.0 / slope.value.abs(), &[reading]), s.method)
-            .note(Note::new("on_table.temperature_range").with("range", Arg::figures(range, 3)))
+            .note(note!("on_table.temperature_range", range = Arg::figures(range, 3)))
     })
 }
 

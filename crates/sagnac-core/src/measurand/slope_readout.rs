@@ -3,7 +3,7 @@
 use super::descriptor::Measurand;
 use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread, normal_probability};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 use crate::noise::data::NoiseType;
 use crate::noise::slope::{LARGEST_SHARE, SLOPE_TOLERANCE, SlopePoint, read, reading_time_s, slope};
 
@@ -66,37 +66,36 @@ fn read_out(m: &Measurand, gyro: &GyroEvidence, term: NoiseType) -> Estimate {
         })
         .collect();
     let Some(found) = read(&points, term) else {
-        return m.not_identifiable(&gyro.channel, None, METHOD).note(
-            Note::new("readout.no_slope")
-                .with("slope", Arg::Stated(slope(term)))
-                .with("tolerance", Arg::Stated(SLOPE_TOLERANCE)),
-        );
+        return m.not_identifiable(&gyro.channel, None, METHOD).note(note!(
+            "readout.no_slope",
+            slope = Arg::Stated(slope(term)),
+            tolerance = Arg::Stated(SLOPE_TOLERANCE)
+        ));
     };
     let on_line: Vec<f64> = points.iter().map(|p| p.tau_s).collect();
     let own = own_part(gyro, term, on_line.iter().filter(|t| (found.from_s..=found.to_s).contains(*t)));
     // A slope of two octaves at the end of the record comes about by chance.
     let at_end = points.last().is_some_and(|p| p.tau_s <= found.to_s);
     if at_end && found.points <= FEW_POINTS && own < NOTHING {
-        return m.not_identifiable(&gyro.channel, None, METHOD).note(
-            Note::new("readout.by_others")
-                .with("slope", Arg::Stated(slope(term)))
-                .with("from_s", found.from_s)
-                .with("to_s", found.to_s),
-        );
+        return m.not_identifiable(&gyro.channel, None, METHOD).note(note!(
+            "readout.by_others",
+            slope = Arg::Stated(slope(term)),
+            from_s = found.from_s,
+            to_s = found.to_s
+        ));
     }
     let spread = reaching_down(Spread::ChiSquare { dof: found.dof }, found.value, own);
-    let estimate = m.measured(&gyro.channel, found.value, spread, METHOD).note(
-        Note::new("readout.line")
-            .with("slope", Arg::Stated(slope(term)))
-            .with("tolerance", Arg::Stated(SLOPE_TOLERANCE))
-            .with("n", found.points)
-            .with("from_s", found.from_s)
-            .with("to_s", found.to_s)
-            .with("at_s", reading_time_s(term)),
-    );
+    let estimate = m.measured(&gyro.channel, found.value, spread, METHOD).note(note!(
+        "readout.line",
+        slope = Arg::Stated(slope(term)),
+        tolerance = Arg::Stated(SLOPE_TOLERANCE),
+        n = found.points,
+        from_s = found.from_s,
+        to_s = found.to_s,
+        at_s = reading_time_s(term)
+    ));
     if own < ALONE {
-        return estimate
-            .note(Note::new("readout.others").with("percent", Arg::figures(100.0 * (1.0 - own), 2)));
+        return estimate.note(note!("readout.others", percent = Arg::figures(100.0 * (1.0 - own), 2)));
     }
     estimate
 }

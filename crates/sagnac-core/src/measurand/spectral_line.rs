@@ -10,7 +10,7 @@
 use super::descriptor::Measurand;
 use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread};
-use crate::message::Note;
+use crate::message::note;
 use crate::noise::lines::{Sinusoid, SpectralLine};
 use std::f64::consts::PI;
 
@@ -55,12 +55,12 @@ fn strongest(
 ) -> Estimate {
     let strongest = gyro.lines.iter().max_by(|a, b| a.amplitude_deg_h.total_cmp(&b.amplitude_deg_h));
     let Some(line) = strongest else {
-        let why = gyro.withheld_line.clone().unwrap_or(Note::new("note.no_line"));
+        let why = gyro.withheld_line.clone().unwrap_or(note!("note.no_line"));
         return m.not_identifiable(&gyro.channel, None, "welch").note(why);
     };
     let (value, standard_uncertainty, method) = of(line, gyro.spectrum().effective_averages);
     m.measured(&gyro.channel, value, Spread::Normal { standard_uncertainty }, method)
-        .note(Note::new("note.line").with("resolution_hz", line.resolution_hz))
+        .note(note!("note.line", resolution_hz = line.resolution_hz))
 }
 
 fn amplitude_uncertainty(line: &SpectralLine, averages: f64) -> f64 {
@@ -176,7 +176,7 @@ mod tests {
         let none = row(&LINE_FREQUENCY, &gyro);
         withholds(&none, None, "welch");
         assert_eq!(notes(&none), ["note.no_line"]);
-        gyro.withheld_line = Some(Note::new("note.withheld"));
+        gyro.withheld_line = Some(note!("note.withheld"));
         assert_eq!(notes(&row(&LINE_AMPLITUDE, &gyro)), ["note.withheld"]);
     }
 }

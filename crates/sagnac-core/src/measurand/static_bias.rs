@@ -6,7 +6,7 @@
 use super::descriptor::{EARTH_RATE_OPTION, Measurand, Options, PowerModel};
 use super::evidence::GyroEvidence;
 use crate::estimate::{Estimate, Spread, normal_probability};
-use crate::message::Note;
+use crate::message::note;
 use crate::noise::coarse::RateRounding;
 use crate::noise::data::NoiseType;
 use crate::noise::model::TERMS;
@@ -69,18 +69,17 @@ fn evaluate(m: &Measurand, gyro: &GyroEvidence, options: &Options) -> Vec<Estima
     let (spread, rounded) = match gyro.rounding {
         RateRounding::Harmless => (spread, None),
         RateRounding::Forgotten { step_deg_h: step } => {
-            let note = Note::new("note.bias_rounded").with("step", step);
+            let note = note!("note.bias_rounded", step);
             (beside_rounding(&spread, value, 0.5 * step), Some(note))
         }
         RateRounding::Constant => (Spread::Unknown, None),
     };
     let earth = match removed {
-        Some(e) => Note::new("note.earth_rate_removed").with("rate", e.rate_deg_h),
-        None => Note::new("note.earth_rate_kept"),
+        Some(e) => note!("note.earth_rate_removed", rate = e.rate_deg_h),
+        None => note!("note.earth_rate_kept"),
     };
-    let longest = Note::new("note.bias_uncertainty")
-        .with("u", standard_uncertainty)
-        .with("longest_h", 1.0 / (3600.0 * u.lowest_hz));
+    let longest =
+        note!("note.bias_uncertainty", u = standard_uncertainty, longest_h = 1.0 / (3600.0 * u.lowest_hz));
     let of_site: Vec<f64> = u.others.iter().map(|(_, variance)| variance.sqrt()).collect();
     let estimate =
         m.measured(&gyro.channel, value, spread, "mean").common(&of_site).note(earth).note(longest);

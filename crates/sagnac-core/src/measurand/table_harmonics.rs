@@ -3,7 +3,7 @@
 use super::descriptor::{Measurand, Stimulus};
 use super::scale_factor_shape::of_line;
 use crate::estimate::{Estimate, UpperLimit};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 use crate::numeric::reml::Combination;
 use crate::rate_table::combine::spread;
 use crate::rate_table::design::Extra;
@@ -33,7 +33,7 @@ fn harmonic(m: &Measurand, line: &ScaleFactor, order: u8) -> Estimate {
     let response = &line.response;
     let parts = response.extra(Extra::Cosine(order)).zip(response.extra(Extra::Sine(order)));
     let Some((cosine, sine)) = parts else {
-        return m.not_identifiable(&line.channel, None, METHOD).note(Note::new("on_table.no_harmonic"));
+        return m.not_identifiable(&line.channel, None, METHOD).note(note!("on_table.no_harmonic"));
     };
     let amplitude = cosine.value.hypot(sine.value);
     let covariance = response.covariance_of(Extra::Cosine(order), Extra::Sine(order));
@@ -57,7 +57,7 @@ fn harmonic(m: &Measurand, line: &ScaleFactor, order: u8) -> Estimate {
     let random = Combination { value: amplitude, standard, dof: cosine.dof.min(sine.dof) };
     let phase = sine.value.atan2(cosine.value).to_degrees();
     m.measured(&line.channel, amplitude, spread(&random, 1.0, &[]), METHOD)
-        .note(Note::new("on_table.phase").with("phase", Arg::figures(phase, 3)))
+        .note(note!("on_table.phase", phase = Arg::figures(phase, 3)))
 }
 
 #[cfg(test)]

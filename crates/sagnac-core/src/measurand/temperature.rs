@@ -3,7 +3,7 @@
 
 use super::descriptor::Measurand;
 use crate::estimate::{Estimate, Spread, UpperLimit};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::temperature::course::{legendre, legendre_slopes};
 use crate::temperature::findings::{Analysis, Findings};
 use crate::temperature::lag::{self, AtLag, Coefficient};
@@ -130,11 +130,11 @@ fn ramps(m: &Measurand, channel: &str, found: &Findings) -> Vec<Estimate> {
         .map(|(i, s)| {
             let spread = Spread::Normal { standard_uncertainty: s.rate_uncertainty_deg_c_h };
             let name = format!("{channel}@ramp{}", i + 1);
-            m.measured(&name, s.rate_deg_c_h, spread, "theil_sen").note(
-                Note::new("thermal.ramp")
-                    .with("from_h", Arg::figures(s.from_s / 3600.0, 4))
-                    .with("to_h", Arg::figures(s.to_s / 3600.0, 4)),
-            )
+            m.measured(&name, s.rate_deg_c_h, spread, "theil_sen").note(note!(
+                "thermal.ramp",
+                from_h = Arg::figures(s.from_s / 3600.0, 4),
+                to_h = Arg::figures(s.to_s / 3600.0, 4)
+            ))
         })
         .collect()
 }
@@ -147,20 +147,20 @@ fn zones(m: &Measurand, channel: &str, found: &Findings) -> Vec<Estimate> {
             Some(n) if z.by_slow_noise => {
                 let limit = n.spread.bound(n.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
                 m.not_identifiable(&name, limit, METHOD)
-                    .note(Note::new("thermal.zone_slow").with("average_s", z.average_s))
+                    .note(note!("thermal.zone_slow", average_s = z.average_s))
             }
             Some(n) => {
                 let e = m
                     .measured(&name, n.value, n.spread.clone(), METHOD)
-                    .note(Note::new("thermal.zone").with("average_s", z.average_s));
+                    .note(note!("thermal.zone", average_s = z.average_s));
                 // A part that rounds to nothing is not worth a word.
                 if z.slow_share < 0.005 {
                     return e;
                 }
                 let percent = Arg::figures(100.0 * z.slow_share, 2);
-                e.note(Note::new("thermal.zone_without_slow").with("percent", percent))
+                e.note(note!("thermal.zone_without_slow", percent))
             }
-            None => m.not_identifiable(&name, None, METHOD).note(Note::new("thermal.zone_empty")),
+            None => m.not_identifiable(&name, None, METHOD).note(note!("thermal.zone_empty")),
         }
     };
     found.zones.iter().map(one).collect()
@@ -177,7 +177,7 @@ impl Row<'_> {
     fn of(&self, found: &Findings, of: fn(&Self, &Analysis) -> Estimate) -> Vec<Estimate> {
         vec![match &found.analysis {
             Some(analysis) => of(self, analysis),
-            None => self.none(None).note(Note::new("thermal.no_course")),
+            None => self.none(None).note(note!("thermal.no_course")),
         }]
     }
 
@@ -202,7 +202,7 @@ impl Row<'_> {
             slopes.max_by(|x, y| x.abs().total_cmp(&y.abs())).unwrap_or(0.0).abs()
         });
         let sign = slope(&p.best.fitted.solved.coefficients, order, at, a).signum();
-        let note = Note::new("thermal.steepest").with("deg_c", Arg::figures(p.span.temperature(at), 3));
+        let note = note!("thermal.steepest", deg_c = Arg::figures(p.span.temperature(at), 3));
         self.measured(reading.scaled(sign)).note(note)
     }
 
@@ -222,16 +222,18 @@ impl Row<'_> {
             let drawn = read::of_draws(draws, |_, c| times * of(c));
             let limit =
                 drawn.spread.bound(drawn.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
-            return self.none(limit).note(Note::new("thermal_flat.curve")).note(self.span_note(a));
+            return self.none(limit).note(note!("thermal_flat.curve")).note(self.span_note(a));
         }
         let reading = positive(read::nonlinear(draws, |_, c| of(c))).scaled(times);
         self.measured(reading).note(self.span_note(a))
     }
 
     fn span_note(&self, a: &Analysis) -> Note {
-        Note::new("thermal.span")
-            .with("low", Arg::figures(a.posterior.span.low, 3))
-            .with("high", Arg::figures(a.posterior.span.high, 3))
+        note!(
+            "thermal.span",
+            low = Arg::figures(a.posterior.span.low, 3),
+            high = Arg::figures(a.posterior.span.high, 3)
+        )
     }
 
     fn model_note(&self, a: &Analysis) -> Note {
@@ -239,15 +241,15 @@ impl Row<'_> {
         let order = a.order;
         match a.orders.iter().find(|t| t.order == order) {
             Some(t) => {
-                Note::new("thermal.order").with("order", order).with("rms", Arg::figures(t.held_out_rms, 3))
+                note!("thermal.order", order, rms = Arg::figures(t.held_out_rms, 3))
             }
-            None => Note::new("thermal.order_fixed").with("order", order),
+            None => note!("thermal.order_fixed", order),
         }
     }
 
     fn loop_width(&self, a: &Analysis) -> Estimate {
         if !a.both_ways {
-            return self.none(None).note(Note::new("thermal.one_way"));
+            return self.none(None).note(note!("thermal.one_way"));
         }
         let best = best_draw(a);
         let widest = inner_grid()
@@ -259,15 +261,17 @@ impl Row<'_> {
             .unwrap_or(0.0);
         // At the place where the best fit is widest: a maximum over places would grow with the noise.
         let reading = read::nonlinear(&a.posterior.draws, |d, c| gap(d, c, widest, a));
-        let note = Note::new("thermal.loop")
-            .with("deg_c", Arg::figures(a.posterior.span.temperature(widest), 3))
-            .with("rate", Arg::figures(60.0 * a.ramp_deg_c_min, 3));
+        let note = note!(
+            "thermal.loop",
+            deg_c = Arg::figures(a.posterior.span.temperature(widest), 3),
+            rate = Arg::figures(60.0 * a.ramp_deg_c_min, 3)
+        );
         self.measured(reading).note(note)
     }
 
     fn rate_sensitivity(&self, a: &Analysis) -> Estimate {
         if a.posterior.terms.rate_at().is_none() {
-            return self.none(None).note(Note::new("thermal.one_way"));
+            return self.none(None).note(note!("thermal.one_way"));
         }
         if !a.parted {
             return self.none(None).note(inseparable(a));
@@ -280,7 +284,7 @@ impl Row<'_> {
 
     fn hysteresis(&self, a: &Analysis) -> Estimate {
         if a.posterior.terms.hysteresis_at().is_none() {
-            return self.none(None).note(Note::new("thermal.one_way"));
+            return self.none(None).note(note!("thermal.one_way"));
         }
         if !a.parted {
             return self.none(None).note(inseparable(a));
@@ -305,11 +309,11 @@ impl Row<'_> {
         if single && told.bounded {
             return row.note(separation_note(a));
         }
-        row.note(
-            Note::new("thermal.lag_or_rate")
-                .with("u", Arg::figures(times * deviation, 2))
-                .with("lag", Arg::figures(told.longest_s / 60.0, 2)),
-        )
+        row.note(note!(
+            "thermal.lag_or_rate",
+            u = Arg::figures(times * deviation, 2),
+            lag = Arg::figures(told.longest_s / 60.0, 2)
+        ))
     }
 
     fn lag(&self, a: &Analysis) -> Estimate {
@@ -323,10 +327,10 @@ impl Row<'_> {
         }
         if !told.bounded {
             let longest = Arg::figures(told.longest_s / 60.0, 2);
-            return self.none(None).note(Note::new("thermal.any_lag").with("lag", longest));
+            return self.none(None).note(note!("thermal.any_lag", lag = longest));
         }
         if told.may_be_none {
-            return self.none(limit).note(Note::new("thermal.no_lag"));
+            return self.none(limit).note(note!("thermal.no_lag"));
         }
         self.measured(told.reading).note(separation_note(a))
     }
@@ -336,14 +340,14 @@ impl Row<'_> {
         let mut e = self
             .m
             .measured(self.channel, a.residual_rms, spread, METHOD)
-            .note(Note::new("thermal.residual").with("average_s", Arg::figures(a.average_s, 4)));
+            .note(note!("thermal.residual", average_s = Arg::figures(a.average_s, 4)));
         let order = a.order;
         if let Some(t) = a.orders.iter().find(|t| t.order == order) {
-            e = e.note(
-                Note::new("thermal.held_out")
-                    .with("rms", Arg::figures(t.held_out_rms, 3))
-                    .with("average_s", Arg::figures(t.average_s, 3)),
-            );
+            e = e.note(note!(
+                "thermal.held_out",
+                rms = Arg::figures(t.held_out_rms, 3),
+                average_s = Arg::figures(t.average_s, 3)
+            ));
         }
         e
     }
@@ -451,19 +455,23 @@ fn separation_note(a: &Analysis) -> Note {
     let inflation = |f: fn(crate::temperature::separate::Separation) -> f64| {
         Arg::figures(s.map_or(f64::INFINITY, f).min(1e6), 2)
     };
-    Note::new("thermal.separation")
-        .with("rate", inflation(|s| s.rate))
-        .with("lag", inflation(|s| s.lag))
-        .with("hysteresis", inflation(|s| s.hysteresis))
+    note!(
+        "thermal.separation",
+        rate = inflation(|s| s.rate),
+        lag = inflation(|s| s.lag),
+        hysteresis = inflation(|s| s.hysteresis)
+    )
 }
 
 /// Why a narrow range tells neither the lag nor the sensitivity to the rate of temperature.
 fn narrow(a: &Analysis) -> Note {
     let span = a.posterior.span;
-    Note::new("thermal.narrow")
-        .with("range", Arg::figures(span.high - span.low, 3))
-        .with("crossing", Arg::figures(a.crossing_s() / 60.0, 2))
-        .with("lag", Arg::figures(a.posterior.longest_lag_s / 60.0, 2))
+    note!(
+        "thermal.narrow",
+        range = Arg::figures(span.high - span.low, 3),
+        crossing = Arg::figures(a.crossing_s() / 60.0, 2),
+        lag = Arg::figures(a.posterior.longest_lag_s / 60.0, 2)
+    )
 }
 
 /// What can be said in place of terms that the schedule does not tell apart: the half gap at the middle of the range,
@@ -472,12 +480,14 @@ fn inseparable(a: &Analysis) -> Note {
     let half = read::nonlinear(&a.posterior.draws, |d, c| 0.5 * gap(d, c, 0.0, a));
     let r = 60.0 * a.ramp_deg_c_min;
     let other = if r > 12.0 { r / 3.0 } else { 3.0 * r };
-    Note::new("thermal.inseparable")
-        .with("half_gap", Arg::figures(half.value, 3))
-        .with("u", Arg::figures(half.standard_uncertainty(), 2))
-        .with("deg_c", Arg::figures(a.posterior.span.temperature(0.0), 3))
-        .with("rate", Arg::figures(r, 3))
-        .with("other", Arg::figures(other, 2))
+    note!(
+        "thermal.inseparable",
+        half_gap = Arg::figures(half.value, 3),
+        u = Arg::figures(half.standard_uncertainty(), 2),
+        deg_c = Arg::figures(a.posterior.span.temperature(0.0), 3),
+        rate = Arg::figures(r, 3),
+        other = Arg::figures(other, 2)
+    )
 }
 
 #[cfg(test)]

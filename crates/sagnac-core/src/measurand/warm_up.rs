@@ -2,7 +2,7 @@
 
 use super::descriptor::Measurand;
 use crate::estimate::{Estimate, LowerLimit, UpperLimit};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use crate::temperature::start::{Missing, Start};
 use crate::temperature::warm_up::STATEMENT_PROBABILITY;
 use crate::temperature::warm_up::WarmUpFindings;
@@ -34,14 +34,14 @@ const METHOD: &str = "decays_gls";
 /// The decays that were fitted.
 fn described(found: &WarmUpFindings) -> Note {
     let constants = found.time_constants_s.iter().map(|c| Arg::figures(c / 60.0, 3)).collect();
-    Note::new("thermal.transient").with("constants", Arg::Several(constants, "; ".into()))
+    note!("thermal.transient", constants = Arg::Several(constants, "; ".into()))
 }
 
 /// A row with what is known of the moment of switching on. Only the time is at least what is seen from the first sample on.
 fn started(m: &Measurand, row: Estimate, found: &WarmUpFindings, is_time: bool) -> Estimate {
     match found.start {
         Start::Shown(_) => row,
-        Start::Declared => row.note(Note::new("thermal_start.declared")),
+        Start::Declared => row.note(note!("thermal_start.declared")),
         Start::NotShown(why) => unknown(m, row, why, is_time),
     }
 }
@@ -54,14 +54,14 @@ fn unknown(m: &Measurand, row: Estimate, why: Missing, is_time: bool) -> Estimat
     let mut out = m.not_identifiable(&row.channel, None, METHOD).at_least(least);
     out.notes = row.notes;
     out.note(match why {
-        Missing::NotAsked => Note::new("thermal_start.not_asked"),
-        Missing::NoValues => Note::new("thermal_start.no_values"),
-        Missing::OnAtFirst => Note::new("thermal_start.on_at_first"),
-        Missing::NoRise => Note::new("thermal_start.no_rise"),
-        Missing::WarmAtFirst(first, cold) => Note::new("thermal_start.warm_at_first")
-            .with("first", Arg::figures(first, 4))
-            .with("cold", Arg::Stated(cold)),
-        Missing::Late(late_s) => Note::new("thermal_start.late").with("late", Arg::figures(late_s, 4)),
+        Missing::NotAsked => note!("thermal_start.not_asked"),
+        Missing::NoValues => note!("thermal_start.no_values"),
+        Missing::OnAtFirst => note!("thermal_start.on_at_first"),
+        Missing::NoRise => note!("thermal_start.no_rise"),
+        Missing::WarmAtFirst(first, cold) => {
+            note!("thermal_start.warm_at_first", first = Arg::figures(first, 4), cold = Arg::Stated(cold))
+        }
+        Missing::Late(late_s) => note!("thermal_start.late", late = Arg::figures(late_s, 4)),
     })
 }
 
@@ -74,11 +74,9 @@ fn time(m: &Measurand, found: &WarmUpFindings, channel: &str) -> Estimate {
     if found.too_short || found.drifts_on() {
         let hours = Arg::figures(found.length_s / 3600.0, 3);
         let note = if found.drifts_on() {
-            Note::new("thermal.not_settled")
-                .with("hours", hours)
-                .with("band", Arg::Stated(found.test.band_deg_h))
+            note!("thermal.not_settled", hours, band = Arg::Stated(found.test.band_deg_h))
         } else {
-            Note::new("thermal.warm_up_too_short").with("hours", hours)
+            note!("thermal.warm_up_too_short", hours)
         };
         let least = found.settled.at_least_s;
         let limit = (least > 0.0).then_some(LowerLimit { value: least, coverage: STATEMENT_PROBABILITY });
@@ -86,7 +84,7 @@ fn time(m: &Measurand, found: &WarmUpFindings, channel: &str) -> Estimate {
     }
     if r.value <= 0.0 {
         let limit = r.spread.bound(r.value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
-        return m.not_identifiable(channel, limit, METHOD).note(Note::new("thermal.warm_at_once"));
+        return m.not_identifiable(channel, limit, METHOD).note(note!("thermal.warm_at_once"));
     }
     m.measured(channel, r.value, r.spread.clone(), METHOD).note(described(found))
 }

@@ -18,7 +18,7 @@ use super::samples;
 use super::select;
 use crate::claim::Claim;
 use crate::effect::{Column, Detection, Domain, EFFECTS, Effect, Model, Rounding};
-use crate::message::Note;
+use crate::message::{Note, note};
 use crate::series::Series;
 use std::collections::BTreeMap;
 
@@ -239,14 +239,16 @@ fn moved_again(moved: &FittedHypothesis, start: &FittedHypothesis, problem: &Pro
 
 fn note(why: Irregular) -> Note {
     match why {
-        Irregular::Short(rows) => Note::new("explain.error.short")
-            .with("rows", rows as u64)
-            .with("needed", super::regular::MIN_ROWS as u64),
-        Irregular::OtherRate(observed, claimed) => Note::new("explain.error.other_rate")
-            .with("observed", format!("{observed:.6}"))
-            .with("claimed", format!("{claimed:.6}")),
+        Irregular::Short(rows) => {
+            note!("explain.error.short", rows = rows as u64, needed = super::regular::MIN_ROWS as u64)
+        }
+        Irregular::OtherRate(observed, claimed) => note!(
+            "explain.error.other_rate",
+            observed = format!("{observed:.6}"),
+            claimed = format!("{claimed:.6}")
+        ),
         Irregular::Sparse(rows, places) => {
-            Note::new("explain.error.sparse").with("rows", rows as u64).with("places", format!("{places:.0}"))
+            note!("explain.error.sparse", rows = rows as u64, places = format!("{places:.0}"))
         }
     }
 }

@@ -9,7 +9,7 @@ mod noise;
 use super::Progress;
 use crate::claim::{Claim, Uncertainty};
 use crate::effect::Column;
-use crate::message::Note;
+use crate::message::{Note, note};
 use crate::noise::model::NoiseModel;
 use crate::series::Series;
 
@@ -25,7 +25,7 @@ const MEAN_NOISE_ROUNDS: u64 = 2;
 pub fn identify(series: &Series, progress: &mut dyn FnMut(Progress)) -> Result<Claim, Note> {
     let rows = series.rate_deg_h.len();
     if rows < MIN_ROWS {
-        return Err(Note::new("explain.error.short").with("rows", rows).with("needed", MIN_ROWS));
+        return Err(note!("explain.error.short", rows, needed = MIN_ROWS));
     }
     let mut step = |done| {
         progress(Progress { doing: "explain.progress.identifying", done, total: 2 * MEAN_NOISE_ROUNDS })

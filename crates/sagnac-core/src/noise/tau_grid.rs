@@ -1,6 +1,6 @@
 //! Which averaging times a σ(τ) curve is computed at.
 
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use std::fmt;
 
 /// The choice of averaging times.
@@ -52,13 +52,15 @@ impl TauGridError {
     /// What is wrong, as a note.
     pub fn note(&self) -> Note {
         match self {
-            TauGridError::Unreadable { text } => Note::new("tau_grid.unreadable").with("text", text.as_str()),
+            TauGridError::Unreadable { text } => note!("tau_grid.unreadable", text = text.as_str()),
             TauGridError::NotAMultiple { tau_s, tau0_s, below_s, above_s } => {
-                Note::new("tau_grid.no_multiple")
-                    .with("tau", Arg::Stated(*tau_s))
-                    .with("interval", Arg::Stated(*tau0_s))
-                    .with("below", Arg::Stated(*below_s))
-                    .with("above", Arg::Stated(*above_s))
+                note!(
+                    "tau_grid.no_multiple",
+                    tau = Arg::Stated(*tau_s),
+                    interval = Arg::Stated(*tau0_s),
+                    below = Arg::Stated(*below_s),
+                    above = Arg::Stated(*above_s)
+                )
             }
         }
     }

@@ -14,7 +14,7 @@ use super::model::TERMS;
 use super::slope::LARGEST_SHARE;
 use super::windows::edf_of_window_std;
 use crate::estimate::{Estimate, chi_square_quantile};
-use crate::message::Note;
+use crate::message::{Note, note};
 
 /// Share by which an amplitude may exceed half the range, for its own error.
 const ROUNDED: f64 = 1.02;
@@ -99,11 +99,8 @@ impl Whole {
             };
             let Some((has, most)) = most else { return true };
             if said.as_ref().is_none_or(|(largest, _)| amplitude > *largest) {
-                let note = Note::new("note.line_beyond_record")
-                    .with("amplitude", amplitude)
-                    .with("frequency_hz", line.frequency_hz)
-                    .with("has", has)
-                    .with("most", most);
+                let note =
+                    note!("note.line_beyond_record", amplitude, frequency_hz = line.frequency_hz, has, most);
                 said = Some((amplitude, note));
             }
             false
@@ -181,7 +178,7 @@ fn withhold(estimate: &mut Estimate, (has, most): (f64, f64)) {
     let mut none =
         Estimate::not_identifiable(estimate.id, &estimate.channel, None, estimate.unit, estimate.method);
     none.notes = std::mem::take(&mut estimate.notes);
-    *estimate = none.note(Note::new("note.part_beyond_record").with("has", has).with("most", most));
+    *estimate = none.note(note!("note.part_beyond_record", has, most));
 }
 
 #[cfg(test)]

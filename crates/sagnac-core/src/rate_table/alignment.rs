@@ -8,7 +8,7 @@ use super::blocks::TURN_ARCSEC;
 use super::design::is_linearly_independent;
 use super::noise::Rows;
 use super::steps::{Step, Steps};
-use crate::message::Note;
+use crate::message::{Note, note};
 use crate::numeric::reml::{self, Combination};
 use nalgebra::{DMatrix, DVector};
 
@@ -48,14 +48,14 @@ fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64
         .collect();
     let n = rows.len();
     if n == 0 {
-        return Err(Note::new("known.no_outer_turns"));
+        return Err(note!("known.no_outer_turns"));
     }
     let angle = |s: &Step| {
         let at = s.parts.iter().map(|p| 0.5 * (p.angle.0 + p.angle.1)).sum::<f64>() / s.parts.len() as f64;
         at * 2.0 * std::f64::consts::PI / TURN_ARCSEC
     };
     if rows.iter().any(|s| !angle(s).is_finite()) {
-        return Err(Note::new("known.angle_not_recorded"));
+        return Err(note!("known.angle_not_recorded"));
     }
     let outer = |s: &Step| s.outer + vertical;
     let column = |f: &dyn Fn(&Step) -> f64| DVector::from_iterator(n, rows.iter().map(|s| f(s)));
@@ -74,12 +74,12 @@ fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64
             columns.push(c);
         }
     }
-    let of_inner = || Note::new("known.no_inner_angle");
+    let of_inner = || note!("known.no_inner_angle");
     if at[0].is_none() && at[1].is_none() {
         return Err(of_inner());
     }
     // A row more than there are unknowns: nothing else shows the scatter of the turns.
-    let few = || Note::new("known.few_outer_turns").with("n", n).with("least", columns.len() + 1);
+    let few = || note!("known.few_outer_turns", n, least = columns.len() + 1);
     if n <= columns.len() {
         return Err(few());
     }

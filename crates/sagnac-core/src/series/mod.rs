@@ -7,7 +7,7 @@ mod smooth;
 pub use smooth::smooth;
 
 use crate::effect::Column;
-use crate::message::Note;
+use crate::message::{Note, note};
 use crate::recording::integrity::Integrity;
 use std::collections::BTreeMap;
 
@@ -87,7 +87,7 @@ impl Series {
         for (column, count) in &faults.interpolated {
             let read = self.read_from.iter().find(|r| r.name == column.name());
             let name = read.map_or(column.name(), |r| r.column.as_str());
-            out.push(Note::new("explain.note.mended").with("count", *count).with("column", name));
+            out.push(note!("explain.note.mended", count = *count, column = name));
         }
         out
     }

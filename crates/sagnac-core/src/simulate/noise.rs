@@ -6,7 +6,7 @@ use super::seed::stream;
 use super::shape::{SIDE, filtered, taps};
 use crate::claim::{Claim, Stated};
 use crate::effect::{Drivers, LowPass, Model};
-use crate::message::Note;
+use crate::message::note;
 use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
 use crate::noise::model::NoiseModel;
@@ -22,7 +22,7 @@ pub(super) fn composed(claim: &Claim) -> Result<Composite, SimulateError> {
             // It is stated as a course.
             None if course_of(stated) => {}
             None => {
-                let note = Note::new("simulate.no_parameters").with("kind", stated.effect.kind());
+                let note = note!("simulate.no_parameters", kind = stated.effect.kind());
                 return Err(note.into());
             }
         }

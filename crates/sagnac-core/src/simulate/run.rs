@@ -7,7 +7,7 @@ use super::quantize::Counter;
 use super::seed::stream;
 use crate::claim::{Claim, Profile, Stated};
 use crate::effect::{Column, Drivers, Model, Samples};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, note};
 use crate::series::Series;
 use std::collections::BTreeMap;
 
@@ -87,12 +87,14 @@ impl<'a> Simulation<'a> {
                 let own = series.sample_interval_s;
                 let off = (own * claim.sample_rate_hz - 1.0).abs();
                 if series.time_s.is_empty() {
-                    return Err(Note::new("simulate.no_rows").into());
+                    return Err(note!("simulate.no_rows").into());
                 }
                 if off.is_nan() || off > RATE_TOLERANCE {
-                    let note = Note::new("simulate.other_rate")
-                        .with("found", Arg::rounded(1.0 / own, 6))
-                        .with("claimed", Arg::rounded(claim.sample_rate_hz, 6));
+                    let note = note!(
+                        "simulate.other_rate",
+                        found = Arg::rounded(1.0 / own, 6),
+                        claimed = Arg::rounded(claim.sample_rate_hz, 6)
+                    );
                     return Err(note.into());
                 }
                 (own, series.index.last().map_or(0, |last| last + 1) as f64)
@@ -102,7 +104,7 @@ impl<'a> Simulation<'a> {
             || claim.effects.iter().any(|e| !matches!(e.effect.model(), Model::Spectrum(_)));
         let most = if whole { MAX_SAMPLES_IN_MEMORY } else { MAX_SAMPLES };
         if !(1.0..=most as f64).contains(&samples) {
-            let note = Note::new("simulate.length").with("samples", samples.to_string()).with("most", most);
+            let note = note!("simulate.length", samples = samples.to_string(), most);
             return Err(note.into());
         }
         let samples = samples as u64;
@@ -234,7 +236,7 @@ fn needs(order: &Order<'_>) -> Result<(), SimulateError> {
         let missing: Vec<&str> =
             stated.effect.needs().iter().filter(|c| !there.contains(c)).map(|c| c.name()).collect();
         if !missing.is_empty() {
-            let note = Note::new("simulate.no_column").with("kind", stated.effect.kind());
+            let note = note!("simulate.no_column", kind = stated.effect.kind());
             return Err(note.with("columns", missing.join(", ")).into());
         }
     }
@@ -250,7 +252,7 @@ fn course(stated: &Stated, drivers: &Drivers) -> Result<Option<Vec<f64>>, Simula
     };
     match model.course(&stated.values, drivers) {
         Some(course) => Ok(Some(course)),
-        None => Err(Note::new("simulate.no_parameters").with("kind", stated.effect.kind()).into()),
+        None => Err(note!("simulate.no_parameters", kind = stated.effect.kind()).into()),
     }
 }
 

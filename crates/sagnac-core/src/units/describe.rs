@@ -1,7 +1,7 @@
 //! What a unit measures, in words.
 
 use super::{BASES, Unit};
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 
 impl Unit {
     /// What the unit measures, in words.
@@ -25,11 +25,10 @@ impl Unit {
         let powers = NAMES.into_iter().zip(self.dimension).filter(|(_, halves)| *halves != 0);
         let powers = powers.map(|(name, halves)| {
             let exponent = Arg::Stated(f64::from(halves) / 2.0);
-            Note::new("dimension.power").with("base", Note::new(name)).with("exponent", exponent)
+            note!("dimension.power", base = Note::new(name), exponent)
         });
-        let joined = powers
-            .reduce(|left, right| Note::new("dimension.product").with("left", left).with("right", right));
-        joined.unwrap_or_else(|| Note::new("dimension.number")).into()
+        let joined = powers.reduce(|left, right| note!("dimension.product", left, right));
+        joined.unwrap_or_else(|| note!("dimension.number")).into()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Why a unit could not be read or converted.
 
-use crate::message::{Arg, Note};
+use crate::message::{Arg, Note, note};
 use std::fmt;
 
 /// Why a unit text could not be read, or could not be converted.
@@ -38,20 +38,22 @@ impl UnitError {
     pub fn note(&self) -> Note {
         match self {
             UnitError::Unknown { symbol, suggestion: None } => {
-                Note::new("unit_error.unknown").with("symbol", symbol.as_str())
+                note!("unit_error.unknown", symbol = symbol.as_str())
             }
             UnitError::Unknown { symbol, suggestion: Some(near) } => {
-                Note::new("unit_error.misspelt").with("symbol", symbol.as_str()).with("near", near.as_str())
+                note!("unit_error.misspelt", symbol = symbol.as_str(), near = near.as_str())
             }
             UnitError::Grammar { text, reason } => {
-                Note::new("unit_error.grammar").with("text", text.as_str()).with("reason", Note::new(*reason))
+                note!("unit_error.grammar", text = text.as_str(), reason = Note::new(*reason))
             }
             UnitError::Dimension { from, to, from_dimension, to_dimension } => {
-                Note::new("unit_error.dimension")
-                    .with("from", from.as_str())
-                    .with("to", to.as_str())
-                    .with("from_dimension", (**from_dimension).clone())
-                    .with("to_dimension", (**to_dimension).clone())
+                note!(
+                    "unit_error.dimension",
+                    from = from.as_str(),
+                    to = to.as_str(),
+                    from_dimension = (**from_dimension).clone(),
+                    to_dimension = (**to_dimension).clone()
+                )
             }
         }
     }

@@ -1,7 +1,7 @@
 //! Which of the arrays in a container are the recording: those of one length.
 
 use crate::error::{IngestError, IngestErrorKind};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use std::collections::BTreeMap;
 use std::path::Path;
 
@@ -31,9 +31,9 @@ pub(crate) fn rows(path: &Path, arrays: &[Array], part: Option<&str>) -> Result<
                 let mut names: Vec<&str> = arrays.iter().map(|a| a.name.as_str()).collect();
                 names.dedup();
                 names.truncate(NAMED);
-                let note = Note::new("ingest.binary.no_part").with("name", part);
+                let note = note!("ingest.binary.no_part", name = part);
                 Err(IngestError::new(IngestErrorKind::Column, path, note)
-                    .hint(Note::new("ingest.hint.the_file_has").with("names", names.join(", "))))
+                    .hint(note!("ingest.hint.the_file_has", names = names.join(", "))))
             }
         };
     }
@@ -58,7 +58,7 @@ pub(crate) fn notes(left: Vec<Note>) -> Vec<Note> {
     let more = left.len().saturating_sub(NAMED);
     let mut notes: Vec<Note> = left.into_iter().take(NAMED).collect();
     if more > 0 {
-        notes.push(Note::new("ingest.binary.more_left_out").with("count", more));
+        notes.push(note!("ingest.binary.more_left_out", count = more));
     }
     notes
 }

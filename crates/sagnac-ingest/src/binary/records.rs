@@ -5,7 +5,7 @@ use crate::error::{IngestError, IngestErrorKind};
 use crate::in_memory::non_finite;
 use crate::layout::Field;
 use crate::{Block, FieldFault, FieldFaultKind, FileFacts, OnBlock, Table};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 use sagnac_core::numeric::range::usable;
 use std::path::{Path, PathBuf};
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -97,7 +97,7 @@ impl Table for Records {
 
 /// The diagnostic of a file that ends before all declared rows.
 pub(crate) fn short(path: &Path, declared: u64, found: u64) -> IngestError {
-    let note = Note::new("ingest.binary.short").with("declared", declared).with("found", found);
+    let note = note!("ingest.binary.short", declared, found);
     IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.cut_off")
 }
 
@@ -109,7 +109,7 @@ pub(crate) fn fields(
 ) -> Result<Vec<Field>, IngestError> {
     let field = |w: &usize| {
         columns.get(*w).copied().flatten().ok_or_else(|| {
-            let note = Note::new("ingest.no_column_at").with("position", w.saturating_add(1));
+            let note = note!("ingest.no_column_at", position = w.saturating_add(1));
             IngestError::new(IngestErrorKind::Column, path, note)
         })
     };

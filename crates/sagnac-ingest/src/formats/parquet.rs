@@ -12,7 +12,7 @@ use ::parquet::data_type::DataType;
 use ::parquet::errors::ParquetError;
 use ::parquet::file::reader::{FileReader, SerializedFileReader};
 use ::parquet::schema::types::ColumnDescriptor;
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 use sagnac_core::numeric::range::usable;
 use std::fs::File;
 use std::path::{Path, PathBuf};
@@ -37,7 +37,7 @@ impl Format for Parquet {
             return Err(IngestError::new(
                 IngestErrorKind::UnknownFormat,
                 &file.path,
-                Note::new("ingest.packed_parquet").with("packing", file.packing.id()),
+                note!("ingest.packed_parquet", packing = file.packing.id()),
             )
             .hint("ingest.hint.unpack_parquet"));
         }
@@ -53,7 +53,7 @@ impl Format for Parquet {
             columns,
             rows_estimate: Some(rows),
             cut_off: Vec::new(),
-            notes: vec![Note::new("ingest.note.row_groups").with("count", reader.num_row_groups())],
+            notes: vec![note!("ingest.note.row_groups", count = reader.num_row_groups())],
             metadata: Vec::new(),
             stated_sample_rate_hz: None,
             table: Box::new(ParquetFile { path: file.path.clone() }),
@@ -108,7 +108,7 @@ fn damaged(path: &Path, error: &ParquetError) -> IngestError {
     } else {
         "ingest.hint.damaged"
     };
-    IngestError::new(IngestErrorKind::Damaged, path, Note::new("ingest.parquet_damaged").with("reason", text))
+    IngestError::new(IngestErrorKind::Damaged, path, note!("ingest.parquet_damaged", reason = text))
         .hint(hint)
 }
 

@@ -22,7 +22,7 @@ use place::Place;
 use quantization_grid::QuantizationGrid;
 use rails::SaturationCheck;
 use repeats::RepetitionCheck;
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, note};
 use sagnac_core::recording::{Channel, SampleBlock, Sink};
 use stuck::StuckCheck;
 use summary::{CHUNK, Summary, summary};
@@ -225,53 +225,54 @@ impl ValueChecks {
                 faults.outliers += outliers;
                 for (place, z) in g.outliers.listed(threshold) {
                     log.push("outlier", id, at(place), place.row, 1, || {
-                        Note::new("fault_note.outlier").with("deviations", Arg::fixed(z, 1))
+                        note!("fault_note.outlier", deviations = Arg::fixed(z, 1))
                     });
                 }
                 for rail in g.rails.found(deviation) {
                     faults.saturated += rail.count;
                     log.push("saturated", id, at(rail.first), rail.first.row, rail.count, || {
-                        Note::new("fault_note.rail")
-                            .with("side", Arg::Key(rail.side.to_owned()))
-                            .with("value_deg_h", Arg::Stated(rail.value))
-                            .with("count", rail.count)
-                            .with("next", rail.next)
+                        note!(
+                            "fault_note.rail",
+                            side = Arg::Key(rail.side.to_owned()),
+                            value_deg_h = Arg::Stated(rail.value),
+                            count = rail.count,
+                            next = rail.next
+                        )
                     });
                 }
                 let stuck = g.runs.finish();
                 faults.stuck += stuck.count;
                 if let Some(mean) = stuck.held {
                     log.push("stuck", id, at(channel.first), channel.first.row, facts.count, || {
-                        Note::new("fault_note.held").with("times", Arg::fixed(mean, 1))
+                        note!("fault_note.held", times = Arg::fixed(mean, 1))
                     });
                 }
                 for &(place, length) in &stuck.listed {
                     log.push("stuck", id, at(place), place.row, length, || {
-                        Note::new("fault_note.stuck")
-                            .with("length", length)
-                            .with("longest_by_chance", stuck.longest_by_chance)
+                        note!("fault_note.stuck", length, longest_by_chance = stuck.longest_by_chance)
                     });
                 }
                 let (repeated, list) = g.repeats.finish();
                 faults.repeated += repeated;
                 for repeat in list {
                     log.push("repeated", id, at(repeat.place), repeat.place.row, repeat.length, || {
-                        Note::new("repeated.fault")
-                            .with("length", repeat.length)
-                            .with("first_row", repeat.first_row)
-                            .with("by_chance", repeat.by_chance)
+                        note!(
+                            "repeated.fault",
+                            length = repeat.length,
+                            first_row = repeat.first_row,
+                            by_chance = repeat.by_chance
+                        )
                     });
                 }
                 let coarse = facts.quantization_step.is_some_and(|q| q > FINE * deviation);
                 if let Some(share) = g.interpolation.finish().filter(|_| !coarse && stuck.held.is_none()) {
                     log.push("interpolated", id, at(channel.first), channel.first.row, facts.count, || {
-                        Note::new("interpolated.fault")
-                            .with("percent", Arg::Text(format!("{:.0}", share * 100.0)))
+                        note!("interpolated.fault", percent = Arg::Text(format!("{:.0}", share * 100.0)))
                     });
                 }
             } else if constant && facts.count > CONSTANT_AFTER {
                 log.push("stuck", id, at(channel.first), channel.first.row, facts.count, || {
-                    Note::new("fault_note.constant")
+                    note!("fault_note.constant")
                 });
             }
         }

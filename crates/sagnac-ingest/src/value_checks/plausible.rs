@@ -1,7 +1,7 @@
 //! What no sensor of a role can show: values and steps beyond physical bounds are faults of the recording.
 
 use crate::faults::FaultLog;
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, Note, note};
 use sagnac_core::recording::{Channel, Role, SampleBlock};
 
 /// Physical bounds of a quantity, in the unit of the analysis.
@@ -145,10 +145,12 @@ impl Plausible {
 }
 
 fn beyond(role: Role, value: f64, low: f64, high: f64) -> Note {
-    Note::new("plausible.value")
-        .with("value", Arg::figures(value, 6))
-        .with("bound", Arg::figures(if value < low { low } else { high }, 6))
-        .with("unit", unit_of(role))
+    note!(
+        "plausible.value",
+        value = Arg::figures(value, 6),
+        bound = Arg::figures(if value < low { low } else { high }, 6),
+        unit = unit_of(role)
+    )
 }
 
 /// Unit of the values that are watched: outputs are rates by then, whatever was recorded.
@@ -158,14 +160,18 @@ fn unit_of(role: Role) -> &'static str {
 
 fn leap(role: Role, step: f64, most: f64) -> Note {
     if role != Role::TableAngle {
-        return Note::new("plausible.leap")
-            .with("step_deg_s", Arg::figures(step / 3600.0, 6))
-            .with("most_deg_s", Arg::figures(most / 3600.0, 6));
+        return note!(
+            "plausible.leap",
+            step_deg_s = Arg::figures(step / 3600.0, 6),
+            most_deg_s = Arg::figures(most / 3600.0, 6)
+        );
     }
-    Note::new("plausible.angle")
-        .with("step_deg", Arg::figures(step / 3600.0, 6))
-        .with("most_deg", Arg::figures(most / 3600.0, 6))
-        .with("rate_deg_s", FASTEST_TABLE_DEG_S)
+    note!(
+        "plausible.angle",
+        step_deg = Arg::figures(step / 3600.0, 6),
+        most_deg = Arg::figures(most / 3600.0, 6),
+        rate_deg_s = FASTEST_TABLE_DEG_S
+    )
 }
 
 #[cfg(test)]

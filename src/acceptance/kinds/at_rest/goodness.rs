@@ -1,6 +1,6 @@
 //! Goodness of fit in words: where the model fails, and by how much.
 
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand::GyroEvidence;
 use crate::noise::residual::{GoodnessOfFit, Judged, TAIL, View};
 use crate::record::GoodnessOfFitRecord;
@@ -22,7 +22,7 @@ pub fn records(gyro: &GyroEvidence) -> Vec<GoodnessOfFitRecord> {
                 from: judged.departure.from,
                 to: Some(judged.departure.to).filter(|v| v.is_finite()),
                 excess: judged.departure.excess,
-                message: if departs { departure(judged, fit) } else { Note::new("goodness.fits") }.into(),
+                message: if departs { departure(judged, fit) } else { note!("goodness.fits") }.into(),
             }
         })
         .collect()
@@ -39,10 +39,9 @@ fn departure(judged: &Judged, fit: &GoodnessOfFit) -> Note {
     let times = Arg::Figures { value: 1.0 + place.excess, digits: 2, zeros: true };
     let more = place.excess >= 0.0;
     match judged.view {
-        View::Frequency if place.excess >= MIN_RATIO_EXCESS => Note::new("goodness_times.frequency")
-            .with("from_hz", figure(place.from))
-            .with("to_hz", figure(place.to))
-            .with("times", times),
+        View::Frequency if place.excess >= MIN_RATIO_EXCESS => {
+            note!("goodness_times.frequency", from_hz = figure(place.from), to_hz = figure(place.to), times)
+        }
         View::Frequency => {
             Note::new(if more { "goodness.frequency_more" } else { "goodness.frequency_less" })
                 .with("from_hz", figure(place.from))
@@ -51,13 +50,10 @@ fn departure(judged: &Judged, fit: &GoodnessOfFit) -> Note {
         }
         View::Lag => {
             let two = Arg::Figures { value: place.excess, digits: 2, zeros: false };
-            Note::new("goodness.lag").with("lag_s", figure(place.from)).with("correlation", two)
+            note!("goodness.lag", lag_s = figure(place.from), correlation = two)
         }
         View::AveragingTime if place.excess >= MIN_RATIO_EXCESS && place.from < place.to => {
-            Note::new("goodness_times.averaging")
-                .with("from_s", figure(place.from))
-                .with("to_s", figure(place.to))
-                .with("times", times)
+            note!("goodness_times.averaging", from_s = figure(place.from), to_s = figure(place.to), times)
         }
         View::AveragingTime => {
             let key = match (place.from < place.to, more) {
@@ -69,18 +65,22 @@ fn departure(judged: &Judged, fit: &GoodnessOfFit) -> Note {
             let note = Note::new(key).with("from_s", figure(place.from)).with("percent", percent);
             if place.from < place.to { note.with("to_s", figure(place.to)) } else { note }
         }
-        View::Jump => Note::new("goodness.jump")
-            .with("time_s", figure(0.5 * (place.from + place.to)))
-            .with("size", Arg::Figures { value: place.excess, digits: 3, zeros: true })
-            .with("deviations", Arg::Figures { value: judged.statistic.abs(), digits: 2, zeros: true }),
+        View::Jump => note!(
+            "goodness.jump",
+            time_s = figure(0.5 * (place.from + place.to)),
+            size = Arg::Figures { value: place.excess, digits: 3, zeros: true },
+            deviations = Arg::Figures { value: judged.statistic.abs(), digits: 2, zeros: true }
+        ),
         View::Amplitude => {
             let found = fit.amplitude.as_ref();
-            Note::new("goodness.amplitude")
-                .with("n", found.map_or(0, |a| a.beyond))
-                .with("sigma", Arg::Stated(TAIL))
-                .with("expected", figure(found.map_or(0.0, |a| a.expected_beyond)))
-                .with("kurtosis", figure(found.map_or(0.0, |a| a.excess_kurtosis)))
-                .with("skewness", figure(found.map_or(0.0, |a| a.skewness)))
+            note!(
+                "goodness.amplitude",
+                n = found.map_or(0, |a| a.beyond),
+                sigma = Arg::Stated(TAIL),
+                expected = figure(found.map_or(0.0, |a| a.expected_beyond)),
+                kurtosis = figure(found.map_or(0.0, |a| a.excess_kurtosis)),
+                skewness = figure(found.map_or(0.0, |a| a.skewness))
+            )
         }
     }
 }

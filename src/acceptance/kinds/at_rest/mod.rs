@@ -21,7 +21,7 @@ use crate::config::procedure::Procedure;
 use crate::config::procedure::model::MeasurandSpec;
 use crate::estimate::{Estimate, Verdict};
 use crate::figure::Figure;
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::measurand::GyroEvidence;
 use crate::noise::tails::Deviations;
 use crate::noise::tau_grid::TauGrid;
@@ -123,7 +123,7 @@ impl Evidence for RestEvidence {
         let gyros = &self.gyros;
         let declared = |g: &GyroEvidence| g.warm_up.as_ref().is_some_and(|w| w.start == Start::Declared);
         if record.errors.is_empty() && record.verdict != Verdict::None && gyros.iter().any(declared) {
-            record.summary.push(Note::new("summary.start_declared").into());
+            record.summary.push(note!("summary.start_declared").into());
         }
         record.power = power::records(reading.request.limits, gyros);
         if !self.is_constant() {
@@ -169,7 +169,7 @@ impl RestEvidence {
 /// In place of the estimate of a noise that a recording with motion does not show.
 fn without_noise(estimate: Estimate, spec: &MeasurandSpec) -> Estimate {
     let empty = spec.measurand.not_identifiable(&estimate.channel, None, estimate.method);
-    empty.note(Note::new("note.moving"))
+    empty.note(note!("note.moving"))
 }
 
 /// The compensation table of a channel with a model: TOML, JSON, C header.

@@ -1,7 +1,7 @@
 //! What the description of the noise holds beside N, B, K, R and Q, what it rests on and what it leaves out.
 
 use crate::estimate::Estimate;
-use crate::i18n::{Arg, Note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand::GyroEvidence;
 use crate::noise::composite::Bandwidth;
 use crate::noise::identification::{MarkovFound, QuasiPeriodicFound};
@@ -13,12 +13,12 @@ const WHOLE_SHARE: f64 = 0.999;
 fn with_interval(value: f64, estimate: Option<&Estimate>) -> Arg {
     let figures = |v: f64| Arg::Figures { value: v, digits: 3, zeros: false };
     match estimate.and_then(Estimate::interval95) {
-        Some(i) => Arg::from(
-            Note::new("described_interval.value")
-                .with("value", figures(value))
-                .with("low", figures(i.low))
-                .with("high", figures(i.high)),
-        ),
+        Some(i) => Arg::from(note!(
+            "described_interval.value",
+            value = figures(value),
+            low = figures(i.low),
+            high = figures(i.high)
+        )),
         None => figures(value),
     }
 }
@@ -40,32 +40,32 @@ pub fn remarks(gyro: &GyroEvidence) -> Vec<Note> {
     for d in &model.markov {
         let size = |m: &&MarkovFound| same(m.sigma.value, d.rms_deg_h);
         let estimates = found.markov.iter().find(size);
-        notes.push(
-            Note::new("described.markov")
-                .with("sigma", with_interval(d.rms_deg_h, estimates.map(|m| &m.sigma)))
-                .with("time_s", with_interval(d.decay_time_s, estimates.map(|m| &m.correlation_time))),
-        );
+        notes.push(note!(
+            "described.markov",
+            sigma = with_interval(d.rms_deg_h, estimates.map(|m| &m.sigma)),
+            time_s = with_interval(d.decay_time_s, estimates.map(|m| &m.correlation_time))
+        ));
     }
     for d in &model.quasi_periodic {
         let size = |q: &&QuasiPeriodicFound| same(q.amplitude.value, d.rms_deg_h);
         let estimates = found.quasi_periodic.iter().find(size);
-        notes.push(
-            Note::new("described.quasi_periodic")
-                .with("rms", with_interval(d.rms_deg_h, estimates.map(|q| &q.amplitude)))
-                .with("frequency_hz", with_interval(d.frequency_hz, estimates.map(|q| &q.frequency)))
-                .with("time_s", with_interval(d.decay_time_s, estimates.map(|q| &q.coherence_time))),
-        );
+        notes.push(note!(
+            "described.quasi_periodic",
+            rms = with_interval(d.rms_deg_h, estimates.map(|q| &q.amplitude)),
+            frequency_hz = with_interval(d.frequency_hz, estimates.map(|q| &q.frequency)),
+            time_s = with_interval(d.decay_time_s, estimates.map(|q| &q.coherence_time))
+        ));
     }
     let cutoff = found.cutoff.as_ref().and_then(|c| c.value);
     match (&model.bandwidth, cutoff) {
         (Some(Bandwidth::MovingAverage { samples }), Some(_)) => {
-            notes.push(Note::new("described.moving_average").with("n", u64::from(*samples)));
+            notes.push(note!("described.moving_average", n = u64::from(*samples)));
         }
         (Some(Bandwidth::FirstOrder { .. }), Some(hz)) => {
-            notes.push(Note::new("described.cutoff").with("hz", with_interval(hz, found.cutoff.as_ref())));
+            notes.push(note!("described.cutoff", hz = with_interval(hz, found.cutoff.as_ref())));
         }
         (None, Some(hz)) => {
-            notes.push(Note::new("described.cutoff").with("hz", with_interval(hz, found.cutoff.as_ref())));
+            notes.push(note!("described.cutoff", hz = with_interval(hz, found.cutoff.as_ref())));
         }
         // A filter that acts beyond the range of the fit is not stated.
         (_, None) => {}
@@ -89,10 +89,10 @@ pub fn remarks(gyro: &GyroEvidence) -> Vec<Note> {
         0 => range("described.range"),
         n => range("described.range_without_lines").with("n", n),
     });
-    notes.push(Note::new("described.leaves_out"));
+    notes.push(note!("described.leaves_out"));
     if let Some(whitened) = gyro.goodness.whitened.as_ref().filter(|w| w.share < WHOLE_SHARE) {
         let percent = Arg::Figures { value: 100.0 * whitened.share, digits: 3, zeros: false };
-        notes.push(Note::new("described.longest_stretch").with("percent", percent));
+        notes.push(note!("described.longest_stretch", percent));
     }
     notes
 }

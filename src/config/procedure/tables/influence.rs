@@ -6,7 +6,7 @@ use crate::config::reader::Reader;
 use crate::config::section::Section;
 use crate::config::spec::{Range, Word};
 use crate::config::table::Table;
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::influence::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};
 use crate::measurand::{Evaluation, Measurand, Test};
 use crate::recording::Role;
@@ -246,7 +246,7 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
     let own = tests.iter().find(|t| root.table(t).is_some());
     if let (Some(own), [first, second, ..]) = (own, asked.as_slice()) {
         let other = if first == own { second } else { first };
-        let message = Note::new("influence_check.two_tests").with("first", *own).with("second", *other);
+        let message = note!("influence_check.two_tests", first = *own, second = *other);
         let at = root.table(own).map_or(0..0, |s| s.span.clone());
         reader.error(&at, message, Some("influence_check.help.two_tests".into()));
     }
@@ -257,12 +257,11 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
             if let Some(likeliest) = tables.first()
                 && tables.iter().all(|t| root.table(t).is_none())
             {
-                let message =
-                    Note::new("influence_check.no_table").with("id", measurand.id).with("table", *likeliest);
+                let message = note!("influence_check.no_table", id = measurand.id, table = *likeliest);
                 reader.error(&at, message, None);
             }
         } else if own.is_some() && measurand.test() == Test::Static && !measurand.from_site {
-            let message = Note::new("influence_check.static").with("id", measurand.id);
+            let message = note!("influence_check.static", id = measurand.id);
             reader.error(&at, message, None);
         }
     }
@@ -271,7 +270,7 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
         if let Some(id) = section.text("temperature")
             && procedure.channel(&id).is_none_or(|c| c.channel.role != Role::Temperature)
         {
-            let message = Note::new("rate_table_check.no_temperature").with("id", id);
+            let message = note!("rate_table_check.no_temperature", id);
             reader.error(&section.span_of("temperature"), message, None);
         }
         for part in ["run", "interval"].iter().flat_map(|list| section.tables(list)) {
@@ -290,8 +289,8 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
         let told = procedure.channels.iter().any(|c| c.channel.role == test.influence.role());
         if !told && test.intervals.is_empty() {
             let at = root.table(test.influence.table()).map_or(0..0, |s| s.span.clone());
-            let message = Note::new("influence_check.no_level").with("role", test.influence.id());
-            let help = Note::new("influence_check.help.no_level").with("table", test.influence.table());
+            let message = note!("influence_check.no_level", role = test.influence.id());
+            let help = note!("influence_check.help.no_level", table = test.influence.table());
             reader.error(&at, message, Some(help));
         }
     }

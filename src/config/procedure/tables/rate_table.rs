@@ -5,7 +5,7 @@ use crate::config::reader::Reader;
 use crate::config::section::Section;
 use crate::config::spec::Word;
 use crate::config::table::Table;
-use crate::i18n::Note;
+use crate::i18n::note;
 use crate::measurand::Test;
 use crate::rate_table::setup::{Input, ReferenceInput, Setup};
 use crate::recording::Role;
@@ -194,11 +194,11 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
         let at = section.span_of("id");
         match (&procedure.rate_table, measurand.test()) {
             (None, Test::RateTable) => {
-                let message = Note::new("rate_table_check.no_table").with("id", measurand.id);
+                let message = note!("rate_table_check.no_table", id = measurand.id);
                 reader.error(&at, message, Some("rate_table_check.help.no_table".into()));
             }
             (Some(_), Test::Static) => {
-                let message = Note::new("rate_table_check.static_measurand").with("id", measurand.id);
+                let message = note!("rate_table_check.static_measurand", id = measurand.id);
                 reader.error(&at, message, Some("rate_table_check.help.static_measurand".into()));
             }
             _ => {}
@@ -215,7 +215,7 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
     for part in ["position", "turn"].iter().flat_map(|name| section.tables(name)) {
         let Some(id) = part.text("channel") else { continue };
         if !procedure.channel(&id).is_some_and(|c| c.channel.role.is_gyro()) {
-            let message = Note::new("rate_table_check.no_gyro").with("id", id);
+            let message = note!("rate_table_check.no_gyro", id);
             reader.error(&part.span_of("channel"), message, None);
         }
     }
@@ -226,7 +226,7 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
     if let Some(id) = section.text("temperature") {
         let suits = procedure.channel(&id).is_some_and(|c| c.channel.role == Role::Temperature);
         if !suits {
-            let message = Note::new("rate_table_check.no_temperature").with("id", id);
+            let message = note!("rate_table_check.no_temperature", id);
             reader.error(&section.span_of("temperature"), message, None);
         }
     }

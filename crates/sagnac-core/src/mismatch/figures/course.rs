@@ -4,7 +4,7 @@ use super::join::{MAX_TIME_POINTS, over_time};
 use super::{axis, line, shaded};
 use crate::effect::{Domain, Place};
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
-use crate::message::Note;
+use crate::message::note;
 
 /// Curves over time.
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +45,7 @@ pub fn time_course(course: &TimeSeries<'_>) -> Figure {
         && let [first, .., last] = course.time_s
     {
         let step = (last - first) / (course.time_s.len() - 1) as f64;
-        remarks.push(Note::new("figure.explain.averaged").with("seconds", step * group as f64));
+        remarks.push(note!("figure.explain.averaged", seconds = step * group as f64));
     }
     Figure {
         id: "residual_over_time".into(),

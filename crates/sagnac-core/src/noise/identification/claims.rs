@@ -8,7 +8,7 @@
 
 use super::linear_fit::RAMP;
 use crate::estimate::Estimate;
-use crate::message::Note;
+use crate::message::{Note, note};
 use crate::noise::data::NoiseType;
 use crate::noise::model::TERMS;
 
@@ -164,7 +164,7 @@ pub(crate) fn is_claimable(term: usize, preference: f64, relative_sigma: f64) ->
 pub(crate) fn with_rivals(estimate: Estimate, term: usize, preference: f64) -> Estimate {
     let slow = matches!(term, FLICKER | WALK | RAMP);
     if slow && preference < NEARLY_AS_GOOD {
-        estimate.note(Note::new("slow_alike.term").with("fall", preference))
+        estimate.note(note!("slow_alike.term", fall = preference))
     } else {
         estimate
     }
@@ -172,7 +172,7 @@ pub(crate) fn with_rivals(estimate: Estimate, term: usize, preference: f64) -> E
 
 /// Low-frequency noise is there, and which of the terms it is stays open.
 pub(crate) fn low_frequency_note() -> Note {
-    Note::new("note.low_frequency_ambiguous")
+    note!("note.low_frequency_ambiguous")
 }
 
 /// Terms that may hold a part of this one while too weak to be claimed.

@@ -13,7 +13,7 @@ use super::misfit::{Misfit, WhitenedBand};
 use super::options::Options;
 use super::result::Identification;
 use crate::estimate::{Estimate, Spread, UpperLimit};
-use crate::message::Note;
+use crate::message::note;
 use crate::noise::composite::Part;
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::Evidence;
@@ -176,19 +176,15 @@ fn with_notes(mut ranged: RangedIdentification) -> RangedIdentification {
     }
     for estimate in ranged.identification.every_estimate_mut() {
         if let Some(highest_hz) = rounded_above_hz {
-            estimate.notes.push(Note::new("note.fit_coarse").with("highest_hz", highest_hz));
+            estimate.notes.push(note!("note.fit_coarse", highest_hz));
         }
         if let Some(highest_hz) = highest_hz.filter(|_| highest_hz != rounded_above_hz) {
-            estimate.notes.push(Note::new("note.fit_restricted").with("highest_hz", highest_hz));
+            estimate.notes.push(note!("note.fit_restricted", highest_hz));
         }
         if widened > 1.0 {
             widen(estimate, widened);
             let [low_hz, high_hz] = misfit.worst_band_hz.unwrap_or([f64::NAN; 2]);
-            let note = Note::new("note.model_misfit")
-                .with("misfit", misfit.per_dof)
-                .with("low_hz", low_hz)
-                .with("high_hz", high_hz)
-                .with("factor", widened);
+            let note = note!("note.model_misfit", misfit = misfit.per_dof, low_hz, high_hz, factor = widened);
             estimate.notes.push(note);
         }
     }

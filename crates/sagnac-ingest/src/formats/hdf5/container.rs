@@ -3,7 +3,7 @@
 use crate::error::{IngestError, IngestErrorKind};
 use hdf5_reader::error::Error;
 use hdf5_reader::{FileStorage, Hdf5File, OpenOptions};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -42,10 +42,6 @@ pub(super) fn damaged(path: &Path, error: &Error) -> IngestError {
         | Error::UnsupportedLayoutClass(_) => "ingest.hdf5.hint.encoding",
         _ => "ingest.hint.damaged",
     };
-    IngestError::new(
-        IngestErrorKind::Damaged,
-        path,
-        Note::new("ingest.hdf5.damaged").with("reason", error.to_string()),
-    )
-    .hint(hint)
+    IngestError::new(IngestErrorKind::Damaged, path, note!("ingest.hdf5.damaged", reason = error.to_string()))
+        .hint(hint)
 }

@@ -8,7 +8,7 @@ use crate::part_selection::Part;
 use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
 use hdf5_reader::{CompoundField, Dataset, Datatype, Hdf5File, SliceInfo};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use sagnac_core::units::Affine;
 use std::collections::BTreeSet;
 
@@ -107,7 +107,7 @@ pub(super) fn walk(file: &Hdf5File) -> Result<FileTree, Error> {
         let (groups, datasets, mut notes) = members(&group, &path)?;
         left = left.saturating_sub(groups.len() + datasets.len() + 1);
         if left == 0 {
-            found.notes.push(Note::new("ingest.hdf5.many_objects").with("count", MAX_OBJECTS));
+            found.notes.push(note!("ingest.hdf5.many_objects", count = MAX_OBJECTS));
         }
         let mut part =
             GroupPart { part: Part { name: path.clone(), columns: Vec::new() }, ..GroupPart::default() };
@@ -157,11 +157,11 @@ fn members(group: &Group, path: &str) -> Result<Members, Error> {
     for name in dataset_names.iter().take(MAX_OBJECTS) {
         match group.dataset(name) {
             Ok(dataset) => datasets.push(dataset),
-            Err(e) => notes.push(
-                Note::new("ingest.hdf5.not_opened")
-                    .with("name", crate::error::shorten(&join(path, name)))
-                    .with("reason", e.to_string()),
-            ),
+            Err(e) => notes.push(note!(
+                "ingest.hdf5.not_opened",
+                name = crate::error::shorten(&join(path, name)),
+                reason = e.to_string()
+            )),
         }
     }
     if groups.is_empty() && datasets.is_empty() { Err(whole) } else { Ok((groups, datasets, notes)) }
@@ -306,12 +306,12 @@ impl DescribedDataset<'_> {
             }
         }
         if (self.told.factor.is_some() || self.told.offset.is_some()) && storage.is_some() {
-            self.part.notes.push(
-                Note::new("ingest.hdf5.scaled")
-                    .with("name", self.path.as_str())
-                    .with("factor", self.told.factor.unwrap_or(1.0))
-                    .with("offset", self.told.offset.unwrap_or(0.0)),
-            );
+            self.part.notes.push(note!(
+                "ingest.hdf5.scaled",
+                name = self.path.as_str(),
+                factor = self.told.factor.unwrap_or(1.0),
+                offset = self.told.offset.unwrap_or(0.0)
+            ));
         }
     }
 }

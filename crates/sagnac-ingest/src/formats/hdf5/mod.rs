@@ -11,7 +11,7 @@ use crate::metadata::Metadata;
 use crate::part_selection;
 use crate::{Candidate, Format, Opened};
 use container::{container, damaged};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 
 /// First bytes of the file, or of what follows a user block.
 const SIGNATURE: &[u8] = b"\x89HDF\r\n\x1a\n";
@@ -60,10 +60,12 @@ impl Format for Hdf5 {
                 return Err(IngestError::new(
                     IngestErrorKind::Bomb,
                     path,
-                    Note::new("ingest.hdf5.bomb")
-                        .with("name", column.name)
-                        .with("bytes", place.logical_bytes)
-                        .with("file", file.bytes),
+                    note!(
+                        "ingest.hdf5.bomb",
+                        name = column.name,
+                        bytes = place.logical_bytes,
+                        file = file.bytes
+                    ),
                 )
                 .hint("ingest.hint.bomb"));
             }
@@ -76,7 +78,7 @@ impl Format for Hdf5 {
         }
         let rate = part.stated_rate_hz.or(found.stated_rate_hz);
         if let Some(rate) = rate {
-            notes.push(Note::new("ingest.parts.stated_rate").with("rate", rate));
+            notes.push(note!("ingest.parts.stated_rate", rate));
         }
         table::unfiltered(&container, path, &mut columns, &places, &mut notes)?;
         table::dated(&container, path, &mut columns, &mut places, &mut notes)?;

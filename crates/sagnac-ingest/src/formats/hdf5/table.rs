@@ -9,7 +9,7 @@ use crate::error::{IngestError, IngestErrorKind};
 use crate::{Block, Column, FileFacts, OnBlock, Table};
 use hdf5_reader::error::Error;
 use hdf5_reader::{Dataset, H5Type, Hdf5File, SliceInfo, SliceInfoElem};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use sagnac_core::recording::Role;
 use sagnac_core::units::Affine;
 use std::path::{Path, PathBuf};
@@ -70,7 +70,7 @@ pub(super) fn unfiltered(
                     _ => None,
                 };
                 if let Some(filter) = &filter {
-                    let note = Note::new("ingest.hdf5.filtered").with("name", name);
+                    let note = note!("ingest.hdf5.filtered", name);
                     notes.push(note.with("filter", filter.as_str()));
                 }
                 tried.push((name, filter.clone()));
@@ -118,7 +118,7 @@ pub(super) fn dated(
         place.conversion = Affine { factor: step_s, offset: 0.0 };
         column.unit = Some("s".to_owned());
         column.epoch_s = Some(epoch as f64);
-        notes.push(Note::new("ingest.hdf5.stamps").with("name", column.name.as_str()).with("unit", word));
+        notes.push(note!("ingest.hdf5.stamps", name = column.name.as_str(), unit = word));
     }
     Ok(())
 }
@@ -166,11 +166,8 @@ impl Hdf5Table {
     fn lost(&self, wanted: &Wanted<'_>, start: u64, end: u64, error: &Error) -> IngestError {
         let name = wanted.columns.first().map_or("", |(_, p)| p.dataset.as_str());
         let whole = damaged(&self.path, error);
-        let note = Note::new("ingest.hdf5.slice")
-            .with("name", name)
-            .with("first", start + 1)
-            .with("last", end)
-            .with("reason", error.to_string());
+        let note =
+            note!("ingest.hdf5.slice", name, first = start + 1, last = end, reason = error.to_string());
         let kind = whole.kind();
         let error = IngestError::new(kind, &self.path, note);
         match whole.advice() {

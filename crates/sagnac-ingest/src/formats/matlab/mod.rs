@@ -13,7 +13,7 @@ use crate::binary::column_stream::ColumnStreamTable;
 use crate::binary::positioned_file::PositionedFile;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::{Candidate, Format, Opened};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 use variables::Variables;
 
 /// A MAT file.
@@ -39,7 +39,7 @@ impl Format for Mat {
         for one in std::mem::take(&mut found.numbers) {
             let Some(shape) = one.shape() else {
                 let text: Vec<String> = one.dimensions.iter().map(u64::to_string).collect();
-                found.leave(&one.name, Note::new("ingest.mat.no_table").with("shape", text.join(" × ")));
+                found.leave(&one.name, note!("ingest.mat.no_table", shape = text.join(" × ")));
                 continue;
             };
             arrays.push(array_selection::Array {
@@ -58,12 +58,12 @@ impl Format for Mat {
         let (mut columns, mut groups, mut places) = (Vec::new(), Vec::new(), Vec::new());
         for ((one, shape), array) in numbers.iter().zip(&arrays) {
             if !array_selection::belongs(array, rows, part, &arrays) {
-                let note = Note::new("ingest.binary.other_length").with("name", one.name.as_str());
+                let note = note!("ingest.binary.other_length", name = one.name.as_str());
                 found.left.push(note.with("rows", shape.rows).with("chosen", rows));
                 continue;
             }
             if shape.flat {
-                let note = Note::new("ingest.mat.flat").with("name", one.name.as_str());
+                let note = note!("ingest.mat.flat", name = one.name.as_str());
                 notes.push(note.with("rows", shape.columns).with("columns", shape.rows));
             }
             for (column, place) in one.columns(shape, &mut groups) {
@@ -96,8 +96,8 @@ impl Format for Mat {
 fn nothing(file: &Candidate, found: Variables) -> IngestError {
     let hint = if found.has_objects { "ingest.mat.hint.tables" } else { "ingest.mat.hint.arrays" };
     let error = match found.left.into_iter().next() {
-        Some(reason) => Note::new("ingest.mat.nothing_but").with("reason", reason),
-        None => Note::new("ingest.mat.nothing"),
+        Some(reason) => note!("ingest.mat.nothing_but", reason),
+        None => note!("ingest.mat.nothing"),
     };
     IngestError::new(IngestErrorKind::NotNumeric, &file.path, error).hint(hint)
 }

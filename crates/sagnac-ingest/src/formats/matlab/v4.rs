@@ -7,7 +7,7 @@ use crate::binary::positioned_file::PositionedFile;
 use crate::byte_stream::io_error;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::layout::{ByteOrder, Field, NumberType};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use std::sync::Arc;
 
 /// Length of what stands before the name of a variable, bytes.
@@ -96,7 +96,7 @@ pub(super) fn walk(file: &Candidate, at: &Arc<PositionedFile>) -> Result<Variabl
     };
     while next < at.size {
         if found.streams.len() >= MAX_VARIABLES {
-            let note = Note::new("ingest.binary.too_many_columns").with("most", MAX_VARIABLES);
+            let note = note!("ingest.binary.too_many_columns", most = MAX_VARIABLES);
             return Err(IngestError::new(IngestErrorKind::Damaged, &file.path, note)
                 .hint("ingest.hint.give_recording"));
         }

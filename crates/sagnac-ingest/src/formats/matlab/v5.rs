@@ -7,7 +7,7 @@ use crate::binary::column_stream::{Coding, Stream, stream_error};
 use crate::binary::positioned_file::PositionedFile;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::layout::{ByteOrder, Field};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use std::io;
 use std::sync::Arc;
 
@@ -39,7 +39,7 @@ pub(super) fn walk(
     let mut next = HEADER;
     while next < at.size {
         if found.streams.len() >= MAX_VARIABLES {
-            let note = Note::new("ingest.binary.too_many_columns").with("most", MAX_VARIABLES);
+            let note = note!("ingest.binary.too_many_columns", most = MAX_VARIABLES);
             return Err(IngestError::new(IngestErrorKind::Damaged, &file.path, note)
                 .hint("ingest.hint.give_recording"));
         }
@@ -49,7 +49,7 @@ pub(super) fn walk(
         let mut elements = ElementReader::new(raw.open(at), order);
         let tag = elements.tag().map_err(fail)?;
         if tag.bytes > at.size.saturating_sub(next.saturating_add(tag.at)) {
-            let note = Note::new("ingest.mat.cut").with("at", next).with("declared", tag.bytes);
+            let note = note!("ingest.mat.cut", at = next, declared = tag.bytes);
             return Err(
                 IngestError::new(IngestErrorKind::Damaged, &file.path, note).hint("ingest.hint.cut_off")
             );
@@ -79,9 +79,9 @@ pub(super) fn walk(
 /// The diagnostic of an element that cannot be read.
 fn element_error(file: &Candidate, at: u64, error: &io::Error) -> IngestError {
     let (note, hint) = match error.kind() {
-        io::ErrorKind::UnexpectedEof => (Note::new("ingest.mat.element_short"), "ingest.hint.cut_off"),
+        io::ErrorKind::UnexpectedEof => (note!("ingest.mat.element_short"), "ingest.hint.cut_off"),
         io::ErrorKind::InvalidData | io::ErrorKind::InvalidInput => {
-            let note = Note::new("ingest.mat.element_damaged").with("reason", error.to_string());
+            let note = note!("ingest.mat.element_damaged", reason = error.to_string());
             (note, "ingest.hint.copy_again")
         }
         _ => return stream_error(&file.path, &at.to_string(), error),
@@ -219,7 +219,7 @@ fn opaque(
     let [name, _, class] = words.as_slice() else { return Ok(()) };
     let name = owner.map_or_else(|| name.clone(), |(structure, field)| format!("{structure}.{field}"));
     let class = crate::error::shorten(class);
-    found.leave(&name, Note::new("ingest.mat.class").with("class", class));
+    found.leave(&name, note!("ingest.mat.class", class));
     found.has_objects = true;
     Ok(())
 }

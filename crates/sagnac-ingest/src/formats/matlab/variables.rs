@@ -4,7 +4,7 @@ use crate::Column;
 use crate::binary::column_stream::{ColumnPlace, RecordGroup, Stream};
 use crate::layout::{Field, MAX_COLUMNS, MAX_RECORD_BYTES};
 use crate::metadata::{Metadata, stated_sample_rate_hz};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 
 /// Most of what is said of variables that are left out.
 const MAX_SKIPPED_NOTES: usize = 1000;
@@ -43,7 +43,7 @@ impl Variables {
     pub fn leave(&mut self, name: &str, reason: Note) {
         if self.left.len() < MAX_SKIPPED_NOTES {
             let name = crate::error::shorten(name);
-            self.left.push(Note::new("ingest.binary.left_out").with("name", name).with("reason", reason));
+            self.left.push(note!("ingest.binary.left_out", name, reason));
         }
     }
 

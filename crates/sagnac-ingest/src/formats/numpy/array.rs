@@ -5,7 +5,7 @@ use super::literal::{self, Literal};
 use crate::Column;
 use crate::layout::{Field, Ticks};
 use crate::layout::{MAX_COLUMNS, MAX_RECORD_BYTES};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 
 /// First bytes of an array.
 pub(super) const MAGIC: &[u8] = b"\x93NUMPY";
@@ -42,7 +42,7 @@ pub(super) fn header(head: &[u8]) -> Result<Array, Fault> {
         1 => false,
         2 | 3 => true,
         other => {
-            let note = Note::new("ingest.npy.version").with("version", u64::from(other));
+            let note = note!("ingest.npy.version", version = u64::from(other));
             return Err((note, "ingest.npy.hint.save_again"));
         }
     };
@@ -54,22 +54,20 @@ pub(super) fn header(head: &[u8]) -> Result<Array, Fault> {
     let text = String::from_utf8_lossy(head.get(start..end).ok_or_else(cut)?);
     let literal = literal::parse(&text).map_err(|at| damaged(start + at, "ingest.npy.header_damaged"))?;
     let key = |name: &'static str| {
-        literal
-            .get(name)
-            .ok_or_else(|| (Note::new("ingest.npy.no_key").with("key", name), "ingest.hint.damaged"))
+        literal.get(name).ok_or_else(|| (note!("ingest.npy.no_key", key = name), "ingest.hint.damaged"))
     };
     let element = dtype::element(key("descr")?).map_err(type_fault)?;
     let fortran_order = match key("fortran_order")? {
         Literal::Truth(truth) => *truth,
         _ => {
-            return Err((Note::new("ingest.npy.no_key").with("key", "fortran_order"), "ingest.hint.damaged"));
+            return Err((note!("ingest.npy.no_key", key = "fortran_order"), "ingest.hint.damaged"));
         }
     };
     let shape = match key("shape")? {
         Literal::Whole(n) => Some(vec![*n]),
         shape => shape.list().and_then(|s| s.iter().map(Literal::whole).collect::<Option<Vec<u64>>>()),
     };
-    let bad_shape = || (Note::new("ingest.npy.no_key").with("key", "shape"), "ingest.hint.damaged");
+    let bad_shape = || (note!("ingest.npy.no_key", key = "shape"), "ingest.hint.damaged");
     let shape = shape.filter(|s| s.len() <= 32).ok_or_else(bad_shape)?;
     let data_bytes = shape
         .iter()
@@ -83,14 +81,14 @@ fn type_fault(fault: TypeFault) -> Fault {
     match fault {
         TypeFault::Objects => ("ingest.npy.objects".into(), "ingest.npy.hint.no_objects"),
         TypeFault::Unknown(text) => {
-            (Note::new("ingest.npy.type").with("type", text), "ingest.npy.hint.save_numbers")
+            (note!("ingest.npy.type").with("type", text), "ingest.npy.hint.save_numbers")
         }
         TypeFault::TooMany => too_many(),
     }
 }
 
 fn too_many() -> Fault {
-    (Note::new("ingest.binary.too_many_columns").with("most", MAX_COLUMNS), "ingest.hint.give_recording")
+    (note!("ingest.binary.too_many_columns", most = MAX_COLUMNS), "ingest.hint.give_recording")
 }
 
 /// The columns of an array and where their values stand.
@@ -134,12 +132,12 @@ impl Array {
             [n] => (*n, 1, None),
             [rows, columns] if single => {
                 let flat = *rows <= MAX_CHANNELS && *columns > MAX_CHANNELS && *columns / FLAT >= *rows;
-                let note = Note::new("ingest.npy.flat").with("rows", *rows).with("columns", *columns);
+                let note = note!("ingest.npy.flat", rows = *rows, columns = *columns);
                 if flat { (*columns, *rows, Some(note)) } else { (*rows, *columns, None) }
             }
             _ => {
                 let text: Vec<String> = self.shape.iter().map(u64::to_string).collect();
-                let note = Note::new("ingest.npy.dimensions").with("shape", text.join(" × "));
+                let note = note!("ingest.npy.dimensions", shape = text.join(" × "));
                 return Err((note, "ingest.npy.hint.two_dimensions"));
             }
         };

@@ -7,7 +7,7 @@ use crate::binary::records::Records;
 use crate::byte_stream::Packing;
 use crate::error::{IngestError, IngestErrorKind};
 use crate::{Candidate, Format, Opened, Table};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 
 /// A NumPy array, plain or packed.
 pub(crate) struct Npy;
@@ -89,9 +89,9 @@ fn length(file: &Candidate, array: &Array) -> Result<Option<Note>, IngestError> 
     }
     let there = file.bytes.saturating_sub(array.data_at);
     if there < array.data_bytes {
-        let note = Note::new("ingest.npy.short").with("declared", array.data_bytes).with("found", there);
+        let note = note!("ingest.npy.short", declared = array.data_bytes, found = there);
         return Err(IngestError::new(IngestErrorKind::Damaged, &file.path, note).hint("ingest.hint.cut_off"));
     }
     let more = there - array.data_bytes;
-    Ok((more > 0).then(|| Note::new("ingest.npy.longer").with("bytes", more)))
+    Ok((more > 0).then(|| note!("ingest.npy.longer", bytes = more)))
 }

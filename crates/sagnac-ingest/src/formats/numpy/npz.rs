@@ -11,7 +11,7 @@ use crate::error::{IngestError, IngestErrorKind};
 use crate::metadata::{Metadata, stated_sample_rate_hz};
 use crate::{Candidate, Column, Format, Opened};
 use rawzip::{CompressionMethod, ReaderAt, ZipLocator};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use std::io;
 use std::sync::Arc;
 
@@ -114,10 +114,7 @@ impl Format for Npz {
 
 /// What is said of an array that does not belong to the recording.
 fn other_length(array: &array_selection::Array, rows: u64) -> Note {
-    Note::new("ingest.binary.other_length")
-        .with("name", array.name.as_str())
-        .with("rows", array.rows)
-        .with("chosen", rows)
+    note!("ingest.binary.other_length", name = array.name.as_str(), rows = array.rows, chosen = rows)
 }
 
 impl ReaderAt for PositionedFile {
@@ -130,7 +127,7 @@ impl ReaderAt for PositionedFile {
 fn members(file: &Candidate, at: &Arc<PositionedFile>) -> Result<ArchiveContents, IngestError> {
     let path = &file.path;
     let damaged = |e: rawzip::Error| {
-        let note = Note::new("ingest.npz.damaged").with("reason", e.to_string());
+        let note = note!("ingest.npz.damaged", reason = e.to_string());
         IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.damaged")
     };
     let mut buffer = vec![0; rawzip::RECOMMENDED_BUFFER_SIZE];
@@ -142,14 +139,12 @@ fn members(file: &Candidate, at: &Arc<PositionedFile>) -> Result<ArchiveContents
     while let Some(member) = directory.next_entry().map_err(damaged)? {
         count += 1;
         if count > MAX_MEMBERS {
-            let note = Note::new("ingest.binary.too_many_columns").with("most", MAX_MEMBERS);
+            let note = note!("ingest.binary.too_many_columns", most = MAX_MEMBERS);
             let error = IngestError::new(IngestErrorKind::Damaged, path, note);
             return Err(error.hint("ingest.hint.give_recording"));
         }
         let full = String::from_utf8_lossy(member.file_path().as_bytes()).into_owned();
-        let leave = |reason: Note| {
-            Note::new("ingest.binary.left_out").with("name", shown(&full)).with("reason", reason)
-        };
+        let leave = |reason: Note| note!("ingest.binary.left_out", name = shown(&full), reason);
         let coding = match member.compression_method() {
             _ if member.flags().is_encrypted() => None,
             CompressionMethod::STORE => Some(Coding::Checked(member.crc32())),
@@ -182,8 +177,7 @@ fn members(file: &Candidate, at: &Arc<PositionedFile>) -> Result<ArchiveContents
             }
         };
         if size.checked_sub(array.data_at).is_none_or(|there| there < array.data_bytes) {
-            let note =
-                Note::new("ingest.npz.short").with("name", shown(&full)).with("declared", array.data_bytes);
+            let note = note!("ingest.npz.short", name = shown(&full), declared = array.data_bytes);
             return Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.cut_off"));
         }
         let data = usize::try_from(array.data_at).ok().and_then(|at| head.get(at..)).unwrap_or_default();

@@ -9,7 +9,7 @@ use crate::error::{IngestError, IngestErrorKind};
 use crate::layout::Layout;
 use crate::{Candidate, Column, Format, Opened};
 use framing::Scanner;
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 
 /// Raw binary records.
 pub(super) struct Raw;
@@ -39,16 +39,15 @@ impl Format for Raw {
         let record = layout.record_bytes as u64;
         let rows = file.bytes.saturating_sub(layout.header_bytes) / record.max(1);
         if file.packing == Packing::Plain && rows == 0 {
-            let note = Note::new("ingest.raw.no_record").with("bytes", file.bytes).with("record", record);
+            let note = note!("ingest.raw.no_record", bytes = file.bytes, record);
             return Err(IngestError::new(IngestErrorKind::Empty, &file.path, note)
                 .hint("ingest.raw.hint.check_layout"));
         }
         judge(file, layout)?;
-        let mut notes =
-            vec![Note::new("ingest.raw.records").with("record", record).with("header", layout.header_bytes)];
+        let mut notes = vec![note!("ingest.raw.records", record, header = layout.header_bytes)];
         let rest = file.bytes.saturating_sub(layout.header_bytes) % record.max(1);
         if file.packing == Packing::Plain && rest > 0 && layout.sync.is_empty() {
-            notes.push(Note::new("ingest.raw.rest").with("bytes", rest).with("record", record));
+            notes.push(note!("ingest.raw.rest", bytes = rest, record));
         }
         let columns = layout.columns.iter().map(|c| Column {
             name: c.name.clone(),
@@ -72,7 +71,7 @@ impl Format for Raw {
         let whole = file.bytes.saturating_sub(layout.header_bytes) % (layout.record_bytes as u64).max(1) == 0;
         let cut_off = match file.packing {
             Packing::Plain if !framed && !whole => {
-                vec![Note::new("ingest.raw.cut_off").with("bytes", file.bytes)]
+                vec![note!("ingest.raw.cut_off", bytes = file.bytes)]
             }
             _ => Vec::new(),
         };
@@ -109,7 +108,7 @@ fn judge(file: &Candidate, layout: &Layout) -> Result<(), IngestError> {
     if good * 2 >= expected {
         return Ok(());
     }
-    let note = Note::new("ingest.raw.does_not_fit").with("records", expected).with("good", good);
+    let note = note!("ingest.raw.does_not_fit", records = expected, good);
     let error = IngestError::new(IngestErrorKind::Layout, &file.path, note);
     let error = match cut.bad.first() {
         Some((_, text)) => error.found(text),

@@ -17,7 +17,7 @@ use crate::open_file;
 use crate::part_selection::{self, Part};
 use crate::{Candidate, Column, Format, Opened};
 use properties::{Properties, Value};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use sagnac_core::recording::Role;
 use segments::{Channel, Contents, Kind, Scanner};
 use table::{Origin, TdmsTable};
@@ -55,8 +55,8 @@ impl Format for Tdms {
             .filter_map(|&i| contents.channels.get(i))
             .filter(|c| c.values == rows || cut && c.values > rows || !c.kind.is_number())
             .collect();
-        notes.push(Note::new("ingest.tdms.segments").with("count", contents.segments));
-        let broken = |at| Note::new("ingest.tdms.broken").with("at", at);
+        notes.push(note!("ingest.tdms.segments", count = contents.segments));
+        let broken = |at| note!("ingest.tdms.broken", at);
         let cut_off: Vec<Note> = contents.broken_at.map(broken).into_iter().collect();
         notes.extend(cut_off.iter().cloned());
         notes.extend(part_selection::odd_lengths(&part, rows).filter(|_| !cut));
@@ -121,11 +121,11 @@ fn columns(
         let name = channel.name.as_str();
         let steps = scale::steps([&channel.properties, group, &contents.file]).unwrap_or_else(|kind| {
             let kind = crate::error::shorten(&kind);
-            notes.push(Note::new("ingest.tdms.scale_unknown").with("name", name).with("kind", kind));
+            notes.push(note!("ingest.tdms.scale_unknown", name, kind));
             Vec::new()
         });
         if !steps.is_empty() {
-            notes.push(Note::new("ingest.tdms.scaled").with("name", name).with("count", steps.len()));
+            notes.push(note!("ingest.tdms.scaled", name, count = steps.len()));
         }
         let mut base_s = 0;
         if channel.kind == Kind::Stamp && rows > 0 {
@@ -145,7 +145,7 @@ fn whole_rows(path: &std::path::Path, contents: &Contents, part: &Part, at: u64)
     match of_group.map(|c| c.values).min() {
         Some(rows) if rows > 1 => Ok(rows),
         _ => {
-            let note = Note::new("ingest.tdms.broken_before").with("at", at);
+            let note = note!("ingest.tdms.broken_before", at);
             Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.cut_off"))
         }
     }

@@ -6,7 +6,7 @@
 use super::bytes::{MetadataFault, Reader};
 use super::properties::{Properties, Value};
 use crate::error::{IngestError, IngestErrorKind};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
@@ -192,7 +192,7 @@ impl Scanner<'_> {
         let le = |from| part(from, from + 4).and_then(|b| Some(u32::from_le_bytes(b.try_into().ok()?)));
         let (Some(tag), Some(toc)) = (part(0, 4), le(4)) else { return Ok(None) };
         if tag != b"TDSm" {
-            return Err(self.error(at, Note::new("ingest.tdms.no_segment")));
+            return Err(self.error(at, note!("ingest.tdms.no_segment")));
         }
         if lead.len() < LEAD_IN as usize {
             return Ok(None);
@@ -205,7 +205,7 @@ impl Scanner<'_> {
         let open = length == u64::MAX;
         let end = if open { self.size } else { start.saturating_add(length) };
         let Some(values_at) = start.checked_add(raw).filter(|v| *v <= end || open) else {
-            return Err(self.error(at, Note::new("ingest.tdms.bad_lead_in")));
+            return Err(self.error(at, note!("ingest.tdms.bad_lead_in")));
         };
         if values_at > self.size {
             return Ok(None);
@@ -218,7 +218,7 @@ impl Scanner<'_> {
             return Err(IngestError::new(
                 IngestErrorKind::UnknownFormat,
                 self.path,
-                Note::new("ingest.tdms.daqmx").with("at", at),
+                note!("ingest.tdms.daqmx", at),
             )
             .hint("ingest.tdms.hint.daqmx"));
         }
@@ -234,7 +234,7 @@ impl Scanner<'_> {
 
     fn metadata(&mut self, at: u64, len: u64, big_endian: bool, new_list: bool) -> Result<(), IngestError> {
         if len > MAX_METADATA_BYTES {
-            return Err(self.error(at, Note::new("ingest.tdms.long_metadata").with("bytes", len)));
+            return Err(self.error(at, note!("ingest.tdms.long_metadata", bytes = len)));
         }
         let bytes = self.bytes(at, len)?;
         let mut reader = Reader::new(&bytes, big_endian);
@@ -245,13 +245,11 @@ impl Scanner<'_> {
         let place = at + reader.position() as u64;
         match outcome {
             Ok(()) => Ok(()),
-            Err(MetadataFault::Short) => Err(self.error(place, Note::new("ingest.tdms.bad_metadata"))),
+            Err(MetadataFault::Short) => Err(self.error(place, note!("ingest.tdms.bad_metadata"))),
             Err(MetadataFault::Daqmx(path)) => Err(IngestError::new(
                 IngestErrorKind::UnknownFormat,
                 self.path,
-                Note::new("ingest.tdms.daqmx_channel")
-                    .with("name", crate::error::shorten(&path))
-                    .with("at", place),
+                note!("ingest.tdms.daqmx_channel", name = crate::error::shorten(&path), at = place),
             )
             .hint("ingest.tdms.hint.daqmx")),
             Err(MetadataFault::Note(note)) => Err(self.error(place, *note)),
@@ -355,7 +353,7 @@ impl Scanner<'_> {
 
     /// Notes where the values of a segment stand. Chunks repeat; the last one may break off.
     fn values(&mut self, at: u64, end: u64, interleaved: bool, big_endian: bool) -> Result<(), IngestError> {
-        let too_large = |s: &Self| s.error(at, Note::new("ingest.tdms.too_large"));
+        let too_large = |s: &Self| s.error(at, note!("ingest.tdms.too_large"));
         self.pieces = self.pieces.saturating_add(self.active.len());
         if self.pieces > MAX_PIECES {
             return Err(too_large(self));
@@ -365,7 +363,7 @@ impl Scanner<'_> {
             match self.last.get(c).copied().flatten() {
                 Some(index) if index.count > 0 => list.push((c, index)),
                 Some(_) => {}
-                None => return Err(self.error(at, Note::new("ingest.tdms.no_index"))),
+                None => return Err(self.error(at, note!("ingest.tdms.no_index"))),
             }
         }
         let chunk = list.iter().try_fold(0u64, |n, (_, i)| n.checked_add(i.bytes));
@@ -382,7 +380,7 @@ impl Scanner<'_> {
         if interleaved {
             let count = list.first().map_or(0, |(_, i)| i.count);
             if list.iter().any(|(_, i)| i.count != count || i.kind.bytes().is_none()) {
-                return Err(self.error(at, Note::new("ingest.tdms.interleaved")));
+                return Err(self.error(at, note!("ingest.tdms.interleaved")));
             }
         }
         let mut before = 0;

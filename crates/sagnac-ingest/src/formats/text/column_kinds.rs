@@ -8,7 +8,7 @@ use super::stamps::{self, DAY_S, Order, Shape, Stamp};
 use super::user_options::{self, Contradiction};
 use crate::column::DATES;
 use crate::{Column, StampOptions};
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, Note, note};
 
 /// Seconds of a week.
 const WEEK_S: f64 = 604_800.0;
@@ -219,7 +219,7 @@ fn week_and_seconds(
             if let Some(column) = found.columns.get_mut(second) {
                 column.unit = Some(if milliseconds { "ms" } else { "s" }.to_owned());
                 column.rollover_s = Some(WEEK_S);
-                let note = Note::new("ingest.delimited.stamps_of_week").with("column", column.name.as_str());
+                let note = note!("ingest.delimited.stamps_of_week", column = column.name.as_str());
                 found.notes.push(note);
             }
         }

@@ -11,7 +11,7 @@ use crate::error::{IngestError, IngestErrorKind};
 use crate::metadata::Metadata;
 use crate::options::Encoding;
 use crate::{Candidate, Column};
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, Note, note};
 use std::path::Path;
 
 /// The way a text file is written.
@@ -166,8 +166,7 @@ impl Sniffed<'_> {
                 && !holds(number)
                 && !(key == "header_line" && lines.iter().any(|l| l.number == number))
             {
-                let message =
-                    Note::new("ingest.delimited.no_such_line").with("key", key).with("line", number);
+                let message = note!("ingest.delimited.no_such_line", key, line = number);
                 return Err(self.error(message).hint("ingest.delimited.hint_line"));
             }
         }
@@ -247,9 +246,11 @@ impl Sniffed<'_> {
         if let Some(delimiter) = options.delimiter {
             let other = separator::find(lines, None, options.decimal);
             if self.cut.fields == 1 && other.fields > 1 {
-                let message = Note::new("ingest.delimited.not_this_separator")
-                    .with("stated", sign(Separator::of(delimiter)))
-                    .with("found", sign(other.separator));
+                let message = note!(
+                    "ingest.delimited.not_this_separator",
+                    stated = sign(Separator::of(delimiter)),
+                    found = sign(other.separator)
+                );
                 let text = place(other.separator.byte()).unwrap_or_default();
                 return Err(self.error(message).found(&text).hint("ingest.delimited.hint_separator"));
             }
@@ -261,9 +262,11 @@ impl Sniffed<'_> {
                 cells.filter(|c| c.contains(&decimal) && looks(c, decimal) == Looks::Number).count()
             };
             if count(stated) == 0 && count(other) > 0 {
-                let message = Note::new("ingest.delimited.not_this_decimal")
-                    .with("stated", (stated as char).to_string())
-                    .with("found", (other as char).to_string());
+                let message = note!(
+                    "ingest.delimited.not_this_decimal",
+                    stated = (stated as char).to_string(),
+                    found = (other as char).to_string()
+                );
                 let text = place(other).unwrap_or_default();
                 return Err(self.error(message).found(&text).hint("ingest.delimited.hint_decimal"));
             }
@@ -291,7 +294,7 @@ impl Sniffed<'_> {
                 let at = column.iter().position(|c| std::ptr::eq(*c, cell));
                 let line = at.and_then(|i| numbers.get(i)).copied().unwrap_or(0);
                 return Err(self
-                    .error(Note::new("ingest.delimited.thousands"))
+                    .error(note!("ingest.delimited.thousands"))
                     .at(line, None)
                     .found(&words(cell))
                     .hint("ingest.delimited.hint_thousands"));
@@ -312,7 +315,7 @@ impl Sniffed<'_> {
             names.iter().enumerate().map(|(i, n)| below(i).or_else(|| header::unit_in_name(n))).collect();
         let stamps = &self.file.options.text.stamps;
         column_kinds::find(&names, &units, &cells, self.cut.decimal, stamps).map_err(|c| {
-            let message = Note::new("ingest.delimited.not_these_stamps").with("column", c.column);
+            let message = note!("ingest.delimited.not_these_stamps", column = c.column);
             self.error(message)
                 .at(numbers.get(c.row).copied().unwrap_or(0), None)
                 .found(&c.text)
@@ -337,35 +340,31 @@ impl Sniffed<'_> {
     }
 
     fn notes(&self, found: &FoundEncoding, header: &Header, above: &[Line<'_>], head: &[u8]) -> Vec<Note> {
-        let mut notes = vec![
-            Note::new("ingest.delimited.encoding")
-                .with("encoding", encoding::name(found.encoding))
-                .with("why", found.reason.clone()),
-        ];
+        let mut notes = vec![note!(
+            "ingest.delimited.encoding",
+            encoding = encoding::name(found.encoding),
+            why = found.reason.clone()
+        )];
         if let Some(at) = found.damaged_at {
             let line = head.iter().take(at).filter(|c| **c == b'\n').count() + 1;
-            notes.push(Note::new("ingest.delimited.damaged").with("line", line).with("byte", at + 1));
+            notes.push(note!("ingest.delimited.damaged", line, byte = at + 1));
         }
-        notes.push(
-            Note::new("ingest.note.dialect")
-                .with("separator", sign(self.cut.separator))
-                .with("decimal", (self.cut.decimal as char).to_string()),
-        );
-        notes.push(
-            Note::new("ingest.delimited.fields")
-                .with("fields", self.cut.fields)
-                .with("lines", self.cut.lines),
-        );
+        notes.push(note!(
+            "ingest.note.dialect",
+            separator = sign(self.cut.separator),
+            decimal = (self.cut.decimal as char).to_string()
+        ));
+        notes.push(note!("ingest.delimited.fields", fields = self.cut.fields, lines = self.cut.lines));
         match (&header.names, &header.units) {
-            (None, _) => notes.push(Note::new("ingest.note.no_header")),
-            (Some((line, _)), None) => notes.push(Note::new("ingest.delimited.names").with("line", *line)),
-            (Some((line, _)), Some((units, _))) => notes.push(
-                Note::new("ingest.delimited.names_and_units").with("line", *line).with("units", *units),
-            ),
+            (None, _) => notes.push(note!("ingest.note.no_header")),
+            (Some((line, _)), None) => notes.push(note!("ingest.delimited.names", line = *line)),
+            (Some((line, _)), Some((units, _))) => {
+                notes.push(note!("ingest.delimited.names_and_units", line = *line, units = *units))
+            }
         }
         let comments = above.iter().filter(|l| self.comments.holds(l.text) && !header.uses(l.number)).count();
         if comments > 0 {
-            notes.push(Note::new("ingest.delimited.comments").with("count", comments));
+            notes.push(note!("ingest.delimited.comments", count = comments));
         }
         notes
     }

@@ -4,7 +4,7 @@
 use crate::byte_stream::{ByteStream, Digested};
 use crate::error::{IngestError, IngestErrorKind};
 use crate::options::Encoding;
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, Note, note};
 use std::path::Path;
 
 /// Bytes that are taken into the decoder at a time.
@@ -87,7 +87,7 @@ pub(super) fn find(head: &[u8], all: bool) -> Option<FoundEncoding> {
     }
     Some(FoundEncoding {
         encoding: Encoding::Utf8,
-        reason: Note::new("ingest.delimited.why_mostly"),
+        reason: note!("ingest.delimited.why_mostly"),
         damaged_at: Some(error.valid_up_to()),
     })
 }
@@ -115,26 +115,27 @@ pub(super) fn stated(
     encoding: Encoding,
 ) -> Result<FoundEncoding, IngestError> {
     let contradicts = |what: Note| {
-        let message = Note::new("ingest.delimited.not_this_encoding")
-            .with("stated", name(encoding))
-            .with("what", Arg::Note(Box::new(what)));
+        let message = note!(
+            "ingest.delimited.not_this_encoding",
+            stated = name(encoding),
+            what = Arg::Note(Box::new(what))
+        );
         IngestError::new(IngestErrorKind::UnknownFormat, path, message).hint("ingest.delimited.hint_encoding")
     };
     let found = find(head, all);
-    let other = |f: &FoundEncoding| {
-        contradicts(Note::new("ingest.delimited.looks_like").with("encoding", name(f.encoding)))
-    };
+    let other =
+        |f: &FoundEncoding| contradicts(note!("ingest.delimited.looks_like", encoding = name(f.encoding)));
     let wide = |e: Encoding| matches!(e, Encoding::Utf16Le | Encoding::Utf16Be);
     match &found {
         Some(f) if mark(head).is_some() && f.encoding != encoding => return Err(other(f)),
         Some(f) if wide(f.encoding) != wide(encoding) => return Err(other(f)),
         Some(f) if encoding == Encoding::Utf8 && f.encoding != Encoding::Utf8 => return Err(other(f)),
         Some(f) if wide(encoding) && f.encoding != encoding => return Err(other(f)),
-        None if !wide(encoding) => return Err(contradicts(Note::new("ingest.delimited.holds_zeros"))),
+        None if !wide(encoding) => return Err(contradicts(note!("ingest.delimited.holds_zeros"))),
         _ => {}
     }
     let damaged_at = found.and_then(|f| f.damaged_at).filter(|_| encoding == Encoding::Utf8);
-    Ok(FoundEncoding { encoding, reason: Note::new("ingest.delimited.why_stated"), damaged_at })
+    Ok(FoundEncoding { encoding, reason: note!("ingest.delimited.why_stated"), damaged_at })
 }
 
 /// The characters of Windows-1251 from 0x80 to 0xbf, as the WHATWG Encoding Standard has them; from 0xc0 on it has the Russian

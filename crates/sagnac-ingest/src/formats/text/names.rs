@@ -6,7 +6,7 @@ use super::header::{self, Above, Header};
 use super::separator::{Looks, looks};
 use super::stamps::Shape;
 use crate::error::{IngestError, IngestErrorKind};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 
 impl Sniffed<'_> {
     /// Names and units above the data; refuses a header that does not fit.
@@ -51,7 +51,7 @@ impl Sniffed<'_> {
             let title = last.is_some_and(|l| cells(l) < fields);
             if let Some(line) = data.first().filter(|_| fraction || title) {
                 return Err(self
-                    .error(Note::new("ingest.delimited.comma_twice"))
+                    .error(note!("ingest.delimited.comma_twice"))
                     .at(line.number, None)
                     .found(&String::from_utf8_lossy(line.text))
                     .hint("ingest.delimited.hint_comma"));
@@ -63,10 +63,12 @@ impl Sniffed<'_> {
         if let Some(last) = last.filter(|l| !named && (stated || (cells(l) > 1 && !keyed(l) && !block))) {
             let count = cells(last);
             let odd = data.iter().find(|l| cells(l) != count);
-            let message = Note::new("ingest.delimited.names_do_not_fit")
-                .with("line", last.number)
-                .with("names", count)
-                .with("fields", odd.map_or(fields, |l| cells(l)));
+            let message = note!(
+                "ingest.delimited.names_do_not_fit",
+                line = last.number,
+                names = count,
+                fields = odd.map_or(fields, |l| cells(l))
+            );
             let error = IngestError::new(IngestErrorKind::NotNumeric, self.path, message);
             let error = match odd {
                 Some(l) => error.at(l.number, None).found(&String::from_utf8_lossy(l.text)),

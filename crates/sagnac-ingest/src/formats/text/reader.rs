@@ -6,7 +6,7 @@ use crate::byte_stream::{ByteStream, Digested, Packing};
 use crate::error::{IngestError, IngestErrorKind};
 use crate::options::Encoding;
 use crate::{Block, FileFacts, OnBlock, Table};
-use sagnac_core::message::Note;
+use sagnac_core::message::note;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
@@ -110,7 +110,7 @@ impl Text {
                     return Err(IngestError::new(
                         IngestErrorKind::UnknownFormat,
                         &self.path,
-                        Note::new("ingest.long_line").with("bytes", MAX_LINE_BYTES),
+                        note!("ingest.long_line", bytes = MAX_LINE_BYTES),
                     )
                     .hint("ingest.hint.line_per_sample"));
                 }

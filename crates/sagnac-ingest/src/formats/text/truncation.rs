@@ -3,7 +3,7 @@
 use crate::byte_stream::{Packing, io_error};
 use crate::open_file;
 use crate::{Candidate, IngestError};
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use std::io::{Read, Seek, SeekFrom};
 
 /// Bytes at the end that are looked at.
@@ -24,7 +24,7 @@ pub(super) fn look(file: &Candidate) -> Result<Vec<Note>, IngestError> {
     handle.seek(SeekFrom::Start(file.bytes.saturating_sub(TAIL))).map_err(io)?;
     let mut tail = Vec::new();
     handle.take(TAIL).read_to_end(&mut tail).map_err(io)?;
-    Ok(if unfinished(&tail) { vec![Note::new("ingest.text_unfinished")] } else { Vec::new() })
+    Ok(if unfinished(&tail) { vec![note!("ingest.text_unfinished")] } else { Vec::new() })
 }
 
 fn unfinished(tail: &[u8]) -> bool {

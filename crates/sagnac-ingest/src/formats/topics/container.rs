@@ -3,7 +3,7 @@
 use super::message::{Encoding, Layout};
 use crate::error::{IngestError, IngestErrorKind};
 use crate::open_file;
-use sagnac_core::message::Note;
+use sagnac_core::message::{Note, note};
 use std::collections::BTreeSet;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek, SeekFrom};
@@ -227,12 +227,12 @@ pub(crate) fn unpack(
         return Err(IngestError::new(
             IngestErrorKind::Bomb,
             path,
-            Note::new("ingest.ros.bomb").with("at", at).with("packed", packed.len()).with("unpacked", size),
+            note!("ingest.ros.bomb", at, packed = packed.len(), unpacked = size),
         )
         .hint("ingest.hint.bomb"));
     }
     let damaged = |e: std::io::Error| {
-        let note = Note::new("ingest.ros.chunk").with("at", at).with("reason", e.to_string());
+        let note = note!("ingest.ros.chunk", at, reason = e.to_string());
         IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.damaged")
     };
     // One byte more than stated shows that there is more.
@@ -246,7 +246,7 @@ pub(crate) fn unpack(
             decoder.take(limit).read_to_end(out).map_err(damaged)?;
         }
         _ => {
-            let note = Note::new("ingest.ros.packing").with("at", at);
+            let note = note!("ingest.ros.packing", at);
             let note = note.with("packing", crate::error::shorten(packing));
             return Err(
                 IngestError::new(IngestErrorKind::UnknownFormat, path, note).hint("ingest.ros.hint.packing")

@@ -13,7 +13,7 @@ use crate::metadata::Metadata;
 use crate::{Candidate, Column, Opened};
 use container::{Catalog, Container, Event, Topic};
 use message::{Encoding, Layout};
-use sagnac_core::message::{Arg, Note};
+use sagnac_core::message::{Arg, Note, note};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use table::{Origin, TopicTable};
@@ -46,42 +46,40 @@ fn choose<'a>(
         let plain = |name: &str| name.trim_matches('/').to_owned();
         let named = |t: &&Topic| plain(&t.name) == plain(wanted);
         if let Some(topic) = readable().find(named) {
-            notes.push(Note::new("ingest.ros.wanted").with("name", shorten(&topic.name)));
+            notes.push(note!("ingest.ros.wanted", name = shorten(&topic.name)));
             return Ok(topic);
         }
         let there = catalog.topics.iter().find(named);
         let note = match there {
-            None => Note::new("ingest.ros.no_topic").with("name", shorten(wanted)),
-            Some(t) if t.readable().is_none() => Note::new("ingest.ros.type_unknown")
-                .with("name", shorten(&t.name))
+            None => note!("ingest.ros.no_topic", name = shorten(wanted)),
+            Some(t) if t.readable().is_none() => note!("ingest.ros.type_unknown", name = shorten(&t.name))
                 .with("type", shorten(&t.type_name))
                 .with("encoding", shorten(&t.encoding_name)),
-            Some(t) => Note::new("ingest.ros.no_messages").with("name", shorten(&t.name)),
+            Some(t) => note!("ingest.ros.no_messages", name = shorten(&t.name)),
         };
-        return Err(error(note).hint(Note::new("ingest.ros.hint.readable").with("topics", list(readable()))));
+        return Err(error(note).hint(note!("ingest.ros.hint.readable", topics = list(readable()))));
     }
     let imus: Vec<&Topic> = readable().filter(|t| t.readable().is_some_and(|(l, _)| l.is_imu())).collect();
     match imus.as_slice() {
         [one] => {
             notes.push(
-                Note::new("ingest.ros.taken")
-                    .with("name", shorten(&one.name))
+                note!("ingest.ros.taken", name = shorten(&one.name))
                     .with("type", shorten(&one.type_name))
                     .with("count", one.messages),
             );
             let mut others = catalog.topics.iter().filter(|t| t.name != one.name).peekable();
             if others.peek().is_some() {
-                notes.push(Note::new("ingest.ros.others").with("topics", list(others)));
+                notes.push(note!("ingest.ros.others", topics = list(others)));
             }
             Ok(*one)
         }
-        [] => Err(error(Note::new("ingest.ros.no_imu").with("topics", list(catalog.topics.iter())))
-            .hint(Note::new("ingest.ros.hint.readable").with("topics", list(readable())))),
-        several => Err(error(
-            Note::new("ingest.ros.several")
-                .with("count", several.len())
-                .with("topics", list(several.iter().copied())),
-        )
+        [] => Err(error(note!("ingest.ros.no_imu", topics = list(catalog.topics.iter())))
+            .hint(note!("ingest.ros.hint.readable", topics = list(readable())))),
+        several => Err(error(note!(
+            "ingest.ros.several",
+            count = several.len(),
+            topics = list(several.iter().copied())
+        ))
         .hint("ingest.ros.hint.name_one")),
     }
 }
@@ -91,7 +89,7 @@ pub(super) fn open(file: &Candidate, container: &'static dyn Container) -> Resul
     let catalog = container::catalog(container, path, file.bytes)?;
     if catalog.topics.iter().all(|t| t.messages == 0) {
         if let Some(at) = catalog.broken_at {
-            let note = Note::new("ingest.ros.broken_before").with("at", at);
+            let note = note!("ingest.ros.broken_before", at);
             return Err(IngestError::new(IngestErrorKind::Damaged, path, note).hint("ingest.hint.cut_off"));
         }
         return Err(IngestError::new(IngestErrorKind::Empty, path, "ingest.ros.nothing")
@@ -104,10 +102,9 @@ pub(super) fn open(file: &Candidate, container: &'static dyn Container) -> Resul
             .hint("ingest.hint.check_written"));
     };
     if !catalog.indexed {
-        notes.push(Note::new("ingest.ros.no_index"));
+        notes.push(note!("ingest.ros.no_index"));
     }
-    let cut_off: Vec<Note> =
-        catalog.broken_at.map(|at| Note::new("ingest.ros.broken").with("at", at)).into_iter().collect();
+    let cut_off: Vec<Note> = catalog.broken_at.map(|at| note!("ingest.ros.broken", at)).into_iter().collect();
     notes.extend(cut_off.iter().cloned());
     let skip: BTreeSet<u64> = catalog
         .chunks
@@ -189,7 +186,7 @@ fn columns(layout: &Layout, first: &FirstMessage, notes: &mut Vec<Note>) -> (Vec
         let place = usize::from(stamp == 0);
         all.insert(place, (time("header.stamp", stamp), Origin::Stamp { epoch_s: stamp }));
         if stamp == 0 {
-            notes.push(Note::new("ingest.ros.no_stamp"));
+            notes.push(note!("ingest.ros.no_stamp"));
         }
     }
     let numbers = layout.numbers().enumerate();

@@ -8,7 +8,7 @@ use super::fit::Joint;
 use super::interval::parameter_covariance;
 use super::model::{Free, JointPoint};
 use crate::estimate::Spread;
-use crate::message::Note;
+use crate::message::{Note, note};
 use crate::noise::composite::{Composite, Damped, Described, Propagated};
 use crate::noise::data::NoiseType;
 use crate::noise::model::NoiseModel;
@@ -106,7 +106,7 @@ impl Plateau {
 
     /// Says which averaging times the level is read at.
     pub(super) fn note(&self) -> Note {
-        Note::new("note.plateau").with("from_s", self.from_s).with("to_s", self.to_s)
+        note!("note.plateau", from_s = self.from_s, to_s = self.to_s)
     }
 }
 

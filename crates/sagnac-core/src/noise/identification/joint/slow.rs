@@ -4,7 +4,7 @@ use super::super::claims::{B, K, R, SETS, SlowChoice, SlowPrices, SlowSet};
 use super::super::result::Identification;
 use super::fit::Joint;
 use super::model::{BASE, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, ProcessKind, Shape, Variable};
-use crate::message::Note;
+use crate::message::note;
 use crate::noise::composite::Damped;
 
 /// Fall of the deviance that fitting the correlation time brings over the grid of octaves at most.
@@ -105,7 +105,7 @@ impl LongMarkov {
         }
         for estimate in [&mut found.bias_instability, &mut found.rate_random_walk] {
             if estimate.value.is_some() {
-                let note = Note::new("slow_alike.markov");
+                let note = note!("slow_alike.markov");
                 estimate.notes.push(note.with("sigma", self.sigma).with("time_s", self.time_s));
             }
         }
