@@ -171,7 +171,7 @@ enum Verb {
     /// Sign a folder of results that another has signed: `sign --role approved`
     #[command(hide = true, after_help = "Example:\n  sagnac approve reports/SN-0042 --key ~/.ssh/id_ed25519")]
     Approve(sign::SignArgs),
-    /// Find out whether a folder of results is still what was written, and who signed it
+    /// Check that a result folder is unmodified, and who signed it
     #[command(
         after_help = "Exit codes: 0 nothing differs, 1 something differs, 2 could not, 3 a check that was asked for could not be made.\n\n\
         Examples:\n  sagnac verify reports/SN-0042 --signers allowed_signers\n  \
