@@ -11,7 +11,7 @@ use super::text_file::{self, Wording};
 use crate::i18n::{Lang, LocalText, note};
 use std::path::Path;
 
-/// What is said of a file that cannot be read at all.
+/// Messages for a file that cannot be read at all.
 const WORDING: Wording =
     Wording { unreadable: "laboratory_file.unreadable", folder: "laboratory_file.folder" };
 
@@ -40,13 +40,13 @@ struct LaboratoryTables {
     persons: Vec<Person>,
 }
 
-const LANGUAGES: &[Word] = &[("en", "English"), ("ru", "Russian")];
+const CERTIFICATE_LANGUAGES: &[Word] = &[("en", "English"), ("ru", "Russian")];
 
-const PLACES: &[Word] =
+const TEST_PLACES: &[Word] =
     &[("laboratory", "in the laboratory"), ("customer", "at the customer's"), ("other", "somewhere else")];
 
-words!(Lang, LANGUAGES, Lang::from_code);
-words!(Place, PLACES, |word: &str| Place::ALL.into_iter().find(|place| place.id() == word));
+words!(Lang, CERTIFICATE_LANGUAGES, Lang::from_code);
+words!(Place, TEST_PLACES, |word: &str| Place::ALL.into_iter().find(|place| place.id() == word));
 
 /// The laboratory.
 #[derive(Table)]
@@ -300,7 +300,7 @@ name = "B. Petrov"
 
     #[test]
     fn every_language_and_place_has_its_word() {
-        assert!(LANGUAGES.iter().map(|w| w.0).eq(Lang::ALL.iter().map(|l| l.code())));
-        assert!(PLACES.iter().map(|w| w.0).eq(Place::ALL.iter().map(|p| p.id())));
+        assert!(CERTIFICATE_LANGUAGES.iter().map(|w| w.0).eq(Lang::ALL.iter().map(|l| l.code())));
+        assert!(TEST_PLACES.iter().map(|w| w.0).eq(Place::ALL.iter().map(|p| p.id())));
     }
 }

@@ -359,7 +359,7 @@ fn written(key: &KeySpec) -> String {
     }
 }
 
-/// What a table declares: in words of the tables where they have it, else as it is described.
+/// Purpose of a table: in words of the locale where it has them, else as it is described.
 fn doc(key: &KeySpec) -> Arg {
     let id = format!("table_doc.{}", key.name);
     if lookup(Lang::En, &id).is_some() { Arg::Key(id) } else { Arg::from(key.doc) }

@@ -10,7 +10,7 @@ use crate::i18n::{Note, note};
 pub struct TableSpec {
     /// Path of the table as it is written, for example `conditions.temperature`.
     pub name: &'static str,
-    /// What it declares.
+    /// Its purpose.
     pub doc: &'static str,
     /// Its keys, in the order of the documentation.
     pub keys: &'static [KeySpec],
@@ -21,13 +21,13 @@ pub struct TableSpec {
 pub struct KeySpec {
     /// Name.
     pub name: &'static str,
-    /// What its value must be.
+    /// Kind of its value.
     pub kind: Kind,
     /// Whether it must be there.
     pub need: Need,
     /// A value as it is written in TOML; empty for tables.
     pub example: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub doc: &'static str,
 }
 
@@ -105,7 +105,7 @@ impl Range {
 /// One of the words a key may have, with its meaning.
 pub type Word = (&'static str, &'static str);
 
-/// What a value must be.
+/// Kind of a value.
 #[derive(Debug, Clone, Copy)]
 pub enum Kind {
     /// A text that is not blank.
@@ -178,7 +178,7 @@ impl Kind {
         }
     }
 
-    /// What a value must be, in words.
+    /// The kind in words.
     pub fn describe(self) -> Note {
         match self {
             Kind::Text => note!("keyed.kind.text"),

@@ -34,7 +34,7 @@ pub(crate) trait Table: Default {
 
 /// The type of a field.
 pub(crate) trait KeyValue: Sized {
-    /// What a key of this type must be, where its attribute does not say more.
+    /// Kind of a key of this type, where its attribute does not say more.
     const KIND: Kind;
 
     /// The value of an entry; `None` for one of another kind, such as that of an unsound value.

@@ -8,7 +8,7 @@ use super::text_file::{self, Wording};
 use std::ffi::OsString;
 use std::path::PathBuf;
 
-/// What is said of settings that cannot be read at all.
+/// Messages for settings that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "user_config.unreadable", folder: "user_config.folder" };
 
 /// The settings as a whole.

@@ -14,7 +14,7 @@ use sagnac_ingest::layout::{Checksum, Layout, LayoutColumn, MAX_COLUMNS, MAX_REC
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// What is said of a layout that cannot be read at all.
+/// Messages for a layout that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "layout.unreadable", folder: "layout.folder" };
 
 /// Longest sync word, bytes.

@@ -6,10 +6,10 @@ use crate::config::table::Table;
 use crate::units::Unit;
 
 /// Whole numbers that a double holds exactly.
-const WHOLE: Range = Range::between(0.0, 9_007_199_254_740_992.0);
+const EXACT_WHOLE_NUMBERS: Range = Range::between(0.0, 9_007_199_254_740_992.0);
 
 /// Types of a field.
-pub const TYPES: &[Word] = &[
+pub const NUMBER_TYPES: &[Word] = &[
     ("u8", "whole number, 1 byte"),
     ("i8", "whole number with sign, 1 byte"),
     ("u16", "2 bytes"),
@@ -29,7 +29,7 @@ pub const BYTE_ORDERS: &[Word] =
     &[("little", "least significant byte first"), ("big", "most significant byte first")];
 
 /// Checksums.
-pub const CHECKSUMS: &[Word] = &[
+pub const CHECKSUM_KINDS: &[Word] = &[
     ("sum8", "sum of the bytes modulo 256"),
     ("xor8", "exclusive or of the bytes"),
     ("crc16-ccitt", "CRC-16, polynomial 1021, start FFFF (also called CCITT-FALSE)"),
@@ -46,7 +46,7 @@ pub static LAYOUT_FILE: TableSpec = *LayoutTables::SPEC;
 #[table("", format = "layout/1")]
 pub(super) struct LayoutTables {
     /// Bytes before the first record; skipped.
-    #[key(range = WHOLE, default = 0, example = 512)]
+    #[key(range = EXACT_WHOLE_NUMBERS, default = 0, example = 512)]
     pub header_bytes: Option<f64>,
     /// Length of a record. Default: up to the end of the last field or checksum.
     #[key(min = 1, max = 262_144, example = 32)]
@@ -74,16 +74,16 @@ pub(super) struct LayoutTables {
 #[table("checksum")]
 pub(super) struct ChecksumKeys {
     /// Which checksum.
-    #[key(name = "type", choice = CHECKSUMS, required, example = "crc16-ccitt")]
+    #[key(name = "type", choice = CHECKSUM_KINDS, required, example = "crc16-ccitt")]
     pub sum: Option<&'static str>,
     /// First byte of the checksum in the record. Default: the last bytes of the record.
-    #[key(range = WHOLE, example = 30)]
+    #[key(range = EXACT_WHOLE_NUMBERS, example = 30)]
     pub offset: Option<f64>,
     /// First byte covered by the checksum.
-    #[key(range = WHOLE, default = 0, example = 2)]
+    #[key(range = EXACT_WHOLE_NUMBERS, default = 0, example = 2)]
     pub from: Option<f64>,
     /// Byte after the last one covered. Default: the first byte of the checksum.
-    #[key(range = WHOLE, example = 30)]
+    #[key(range = EXACT_WHOLE_NUMBERS, example = 30)]
     pub to: Option<f64>,
     #[key(section)]
     pub section: Section,
@@ -97,10 +97,10 @@ pub(super) struct FieldKeys {
     #[key(required, example = "rate_deg_h")]
     pub name: Option<String>,
     /// Type of the number.
-    #[key(name = "type", choice = TYPES, required, example = "i32")]
+    #[key(name = "type", choice = NUMBER_TYPES, required, example = "i32")]
     pub number_type: Option<&'static str>,
     /// First byte in the record. Default: directly after the previous field, or after `sync`.
-    #[key(range = WHOLE, example = 4)]
+    #[key(range = EXACT_WHOLE_NUMBERS, example = 4)]
     pub offset: Option<f64>,
     /// Numbers of this type one after another; the columns are `name[0]`, `name[1]` and so on.
     #[key(min = 1, max = 4096, default = 1, example = 3)]
@@ -115,7 +115,7 @@ pub(super) struct FieldKeys {
     #[key(example = "deg/h")]
     pub unit: Option<Unit>,
     /// Bits of an integer to keep, for flags packed into one number.
-    #[key(range = WHOLE, example = 0x0F)]
+    #[key(range = EXACT_WHOLE_NUMBERS, example = 0x0F)]
     pub mask: Option<f64>,
     /// Right shift of the kept bits.
     #[key(min = 0, max = 63, example = 4)]

@@ -21,7 +21,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use tables::{FileKeys, MANIFEST_FILE, ManifestTables, ReadingKeys, UnitKeys};
 
-/// What is said of a manifest that cannot be read at all.
+/// Messages for a manifest that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
 
 /// A manifest.
@@ -31,7 +31,7 @@ pub struct Manifest {
     pub path: PathBuf,
     /// Serial number of the unit that was recorded.
     pub serial: Option<String>,
-    /// What else is known of the unit.
+    /// Further facts of the unit.
     pub unit: UnitUnderTest,
     /// True when each file follows the one before without a gap.
     pub contiguous: bool,
@@ -63,7 +63,7 @@ impl Manifest {
         self.files.iter().map(part).collect()
     }
 
-    /// What the manifest decides, over what was decided elsewhere.
+    /// Decisions of the manifest, over those made elsewhere.
     pub fn options_over(&self, other: &ReadOptions) -> ReadOptions {
         let (own, text) = (self.options.clone(), self.options.text.clone());
         ReadOptions {

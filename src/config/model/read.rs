@@ -16,11 +16,11 @@ use crate::noise::model::NoiseModel;
 use sagnac_core::spelling::nearest;
 use std::path::Path;
 
-/// What is said of a claim that cannot be read at all.
+/// Messages for a claim that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "model_file.unreadable", folder: "model_file.folder" };
 
 /// The parameter that the report of every effect gives, beside those of its forward model.
-const RMS: &str = "rms_deg_h";
+const RMS_PARAMETER: &str = "rms_deg_h";
 
 /// Reads a claim.
 ///
@@ -147,7 +147,7 @@ fn value(effect: &'static dyn Effect, named: &Named, reader: &mut Reader<'_>) ->
         reader.error(&named.span, message, None);
     };
     match (&named.given, find(effect.params()), find(effect.list_params())) {
-        (Given::Number(v), _, _) if named.name == RMS => Some(Value::Number(*v)),
+        (Given::Number(v), _, _) if named.name == RMS_PARAMETER => Some(Value::Number(*v)),
         (Given::Number(v), Some(p), _) => {
             if outside(p, *v) {
                 wrong(p, reader);

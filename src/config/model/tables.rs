@@ -42,7 +42,7 @@ pub(super) struct ModelTables {
 }
 
 /// Columns of a recording beside time and rate.
-const COLUMNS: &[Word] = &[
+const RECORDED_COLUMNS: &[Word] = &[
     ("time_s", "Time of the sample, s"),
     ("rate_deg_h", "Output of the gyro, deg/h"),
     ("temp_degC", "Temperature of the housing, degC"),
@@ -53,7 +53,7 @@ const COLUMNS: &[Word] = &[
 ];
 
 /// Columns that a profile can drive.
-const DRIVEN: &[Word] = &[
+const DRIVEN_COLUMNS: &[Word] = &[
     ("temp_degC", "Temperature of the housing, degC"),
     ("table_rate_deg_s", "Rate of the table about the input axis, deg/s"),
     ("table_angle_deg", "Position of the table, deg; written as 0 to 360"),
@@ -62,11 +62,11 @@ const DRIVEN: &[Word] = &[
 ];
 
 /// Ranges: of a sample rate, Hz; of a coefficient of noise; of a value of either sign.
-const RATE: Range = Range::above_up_to(0.0, 1e9);
-const COEFFICIENT: Range = Range::between(0.0, 1e6);
-const SIGNED: Range = Range::between(-1e12, 1e12);
+const SAMPLE_RATE_HZ: Range = Range::above_up_to(0.0, 1e9);
+const COEFFICIENT_RANGE: Range = Range::between(0.0, 1e6);
+const SIGNED_RANGE: Range = Range::between(-1e12, 1e12);
 
-words!(Column, DRIVEN, |word: &str| Column::KNOWN.into_iter().find(|column| column.name() == word));
+words!(Column, DRIVEN_COLUMNS, |word: &str| Column::KNOWN.into_iter().find(|column| column.name() == word));
 
 /// The recording that the claim is of.
 #[derive(Table)]
@@ -79,10 +79,10 @@ pub(super) struct RecordingKeys {
     #[key(remark, optional, example = "static, laboratory")]
     pub description: LocalText,
     /// Nominal sample rate, Hz.
-    #[key(range = RATE, example = 10)]
+    #[key(range = SAMPLE_RATE_HZ, example = 10)]
     pub sample_rate_hz: f64,
     /// Columns that the recording has.
-    #[key(kind = Kind::Columns(COLUMNS), example = ["time_s", "rate_deg_h"])]
+    #[key(kind = Kind::Columns(RECORDED_COLUMNS), example = ["time_s", "rate_deg_h"])]
     pub columns: Option<Vec<String>>,
 }
 
@@ -91,16 +91,16 @@ pub(super) struct RecordingKeys {
 #[table("noise")]
 pub(super) struct NoiseKeys {
     /// Angle random walk N, deg/√h.
-    #[key(name = "N_deg_rt_h", range = COEFFICIENT, default = 0.0, example = 0.0023)]
+    #[key(name = "N_deg_rt_h", range = COEFFICIENT_RANGE, default = 0.0, example = 0.0023)]
     pub n_deg_rt_h: f64,
     /// Flicker B, deg/h. The floor of the Allan deviation is 0.664 B.
-    #[key(name = "B_deg_h", range = COEFFICIENT, default = 0.0, example = 0.0017)]
+    #[key(name = "B_deg_h", range = COEFFICIENT_RANGE, default = 0.0, example = 0.0017)]
     pub b_deg_h: f64,
     /// Rate random walk K, deg/h/√h.
-    #[key(name = "K_deg_h_rt_h", range = COEFFICIENT, default = 0.0, example = 0.0009)]
+    #[key(name = "K_deg_h_rt_h", range = COEFFICIENT_RANGE, default = 0.0, example = 0.0009)]
     pub k_deg_h_rt_h: f64,
     /// Angle increment of the output, arcsec; 0 for none.
-    #[key(range = COEFFICIENT, default = 0.0, example = 0.01)]
+    #[key(range = COEFFICIENT_RANGE, default = 0.0, example = 0.01)]
     pub quantization_lsb_arcsec: f64,
 }
 
@@ -109,7 +109,7 @@ pub(super) struct NoiseKeys {
 #[table("bias")]
 pub(super) struct BiasKeys {
     /// Bias, deg/h.
-    #[key(range = SIGNED, default = 0.0, example = -3.1)]
+    #[key(range = SIGNED_RANGE, default = 0.0, example = -3.1)]
     pub value_deg_h: f64,
 }
 
@@ -118,7 +118,7 @@ pub(super) struct BiasKeys {
 #[table("temperature")]
 pub(super) struct TemperatureKeys {
     /// Coefficient, deg/h/°C.
-    #[key(name = "coefficient_deg_h_per_degC", range = SIGNED, example = 1.2e-4)]
+    #[key(name = "coefficient_deg_h_per_degC", range = SIGNED_RANGE, example = 1.2e-4)]
     pub coefficient_deg_h_per_degc: f64,
     /// Temperature at which the bias holds, °C.
     #[key(name = "reference_degC", min = -273.15, max = 1000, default = 20.0, example = 20.0)]
@@ -152,44 +152,44 @@ pub(super) struct EarthKeys {
 #[table("uncertainty")]
 pub(super) struct UncertaintyKeys {
     /// Of N, relative.
-    #[key(name = "N_rel", range = COEFFICIENT, default = 0.0, example = 0.015)]
+    #[key(name = "N_rel", range = COEFFICIENT_RANGE, default = 0.0, example = 0.015)]
     pub n_rel: f64,
     /// Of B, relative.
-    #[key(name = "B_rel", range = COEFFICIENT, default = 0.0, example = 0.12)]
+    #[key(name = "B_rel", range = COEFFICIENT_RANGE, default = 0.0, example = 0.12)]
     pub b_rel: f64,
     /// Of K, relative.
-    #[key(name = "K_rel", range = COEFFICIENT, default = 0.0, example = 0.15)]
+    #[key(name = "K_rel", range = COEFFICIENT_RANGE, default = 0.0, example = 0.15)]
     pub k_rel: f64,
     /// Of N where it is stated as 0, deg/√h: the value is positive and within about two of these.
-    #[key(name = "N_deg_rt_h", range = COEFFICIENT, default = 0.0, example = 0.001)]
+    #[key(name = "N_deg_rt_h", range = COEFFICIENT_RANGE, default = 0.0, example = 0.001)]
     pub n_deg_rt_h: f64,
     /// Of B where it is stated as 0, deg/h.
-    #[key(name = "B_deg_h", range = COEFFICIENT, default = 0.0, example = 0.002)]
+    #[key(name = "B_deg_h", range = COEFFICIENT_RANGE, default = 0.0, example = 0.002)]
     pub b_deg_h: f64,
     /// Of K where it is stated as 0, deg/h/√h.
-    #[key(name = "K_deg_h_rt_h", range = COEFFICIENT, default = 0.0, example = 0.0005)]
+    #[key(name = "K_deg_h_rt_h", range = COEFFICIENT_RANGE, default = 0.0, example = 0.0005)]
     pub k_deg_h_rt_h: f64,
     /// Upper limit (95 %) of N where it is stated as 0 because a record did not resolve it, deg/√h.
-    #[key(name = "N_at_most_deg_rt_h", range = COEFFICIENT, default = 0.0, example = 0.003)]
+    #[key(name = "N_at_most_deg_rt_h", range = COEFFICIENT_RANGE, default = 0.0, example = 0.003)]
     pub n_at_most_deg_rt_h: f64,
     /// Upper limit (95 %) of B where it is stated as 0 because a record did not resolve it, deg/h.
-    #[key(name = "B_at_most_deg_h", range = COEFFICIENT, default = 0.0, example = 0.004)]
+    #[key(name = "B_at_most_deg_h", range = COEFFICIENT_RANGE, default = 0.0, example = 0.004)]
     pub b_at_most_deg_h: f64,
     /// Upper limit (95 %) of K where it is stated as 0 because a record did not resolve it, deg/h/√h.
-    #[key(name = "K_at_most_deg_h_rt_h", range = COEFFICIENT, default = 0.0, example = 0.001)]
+    #[key(name = "K_at_most_deg_h_rt_h", range = COEFFICIENT_RANGE, default = 0.0, example = 0.001)]
     pub k_at_most_deg_h_rt_h: f64,
     /// Of the bias, deg/h.
-    #[key(range = COEFFICIENT, default = 0.0, example = 0.03)]
+    #[key(range = COEFFICIENT_RANGE, default = 0.0, example = 0.03)]
     pub bias_deg_h: f64,
     /// Of the temperature coefficient, deg/h/°C.
-    #[key(name = "temperature_coefficient_deg_h_per_degC", range = COEFFICIENT, default = 0.0, example = 1e-6)]
+    #[key(name = "temperature_coefficient_deg_h_per_degC", range = COEFFICIENT_RANGE, default = 0.0, example = 1e-6)]
     pub temperature_coefficient_deg_h_per_degc: f64,
     /// Of the scale factor, ppm.
-    #[key(range = COEFFICIENT, default = 0.0, example = 2.0)]
+    #[key(range = COEFFICIENT_RANGE, default = 0.0, example = 2.0)]
     pub scale_factor_ppm: f64,
     /// Largest skewness of the noise of single samples, of either sign: the third central moment over the cube of
     /// the standard deviation. 0: the law is even.
-    #[key(range = COEFFICIENT, default = 0.0, example = 0.02)]
+    #[key(range = COEFFICIENT_RANGE, default = 0.0, example = 0.02)]
     pub skewness: f64,
 }
 
@@ -217,7 +217,7 @@ pub(super) struct SimulationKeys {
     #[key(min = 0, max = 9_007_199_254_740_992, example = 1)]
     pub seed: Option<f64>,
     /// `time_s` of the first sample, s.
-    #[key(range = SIGNED, default = 0.0, example = 0.0)]
+    #[key(range = SIGNED_RANGE, default = 0.0, example = 0.0)]
     pub start_s: f64,
     #[key(section)]
     pub section: Section,
@@ -231,23 +231,23 @@ pub(super) struct DriverKeys {
     #[key(required, example = "temp_degC")]
     pub column: Option<Column>,
     /// Times of the points on `time_s`, increasing; two equal ones make a step.
-    #[key(range = SIGNED, default = [0.0], example = [0.0, 600.0, 7200.0])]
+    #[key(range = SIGNED_RANGE, default = [0.0], example = [0.0, 600.0, 7200.0])]
     pub time_s: Option<Vec<f64>>,
     /// Values there, in the unit of the column.
-    #[key(range = SIGNED, default = [0.0], example = [20.0, 20.0, 60.0])]
+    #[key(range = SIGNED_RANGE, default = [0.0], example = [20.0, 20.0, 60.0])]
     pub value: Option<Vec<f64>>,
     /// Amplitude of the sine, in the unit of the column.
-    #[key(range = SIGNED, default = 0.0, example = 0.5)]
+    #[key(range = SIGNED_RANGE, default = 0.0, example = 0.5)]
     pub sine_amplitude: f64,
     /// Period of the sine, s.
     #[key(above = 0, example = 1800.0)]
     pub sine_period_s: Option<f64>,
     /// Phase of the sine at `time_s` = 0, deg.
-    #[key(range = SIGNED, default = 0.0, example = 90.0)]
+    #[key(range = SIGNED_RANGE, default = 0.0, example = 90.0)]
     pub sine_phase_deg: f64,
     /// Standard deviation of the sensor's white noise, in the unit of the column: added to the column, not to what
     /// the gyro senses.
-    #[key(range = COEFFICIENT, default = 0.0, example = 0.003)]
+    #[key(range = COEFFICIENT_RANGE, default = 0.0, example = 0.003)]
     pub noise: f64,
     #[key(section)]
     pub section: Section,

@@ -201,7 +201,7 @@ fn by_factor(measurand: &Measurand, factor: f64, typical: f64) -> Option<Bounds>
     usable.then_some(Bounds { min: measurand.signed.then_some(-bound), max: Some(bound) })
 }
 
-/// What a value must not fall below and not exceed.
+/// Bounds of a value, both allowed.
 #[derive(Debug, Clone, Copy)]
 struct Bounds {
     min: Option<f64>,
@@ -229,7 +229,7 @@ fn add_limits_by_factor(set: &mut LimitSet, factor: f64, source: &str) {
 }
 
 /// The keys that bound a value.
-const BOUNDS: [&str; 4] = ["min", "max", "max_abs", "factor"];
+const BOUND_KEYS: [&str; 4] = ["min", "max", "max_abs", "factor"];
 
 fn read_limit(keys: LimitKeys, references: &[Reference], reader: &mut Reader<'_>) -> Option<LimitSpec> {
     let (measurand, section) = (keys.measurand?, &keys.section);
@@ -262,12 +262,12 @@ fn read_limit(keys: LimitKeys, references: &[Reference], reader: &mut Reader<'_>
 /// Reports a limit without bounds, or with `max_abs` or `factor` beside other bounds.
 fn bounds_are_stated_once(section: &Section, measurand: &Measurand, reader: &mut Reader<'_>) -> Option<()> {
     let states = |key: &str| section.entry(key).is_some();
-    if !BOUNDS.iter().any(|key| states(key)) {
+    if !BOUND_KEYS.iter().any(|key| states(key)) {
         let help = Some("check.help.limit_value".into());
         reader.error(&section.span, about("check.limit_without_value", measurand), help);
         return None;
     }
-    let others = |key: &str| BOUNDS.iter().any(|k| *k != key && states(k));
+    let others = |key: &str| BOUND_KEYS.iter().any(|k| *k != key && states(k));
     if let Some(key) = ["max_abs", "factor"].into_iter().find(|key| states(key) && others(key)) {
         let message = note!("check.stands_alone", key);
         reader.error(&section.span_of(key), message, Some("check.help.stands_alone".into()));

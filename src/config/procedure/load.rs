@@ -10,7 +10,7 @@ use crate::output::sha256;
 use std::path::Path;
 use std::sync::Arc;
 
-/// What is said of a file that cannot be read at all.
+/// Messages for a file that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "check.unreadable", folder: "check.is_folder" };
 
 /// Reads a procedure; the files that it names must be there.

@@ -6,7 +6,7 @@ use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
 use super::spec::Word;
-use super::tables::FIGURES;
+use super::tables::REPORT_FIGURES;
 pub use super::tables::conditions::{Conditions, FaultBudget, SupplyCondition, TemperatureCondition};
 use super::unit_facts::UnitFact;
 use crate::config::table::{Table, words};
@@ -38,7 +38,7 @@ pub struct Loaded<T> {
     pub warnings: Vec<Problem>,
 }
 
-/// What is recorded, under which conditions, what is determined from it, by which limits it is judged.
+/// A procedure: the recording, its conditions, the quantities determined from it and their limits.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Procedure {
     /// Id, for example `static-bias`.
@@ -85,13 +85,13 @@ pub struct Procedure {
     pub repeatability_test: Option<RepeatabilityTest>,
     /// A comparison without and with an influence.
     pub comparison_test: Option<ComparisonTest>,
-    /// What is determined, in the order of the report.
+    /// Quantities to determine, in the order of the report.
     pub measurands: Vec<MeasurandSpec>,
     /// Limits, references and typical values that stand in the procedure itself.
     pub limits: LimitSet,
     /// Clauses of the standard.
     pub clauses: Vec<ClauseRecord>,
-    /// What the report shows.
+    /// Contents of the report.
     pub report: ReportSpec,
     /// Waivers, each for one unit.
     pub waivers: Vec<Waiver>,
@@ -180,11 +180,11 @@ pub struct ExplainSpec {
 /// Something to be determined.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MeasurandSpec {
-    /// What.
+    /// The quantity.
     pub measurand: &'static Measurand,
     /// For which channel; `None`: every gyro channel.
     pub channel: Option<String>,
-    /// What is done with the Earth rate (`static_bias`).
+    /// Treatment of the Earth rate (`static_bias`).
     pub earth_rate: EarthRate,
     /// Where it is declared.
     pub span: Span,
@@ -219,7 +219,7 @@ pub(super) struct MeasurandOptions {
 }
 
 impl MeasurandKeys {
-    /// What is to be determined, where its measurand is known.
+    /// The quantity to be determined, where its measurand is known.
     pub(super) fn spec(self) -> Option<MeasurandSpec> {
         let MeasurandKeys { id, channel, options, span } = self;
         Some(MeasurandSpec { measurand: id?, channel, earth_rate: options.earth_rate, span })
@@ -238,7 +238,7 @@ words!(EarthRate, EARTH_RATE, |word: &str| match word {
     _ => None,
 });
 
-/// What is done with the Earth rate along the input axis.
+/// Treatment of the Earth rate along the input axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum EarthRate {
     /// It is subtracted, with its uncertainty.
@@ -256,7 +256,7 @@ pub struct ReportSpec {
     #[key(example = "Acceptance report")]
     pub title: Option<LocalText>,
     /// Figures, in this order. Default: all.
-    #[key(choice = FIGURES, example = ["rate", "sigma_tau"])]
+    #[key(choice = REPORT_FIGURES, example = ["rate", "sigma_tau"])]
     pub figures: Option<Vec<&'static str>>,
     /// Whether published values are shown in a column next to the measured ones.
     #[key(default = true, example = true)]

@@ -32,7 +32,7 @@ pub struct Phased {
     pub part_revision: Option<String>,
     /// True when a run without a serial number is an error.
     pub serial_required: bool,
-    /// What else must be known of the unit.
+    /// Further facts that must be known of the unit.
     pub requires: Vec<UnitFact>,
     /// The phases in their order.
     pub phases: Vec<Phase>,
@@ -61,7 +61,7 @@ struct Stated {
     limits: Option<PathBuf>,
 }
 
-/// Where the files of the phases are.
+/// Home of the files of the phases.
 #[derive(Debug, Clone, Copy)]
 enum Home<'a> {
     /// In a folder or below it.

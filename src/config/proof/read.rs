@@ -13,7 +13,7 @@ use crate::config::text_file::{self, Wording};
 use crate::i18n::note;
 use std::path::{Path, PathBuf};
 
-/// What is said of a proof file that cannot be read at all.
+/// Messages for a proof file that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "proof_file.unreadable", folder: "proof_file.folder" };
 
 /// Reads a proof file.
@@ -214,7 +214,7 @@ fn rule(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::config::proof::tables::{ASKS, DOMAINS};
+    use crate::config::proof::tables::{LOCATION_DOMAINS, RULE_KINDS};
     use crate::effect::Domain;
 
     const TEXT: &str = r#"format = "proof/1"
@@ -295,8 +295,8 @@ columns = ["ramp"]
 
     #[test]
     fn every_domain_and_rule_has_its_word() {
-        assert!(DOMAINS.iter().map(|w| w.0).eq(Domain::ALL.iter().map(|d| d.id())));
-        for (must, _) in ASKS {
+        assert!(LOCATION_DOMAINS.iter().map(|w| w.0).eq(Domain::ALL.iter().map(|d| d.id())));
+        for (must, _) in RULE_KINDS {
             let text = TEXT.replace("must = \"follow\"", &format!("must = \"{must}\""));
             let read = parse("p.toml", text.as_bytes(), Path::new("."));
             assert_eq!(read.is_ok(), must.ends_with("follow"), "{must}");

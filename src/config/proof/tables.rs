@@ -163,13 +163,13 @@ pub(super) struct ReferenceKeys {
 }
 
 /// Explanations that a rule can speak of.
-pub const SHOWN: &[Word] = &[
+pub const SHOWN_EXPLANATIONS: &[Word] = &[
     ("concealed", "the explanation of what is shown while something is concealed"),
     ("unveiled", "the explanation with the concealed columns shown among the decoys"),
 ];
 
 /// What a rule asks for.
-pub const ASKS: &[Word] = &[
+pub const RULE_KINDS: &[Word] = &[
     ("verdict", "the verdict is one of `verdicts`"),
     ("name", "an effect is one of `kinds`, or has one of them among its equivalents"),
     ("not_name", "no effect is one of `kinds`"),
@@ -183,7 +183,7 @@ pub const ASKS: &[Word] = &[
 ];
 
 /// Domains of a location.
-pub const DOMAINS: &[Word] = &[
+pub const LOCATION_DOMAINS: &[Word] = &[
     ("time", "s"),
     ("frequency", "Hz"),
     ("lag", "s"),
@@ -199,26 +199,26 @@ pub const DOMAINS: &[Word] = &[
 ];
 
 /// Verdicts of an explanation.
-pub const VERDICTS: &[Word] = &[
+pub const EXPLANATION_VERDICTS: &[Word] = &[
     ("consistent", "the recording is an ordinary draw of the claim"),
     ("mismatch", "named effects account for the difference"),
     ("unknown-mismatch", "some of it has no name"),
 ];
 
-words!(Domain, DOMAINS, |word: &str| Domain::ALL.iter().copied().find(|domain| domain.id() == word));
+words!(Domain, LOCATION_DOMAINS, |word: &str| Domain::ALL.iter().copied().find(|domain| domain.id() == word));
 
 /// A rule.
 #[derive(Table)]
 #[table("rule")]
 pub(super) struct RuleKeys {
     /// Which explanation it speaks of.
-    #[key(choice = SHOWN, default = "concealed", example = "unveiled")]
+    #[key(choice = SHOWN_EXPLANATIONS, default = "concealed", example = "unveiled")]
     pub when: &'static str,
     /// What must hold.
-    #[key(choice = ASKS, required, example = "name")]
+    #[key(choice = RULE_KINDS, required, example = "name")]
     pub must: Option<&'static str>,
     /// Verdicts.
-    #[key(choice = VERDICTS, example = ["mismatch"])]
+    #[key(choice = EXPLANATION_VERDICTS, example = ["mismatch"])]
     pub verdicts: Option<Vec<&'static str>>,
     /// Effects by their ids (`sagnac effects`), or `unknown`.
     #[key(kind = Kind::Effects, example = ["comb"])]

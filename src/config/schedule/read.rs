@@ -11,7 +11,7 @@ use crate::config::text_file::{self, Wording};
 use crate::i18n::note;
 use std::path::Path;
 
-/// What is said of a schedule that cannot be read at all.
+/// Messages for a schedule that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "schedule_file.unreadable", folder: "schedule_file.folder" };
 
 /// Reads a schedule.

@@ -12,7 +12,7 @@ use crate::i18n::note;
 use crate::units::Unit;
 use std::path::Path;
 
-/// What is said of a sheet file that cannot be read at all.
+/// Messages for a sheet file that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "sheet_file.unreadable", folder: "sheet_file.folder" };
 
 /// Reads a sheet file.

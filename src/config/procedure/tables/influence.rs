@@ -107,12 +107,12 @@ pub(crate) struct ComparisonKeys {
     temperature: Option<String>,
     /// If nothing in the recording shows that the influence was applied, the test is invalid unless this key
     /// declares it; report and verdict then say so.
-    #[key(choice = EVIDENCES, example = "declared")]
+    #[key(choice = ACCEPTED_EVIDENCE, example = "declared")]
     evidence: Option<&'static str>,
 }
 
 /// Evidence that a procedure may do with.
-const EVIDENCES: &[Word] =
+const ACCEPTED_EVIDENCE: &[Word] =
     &[("declared", "that the influence acted, and at which levels, is taken from the procedure")];
 
 impl ComparisonKeys {

@@ -116,12 +116,12 @@ pub(crate) struct LimitKeys {
 }
 
 /// Decision rules.
-pub const RULES: &[Word] = &[
+pub const DECISION_RULES: &[Word] = &[
     ("guard_band", "the one-sided bound of the value at the stated risk is compared (JCGM 106, ISO 14253-1)"),
     ("simple", "the value itself is compared; up to 50 % risk at the limit (ILAC-G8)"),
 ];
 
-words!(Rule, RULES, |word: &str| match word {
+words!(Rule, DECISION_RULES, |word: &str| match word {
     "guard_band" => Some(Rule::GuardBand),
     "simple" => Some(Rule::Simple),
     _ => None,

@@ -25,7 +25,7 @@ use sagnac_ingest::StampWriting;
 use temperature::{TemperatureKeys, WarmUpKeys};
 
 /// Roles a channel may have, with their meaning.
-pub const ROLES: &[Word] = &[
+pub const CHANNEL_ROLES: &[Word] = &[
     ("time", "time stamps"),
     ("rate", "angular rate about an input axis"),
     ("angle_increment", "angle turned during the sample interval, or counts of it"),
@@ -42,7 +42,7 @@ pub const ROLES: &[Word] = &[
 ];
 
 /// Figures a report may show.
-pub const FIGURES: &[Word] = &[
+pub const REPORT_FIGURES: &[Word] = &[
     ("rate", "rate over time with the excluded spans"),
     ("temperature", "temperature over time with its limits"),
     ("sigma_tau", "Allan deviation over averaging time with the fitted terms"),
@@ -65,7 +65,7 @@ pub const FIGURES: &[Word] = &[
     ("table_polar", "residual over the angle of the table, as a polar plot"),
 ];
 
-words!(Role, ROLES, |word: &str| Role::ALL.iter().copied().find(|role| role.id() == word));
+words!(Role, CHANNEL_ROLES, |word: &str| Role::ALL.iter().copied().find(|role| role.id() == word));
 
 /// The procedure file as a whole.
 pub static PROCEDURE_FILE: TableSpec = *ProcedureFile::SPEC;
@@ -184,7 +184,7 @@ pub(in crate::config::procedure) struct RecordingTable {
 }
 
 /// Ways to write time stamps.
-pub const STAMPS: &[Word] = &[
+pub const STAMP_WRITINGS: &[Word] = &[
     ("iso8601", "date and time with the year first, ISO 8601 or RFC 3339"),
     ("day_first", "date and time with the day first, as in Russia"),
     ("month_first", "date and time with the month first, as in the United States"),
@@ -193,7 +193,7 @@ pub const STAMPS: &[Word] = &[
     ("number", "numbers"),
 ];
 
-words!(StampWriting, STAMPS, |word: &str| match word {
+words!(StampWriting, STAMP_WRITINGS, |word: &str| match word {
     "iso8601" => Some(StampWriting::Iso8601),
     "day_first" => Some(StampWriting::DayFirst),
     "month_first" => Some(StampWriting::MonthFirst),

@@ -61,7 +61,7 @@ pub(crate) struct RateTableKeys {
     #[key(difference = "degC", min = 0, default = "0 degC", example = "0.2 degC")]
     temperature_uncertainty_deg_c: f64,
     /// Shape of the output over rate.
-    #[key(choice = RESPONSES, default = "line", example = "sine")]
+    #[key(choice = RESPONSE_SHAPES, default = "line", example = "sine")]
     response: &'static str,
     /// Positions relative to the Earth's rotation, instead of a rotating table; needs [site].
     #[key(name = "position")]
@@ -74,7 +74,7 @@ pub(crate) struct RateTableKeys {
     rests: Vec<RestKeys>,
 }
 
-const RESPONSES: &[Word] =
+const RESPONSE_SHAPES: &[Word] =
     &[("line", "a straight line: a closed loop"), ("sine", "a sine: an interferometer without a loop")];
 
 /// A stretch of the recording.

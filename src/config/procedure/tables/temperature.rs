@@ -5,17 +5,17 @@ use crate::config::table::{Table, words};
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
 
 /// Temperatures that a unit can have, degC.
-const REACHABLE: Range = Range::between(-273.15, 1000.0);
+const REACHABLE_DEG_C: Range = Range::between(-273.15, 1000.0);
 
-/// What a stated segment may be.
-pub const SEGMENTS: &[Word] = &[
+/// Kinds of stated segments.
+pub const SEGMENT_KINDS: &[Word] = &[
     ("soak", "constant temperature before the first ramp"),
     ("heating", "rising temperature"),
     ("cooling", "falling temperature"),
     ("dwell", "constant temperature after a ramp"),
 ];
 
-words!(SegmentKind, SEGMENTS, |word: &str| SegmentKind::ALL.into_iter().find(|kind| kind.id() == word));
+words!(SegmentKind, SEGMENT_KINDS, |word: &str| SegmentKind::ALL.into_iter().find(|kind| kind.id() == word));
 
 /// A temperature test: ramps and dwells, checked from the recording. This table makes the temperature measurands
 /// available.
@@ -30,10 +30,10 @@ pub(crate) struct TemperatureKeys {
     #[key(id, example = "chamber")]
     command: Option<String>,
     /// Lowest temperature to be reached.
-    #[key(quantity = "degC", range = REACHABLE, example = "-40 degC")]
+    #[key(quantity = "degC", range = REACHABLE_DEG_C, example = "-40 degC")]
     low_deg_c: f64,
     /// Highest temperature to be reached.
-    #[key(quantity = "degC", range = REACHABLE, example = "60 degC")]
+    #[key(quantity = "degC", range = REACHABLE_DEG_C, example = "60 degC")]
     high_deg_c: f64,
     /// Maximum shortfall from an end point.
     #[key(difference = "degC", above = 0, default = "2 degC", example = "2 degC")]
@@ -129,8 +129,8 @@ impl From<TemperatureKeys> for TemperatureTest {
     }
 }
 
-/// What can say when a unit was switched on.
-pub const STARTS: &[Word] = &[
+/// Sources of the time of turn-on.
+pub const TURN_ON_SOURCES: &[Word] = &[
     ("declared", "the procedure: at the first row; reports say that it is declared, not seen"),
     ("stamp", "the stamps: at `power_on`"),
     ("supply", "a supply that comes on in the recording"),
@@ -149,7 +149,7 @@ pub(crate) struct WarmUpKeys {
     #[key(quantity = "1", above = 0, max = 0.5, default = "25 %", example = "25 %")]
     final_share: f64,
     /// What shows the turn-on time. If omitted, it is unknown and no warm-up time can pass.
-    #[key(choice = STARTS, example = "declared")]
+    #[key(choice = TURN_ON_SOURCES, example = "declared")]
     start: Option<&'static str>,
     /// With `start = "supply"` the channel of the supply, with `"temperature"` that of the thermometer on the unit.
     #[key(id, example = "supply")]
@@ -158,7 +158,7 @@ pub(crate) struct WarmUpKeys {
     #[key(quantity = "s", min = 0, default = "0 s", example = "0 s")]
     power_on_s: f64,
     /// With `start = "temperature"`: temperature of the cold unit, that of the chamber.
-    #[key(quantity = "degC", range = REACHABLE, example = "23 degC")]
+    #[key(quantity = "degC", range = REACHABLE_DEG_C, example = "23 degC")]
     cold_deg_c: Option<f64>,
     /// Maximum difference of the first temperature from `cold`; the unit must warm up by three times as much.
     #[key(difference = "degC", above = 0, default = "0.5 degC", example = "0.5 degC")]
