@@ -32,7 +32,7 @@ fn a_result_is_verified_from_its_hashes_to_its_figures() {
     let (code, said) = verified(dir.path(), &["r", "--recording", &recording]);
     assert_eq!(code, 0, "{said}");
     for part in
-        ["hashes computed anew", "made anew", "pass; rows with a limit: 7", "same figures: 28 quantities"]
+        ["hashes computed anew", "reproduce from the record", "pass; rows with a limit: 7", "same figures: 28 quantities"]
     {
         assert!(said.contains(part), "{part}: {said}");
     }

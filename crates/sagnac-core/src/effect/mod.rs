@@ -17,28 +17,31 @@
 mod macros;
 
 mod column;
+mod detection;
 mod domain;
 mod drivers;
 mod kinds;
 mod mean;
 mod model;
 mod param;
+mod response_law;
 mod shared;
 mod sizing;
 mod spectral;
 
 pub use column::{COLUMN_TEXT, Column, OtherColumn};
+pub use detection::{
+    Background, Detection, FlatResidual, Jumps, Knot, Law, LevelLaw, OutlierDetector, Outliers, Pulses,
+    Reported, Rounding, RowDetector, Rows, RowsFound,
+};
 pub use domain::{Domain, Place};
 pub use drivers::{ClaimedMean, Drivers, Earth, OtherDriver, StatedLine, Temperature, averages};
 pub use kinds::{EFFECTS, any_column_driver, find, parameter};
-pub use mean::{MeanModel, Nuisance, Regressors, Resolution, SearchContext, Starts, Unmodelled};
-pub use model::{
-    Background, Detection, Detector, FlatResidual, JumpDetector, Jumps, Knot, Law, Level, LevelDetector,
-    LevelLaw, OutlierDetector, Outliers, Pulses, Reported, Rounding, RowDetector, Rows, RowsFound, Samples,
-};
+pub use mean::{Nuisance, Regressors, Resolution, SearchContext, Starts, Unmodelled};
 pub use model::{ClaimedByCourse, Effect, Family, Later, Model, UNKNOWN, plausible, stateable};
+pub use model::{Detector, JumpDetector, Level, LevelDetector, MeanModel, Samples, Spectrum};
 pub use param::{Param, Value, Values, list, number, text};
+pub use response_law::ResponseLaw;
 pub use shared::low_pass::LowPass;
-pub use shared::response::ResponseLaw;
 pub use sizing::{Sizing, SpectralSizing};
-pub use spectral::{ModeBin, SpectralContext, Spectrum, SpectrumAct};
+pub use spectral::{ModeBin, SpectralContext, SpectrumAct};

@@ -4,9 +4,18 @@
 //! The search for a mismatch knows no effect by name. It asks an effect on samples for its [`Detector`], whose class determines
 //! the data that are searched and the consequence of a detection.
 
-use super::{
-    ClaimedMean, Column, Domain, Drivers, MeanModel, Param, Place, ResponseLaw, Spectrum, Value, Values,
+use super::detection::{
+    Background, Detection, FlatResidual, Jumps, Law, LevelLaw, OutlierDetector, Rounding, RowDetector,
 };
+use super::mean::{Nuisance, Regressors, Resolution, SearchContext, Starts, Unmodelled, first};
+use super::shared::power_law::power_law_places;
+use super::shared::reach::{places_of, varies};
+use super::{
+    ClaimedMean, Column, Domain, Drivers, Knot, LowPass, ModeBin, Param, Place, ResponseLaw, Sizing,
+    SpectralContext, SpectralSizing, SpectrumAct, StatedLine, Value, Values, number,
+};
+use crate::noise::composite::{Composite, Damped};
+use crate::numeric::range::Bounds;
 
 /// Kind, in `explain.json`, of a cause that the format has no kind for.
 pub const UNKNOWN: &str = "unknown";
@@ -207,195 +216,6 @@ pub enum Detector {
     Missing(&'static dyn RowDetector),
 }
 
-/// A value that a detector reports.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reported {
-    /// Name of the parameter.
-    pub name: &'static str,
-    /// Unit; empty for a pure number.
-    pub unit: &'static str,
-    /// Value.
-    pub value: f64,
-    /// Its 95 % interval.
-    pub ci95: [f64; 2],
-}
-
-impl Reported {
-    /// A value with its interval.
-    pub fn new(name: &'static str, unit: &'static str, value: f64, ci95: [f64; 2]) -> Reported {
-        Reported { name, unit, value, ci95 }
-    }
-}
-
-/// Result of a detector.
-#[derive(Debug, Clone, PartialEq, Default)]
-pub struct Detection {
-    /// Parameters as reports give them.
-    pub reported: Vec<Reported>,
-    /// Parameters as a claim states them.
-    pub stated: Values,
-    /// Intervals in which it shows, principal one first.
-    pub places: Vec<Place>,
-    /// Gain of log-likelihood over a record without it.
-    pub gain: f64,
-    /// Parameters that the gain was bought with.
-    pub parameters: usize,
-    /// Probability of such a gain without it, everything scanned counted.
-    pub p_value: f64,
-}
-
-impl Detection {
-    /// The reported value of a name.
-    pub fn reported(&self, name: &str) -> Option<&Reported> {
-        self.reported.iter().find(|r| r.name == name)
-    }
-}
-
-/// The rows of a recording on its grid.
-#[derive(Debug, Clone, Copy)]
-pub struct Rows<'a> {
-    /// Rate, deg/h; interpolated where a row is missing.
-    pub rate: &'a [f64],
-    /// True where a row is.
-    pub present: &'a [bool],
-    /// Runs of missing rows: first place on the grid, count.
-    pub gaps: &'a [(usize, usize)],
-    /// `time_s` of the first place of the grid.
-    pub start_s: f64,
-    /// Sample interval, s.
-    pub dt_s: f64,
-}
-
-impl Rows<'_> {
-    /// `time_s` of a place on the grid.
-    pub fn time_s(&self, row: usize) -> f64 {
-        self.start_s + row as f64 * self.dt_s
-    }
-}
-
-/// Finds an effect in the rows as they were recorded.
-pub trait RowDetector: Sync {
-    /// The rows concerned, and the effect as they show it; `None` where there is none.
-    fn find(&self, rows: &Rows<'_>) -> Option<RowsFound>;
-}
-
-/// Rows that an effect concerns.
-#[derive(Debug, Clone, PartialEq)]
-pub struct RowsFound {
-    /// Their places on the grid, ascending.
-    pub rows: Vec<usize>,
-    /// The effect.
-    pub detection: Detection,
-}
-
-/// Residual of a fitted hypothesis, in single samples.
-pub struct FlatResidual<'a> {
-    /// Whitened by the hypothesis.
-    pub white: Vec<f64>,
-    /// Without the slow course, its own spectrum levelled: what a wrong spectrum or a missing course leaves is not in it.
-    pub flat: Vec<f64>,
-    /// Deviation in `flat` for 1 deg/h in one sample.
-    pub per_deg_h: f64,
-    /// Samples at either end that say nothing of single samples.
-    pub ends: usize,
-    /// True for a sample that is that of a row which counts.
-    pub usable: &'a [bool],
-    /// The columns.
-    pub drivers: &'a Drivers,
-    /// Step of the grid of values that the output is rounded to, in the unit of `flat`; 0 where there is none.
-    pub rounding_step: f64,
-}
-
-impl FlatResidual<'_> {
-    /// Steps of rounding, in deviations of a sample, from which values are seen to jump between them.
-    pub const COARSE_STEPS: f64 = 2.0;
-
-    /// True for a sample that counts.
-    pub fn counts(&self, i: usize) -> bool {
-        let inside = i >= self.ends && i + self.ends < self.flat.len();
-        inside && self.usable.get(i).copied().unwrap_or(false)
-    }
-}
-
-/// Groups of samples that do not belong to the noise.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Outliers {
-    /// First sample and length of each, by time.
-    pub groups: Vec<(usize, usize)>,
-    /// Samples to set aside.
-    pub samples: Vec<usize>,
-    /// Groups at most that are too small to be found: as many as there are between the smallest that is found and twice
-    /// its size, if sizes are no more frequent below it.
-    pub missed: usize,
-    /// Deviation of the whitened samples set aside; 1 where the noise is as the hypothesis says.
-    pub deviation: f64,
-    /// Gain of log-likelihood by a deviation of their own, against the level of their neighbourhood.
-    pub gain: f64,
-    /// Parameters that the gain was bought with.
-    pub parameters: usize,
-    /// Probability of as much without them, everything scanned counted.
-    pub p_value: f64,
-}
-
-/// Finds groups of outlying samples.
-pub trait OutlierDetector: Sync {
-    /// Groups in a residual; `None` where there are none.
-    fn find(&self, residual: &FlatResidual<'_>) -> Option<Outliers>;
-
-    /// The effect, from what was taken out of each sample, deg/h, when the groups were set aside.
-    fn describe(&self, found: &Outliers, removed: &[f64], drivers: &Drivers) -> Option<Detection>;
-}
-
-/// A point of a law that runs in straight lines.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Knot {
-    /// A time or a value of a column.
-    pub at: f64,
-    /// Value of the law there.
-    pub value: f64,
-}
-
-/// Law of the level of the noise.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Law {
-    /// Time: deviation over that of the whole record at `time_s`, with lines between the knots.
-    Time(Vec<Knot>),
-    /// Size of the input rate: σ² = σ₀² (1 + (ratio² − 1)(|Ω|/max)^exponent).
-    Rate {
-        /// Deviation at the largest rate over that at zero.
-        ratio: f64,
-        /// 1 or 2.
-        exponent: u8,
-    },
-    /// Value of a column: deviation over that of the whole record.
-    Column(Column, Vec<Knot>),
-}
-
-/// A law of the level, fitted to groups of samples and not yet held against single ones.
-#[derive(Debug, Clone)]
-pub struct LevelLaw {
-    /// The law.
-    pub law: Law,
-    /// Deviation of each sample, in any unit.
-    pub profile: Vec<f64>,
-    /// Gain of log-likelihood over one level for all groups.
-    pub gain: f64,
-    /// Independent laws that were tried for it.
-    pub trials: f64,
-    /// Coefficients that a gain of nothing comes from.
-    pub free: usize,
-    /// Parameters of the law, what was searched counted.
-    pub parameters: usize,
-    /// Spread of the groups about the law over what χ² laws give.
-    pub dispersion: f64,
-    /// Largest deviation over the smallest; for a law of rate that at the largest rate over that at zero.
-    pub ratio: f64,
-    /// Its 95 % interval.
-    pub ci95: [f64; 2],
-    /// Interval in which the noise is raised.
-    pub place: Place,
-}
-
 /// A level of the noise that changes.
 #[derive(Clone)]
 pub struct Level {
@@ -434,49 +254,6 @@ pub trait LevelDetector: Sync {
     fn stated(&self, level: &Level, drivers: &Drivers) -> Values;
 }
 
-/// A recording before a hypothesis of its noise and its mean, in cosine modes: what a course of jumps is looked for in.
-pub struct Background<'a> {
-    /// The columns.
-    pub drivers: &'a Drivers,
-    /// Modes of what the hypothesis leaves.
-    pub modes: Vec<f64>,
-    /// Variance of each mode, (deg/h)²; infinite for one that is free.
-    pub powers: Vec<f64>,
-    /// Modes of the columns of the hypothesis, each with the deviation of its prior.
-    pub columns: Vec<(Vec<f64>, f64)>,
-    /// Log-likelihood that the noise beside jumps loses against that of the hypothesis in a record without jumps.
-    pub lost: f64,
-    /// Step of the grid of values that the output is rounded to, as an angle increment, arcsec.
-    pub grid_step_arcsec: Option<f64>,
-}
-
-/// A course of jumps.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Jumps {
-    /// Expected value of each sample given all, less its mean, deg/h.
-    pub course: Vec<f64>,
-    /// The effect. Its p-value is the larger of that under the hypothesis and that of its gain over the best single process.
-    pub detection: Detection,
-    /// Bound of the probability of such a gain under the hypothesis.
-    pub chance: f64,
-    /// Gain of the best single process in its place.
-    pub rival_gain: f64,
-    /// False for jumps every few samples, which cannot be distinguished from a short correlated process, and for jumps in equal
-    /// intervals, which are a periodic course.
-    pub resolved: bool,
-    /// For a level that is left much sooner than the other, which is no telegraph: its visits.
-    pub pulses: Option<Pulses>,
-}
-
-/// Pulses of no kind that recur.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Pulses {
-    /// Number of pulses.
-    pub count: usize,
-    /// Mean length, s.
-    pub each_s: f64,
-}
-
 /// Finds a course of jumps.
 pub trait JumpDetector: Sync {
     /// Jumps beside a hypothesis; `rival_gain` works out what the best single process gains in their place.
@@ -489,13 +266,320 @@ pub trait JumpDetector: Sync {
     fn process(&self, stated: &Values) -> Option<(&'static dyn Effect, Vec<f64>)>;
 }
 
-/// An effect that rounds the output in steps, which the values of a recording show by themselves.
-pub trait Rounding: Sync {
-    /// The step that a claim states, as an angle increment, arcsec.
-    fn step_arcsec(&self, stated: &Values) -> Option<f64>;
+/// An effect that adds a course to the rate which its parameters and the recorded columns determine.
+///
+/// The defaults are those of the plainest model: one [`column`](MeanModel::column) times the first parameter. The further
+/// parameters of such a model are the nonlinear ones, in the same order; most have none. A model of another form has its own
+/// `regressors`, `parameters` and `course`.
+pub trait MeanModel: Effect {
+    /// False where the columns, or the claim, leave nothing to fit (a constant temperature, a table at rest). The columns that an
+    /// effect needs must vary.
+    fn applies(&self, drivers: &Drivers) -> bool {
+        self.needs().iter().all(|column| varies(drivers.column(*column)))
+    }
 
-    /// The effect, from the step of the values as an angle increment and what their digits leave open of it, arcsec.
-    fn detection(&self, step_arcsec: f64, open_arcsec: f64, dt_s: f64) -> Detection;
+    /// Intervals in which it shows, principal one first, at most three: those of the quantity of its domain.
+    fn places(&self, _nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
+        places_of(self.domain(), drivers)
+    }
+
+    /// The column of a model that has only one, deg/h for a coefficient of 1; `None` where a recorded column or a nonlinear
+    /// parameter is missing.
+    fn column(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Option<Vec<f64>> {
+        None
+    }
+
+    /// The coefficient of the column that the claim itself has: the fit adds to it.
+    fn claimed_coefficient(&self, _drivers: &Drivers) -> f64 {
+        0.0
+    }
+
+    /// Columns beside the only one: an unknown state at the beginning of the record.
+    fn initial_state(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Vec<Vec<f64>> {
+        vec![]
+    }
+
+    /// The sampling at which it must be fitted.
+    fn resolution(&self) -> Resolution {
+        if self.is_slow() { Resolution::Averaged } else { Resolution::FullRate }
+    }
+
+    /// The value of the claim whose prior is given up when the effect is fitted, since both are the same column.
+    fn replaces(&self) -> Option<Nuisance> {
+        None
+    }
+
+    /// Bounds of each nonlinear parameter.
+    fn bounds(&self, _drivers: &Drivers) -> Vec<Bounds> {
+        vec![]
+    }
+
+    /// At most four points from which a local search of the nonlinear parameters begins, found over their whole range.
+    fn starts(&self, _drivers: &Drivers, _context: &SearchContext<'_>) -> Starts {
+        Starts::linear()
+    }
+
+    /// First step of the local search in each nonlinear parameter, where the likelihood has a peak much narrower than the
+    /// bounds; empty: a hundredth of the bounds.
+    fn steps(&self, _drivers: &Drivers) -> Vec<f64> {
+        vec![]
+    }
+
+    /// Positions of nonlinear parameters that are whole numbers: tried by [`MeanModel::starts`] and not refined.
+    fn whole(&self) -> &'static [usize] {
+        &[]
+    }
+
+    /// The columns for given nonlinear parameters.
+    fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
+        Regressors {
+            offset: None,
+            columns: self.column(nonlinear_parameters, drivers).into_iter().collect(),
+            nuisance: self.initial_state(nonlinear_parameters, drivers),
+        }
+    }
+
+    /// Orthonormal cosine modes (DCT-II) of the columns, for a model that has nothing but columns and whose transform is known
+    /// in closed form; `None`: they are transformed.
+    fn modes(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Option<Vec<Vec<f64>>> {
+        None
+    }
+
+    /// The parameters in the order of [`Effect::params`](super::Effect::params), from the nonlinear ones and the coefficients
+    /// of the columns; NaN for one that the fit does not determine.
+    fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], drivers: &Drivers) -> Vec<f64> {
+        let nonlinear = nonlinear_parameters.iter().copied().chain(std::iter::repeat(f64::NAN));
+        let coefficient = first(coefficients) + self.claimed_coefficient(drivers);
+        std::iter::once(coefficient).chain(nonlinear).take(self.params().len()).collect()
+    }
+
+    /// The course of claimed parameters, deg/h, one value a sample; `None` where a parameter or a column is missing.
+    fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
+        let excess = number(values, self.params().first()?.name)? - self.claimed_coefficient(drivers);
+        let column = self.column(&further_numbers(self.params(), values)?, drivers)?;
+        Some(column.into_iter().map(|x| excess * x).collect())
+    }
+
+    /// Columns that are fitted when a claim states the effect: a state before the record that no claim can know.
+    fn nuisance_columns(&self, values: &Values, drivers: &Drivers) -> Vec<Vec<f64>> {
+        let nonlinear = further_numbers(self.params(), values);
+        nonlinear.map_or_else(Vec::new, |parameters| self.initial_state(&parameters, drivers))
+    }
+
+    /// Name of the list of coefficients that the course is proportional to, where a claim states one.
+    fn linear_list(&self) -> Option<&'static str> {
+        None
+    }
+
+    /// Lists that a claim states beside the numbers, by name.
+    fn lists(
+        &self,
+        _nonlinear_parameters: &[f64],
+        coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Vec<(&'static str, Vec<f64>)> {
+        self.linear_list().map(|name| (name, coefficients.to_vec())).into_iter().collect()
+    }
+
+    /// Texts that a claim states beside the numbers and a finding reports, by name.
+    fn texts(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Vec<(&'static str, String)> {
+        vec![]
+    }
+
+    /// The fitted law as a formula in the units of the columns, for an effect whose law is found and not given.
+    fn formula(
+        &self,
+        _nonlinear_parameters: &[f64],
+        _coefficients: &[f64],
+        _drivers: &Drivers,
+    ) -> Option<String> {
+        None
+    }
+
+    /// Uncertainty of the estimates beyond that of their fit: physics has more shapes than an effect that stands for any loop,
+    /// any curve or any delay.
+    fn unmodelled(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Unmodelled {
+        Unmodelled::default()
+    }
+
+    /// Parameters that BIC counts for so many columns: one each, unless their coefficients are of a common size.
+    fn bic_parameters(&self, columns: usize) -> usize {
+        columns
+    }
+
+    /// True where one shape is the same cause as an earlier one of the same effect, so that the two are not found beside each
+    /// other.
+    fn same_cause(&self, _earlier: &[f64], _nonlinear_parameters: &[f64]) -> bool {
+        false
+    }
+
+    /// Natural logarithm of the odds of this effect against others with the same course, from other evidence of the columns.
+    fn odds(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> f64 {
+        0.0
+    }
+
+    /// Samples within which the course is curved, so that the means of the columns do not determine it: they are left out of
+    /// the fit. `parameters` in the order of [`Effect::params`](super::Effect::params).
+    fn curvature_within_average(&self, _parameters: &[f64], _drivers: &Drivers) -> Vec<usize> {
+        vec![]
+    }
+
+    /// The line that claimed parameters describe, for an effect that is one.
+    fn claimed_line(&self, _values: &Values) -> Option<StatedLine> {
+        None
+    }
+
+    /// Sizes to ask for when it is determined which size would have been noticed; one entry for each column that can drive it.
+    /// Empty for an effect whose size is no single number. One column without nonlinear parameters is sized by its
+    /// coefficient.
+    fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
+        let coefficient = self.params().first().filter(|_| self.column(&[], drivers).is_some());
+        coefficient
+            .map(|p| Sizing::linear(p).claimed(self.claimed_coefficient(drivers)))
+            .into_iter()
+            .collect()
+    }
+
+    /// The course of a size at a place, deg/h, one value a sample.
+    fn sized_course(
+        &self,
+        sizing: &Sizing,
+        place: &Values,
+        size: f64,
+        drivers: &Drivers,
+    ) -> Option<Vec<f64>> {
+        self.course(&sizing.values(place, size), drivers)
+    }
+
+    /// Values by which a claim states a size at a place.
+    fn claimed_size(&self, sizing: &Sizing, place: &Values, size: f64, _drivers: &Drivers) -> Values {
+        sizing.values(place, size)
+    }
+}
+
+/// An effect that changes the spectrum of the noise. Its parameters are positive and are fitted by their logarithms.
+///
+/// The defaults are those of the plainest effect, an unconstrained coefficient of the claim, which has only its `act`. A density
+/// or a filter has its own `densities`, `starts`, `bounds`, `trials`, `compose` and `places`.
+pub trait Spectrum: Effect {
+    /// The way in which it acts.
+    fn act(&self) -> SpectrumAct {
+        SpectrumAct::Adds
+    }
+
+    /// Two-sided density of each bin, (deg/h)²/Hz, or the factor of a filter, for fitted parameters. Unused for
+    /// [`SpectrumAct::Unconstrains`].
+    fn densities(&self, _fitted: &[f64], bins: &[ModeBin]) -> Vec<f64> {
+        vec![0.0; bins.len()]
+    }
+
+    /// [`Spectrum::densities`] of one bin.
+    fn density(&self, fitted: &[f64], bin: &ModeBin) -> f64 {
+        self.densities(fitted, &[*bin]).first().copied().unwrap_or(0.0)
+    }
+
+    /// Adds the effect to a noise model for simulation of samples of `dt_s`: an unconstrained coefficient replaces that of the
+    /// model.
+    fn compose(&self, fitted: &[f64], _dt_s: f64, noise: &mut Composite) {
+        if let (SpectrumAct::Unconstrains(term), [coefficient]) = (self.act(), fitted) {
+            noise.terms = noise.terms.with(term, *coefficient);
+        }
+    }
+
+    /// Intervals in which it shows, principal one first, at most three: those of its term, for an unconstrained coefficient.
+    fn places(&self, fitted: &[f64], context: &SpectralContext<'_>) -> Vec<Place> {
+        match self.act() {
+            SpectrumAct::Unconstrains(term) => power_law_places(term, fitted, context),
+            SpectrumAct::Adds | SpectrumAct::Filters => vec![],
+        }
+    }
+
+    /// Parameters that a fit begins from, several.
+    fn starts(&self, _context: &SpectralContext<'_>) -> Vec<Vec<f64>> {
+        vec![vec![]]
+    }
+
+    /// Bounds of the fitted parameters.
+    fn bounds(&self, _context: &SpectralContext<'_>) -> Vec<Bounds> {
+        vec![]
+    }
+
+    /// Independent points that the search looks at: the p-value is multiplied by their number.
+    fn trials(&self, _context: &SpectralContext<'_>) -> f64 {
+        1.0
+    }
+
+    /// The parameters in the order of [`Effect::params`](super::Effect::params); NaN for one not determined.
+    fn parameters(&self, fitted: &[f64]) -> Vec<f64> {
+        fitted.to_vec()
+    }
+
+    /// The fitted parameters of claimed ones; `None` where one is missing.
+    fn claimed_parameters(&self, values: &Values) -> Option<Vec<f64>> {
+        self.params().iter().map(|p| number(values, p.name)).collect()
+    }
+
+    /// The power of a parameter that the whole density is proportional to; `None` for one that changes its shape.
+    fn scales_with(&self, _parameter: usize) -> Option<f64> {
+        None
+    }
+
+    /// False for a parameter that a fit leaves where it began.
+    fn is_refined(&self, _fitted: &[f64], _parameter: usize) -> bool {
+        true
+    }
+
+    /// False where a fit ended at parameters that are another effect.
+    fn plausible(&self, _fitted: &[f64]) -> bool {
+        true
+    }
+
+    /// Samples at either end of a record that a filter makes different from noise that is even about the ends. They leak into
+    /// the modes that the filter suppresses, the same few samples into all of them.
+    fn edge_effect(&self, _fitted: &[f64], _dt_s: f64) -> usize {
+        0
+    }
+
+    /// Frequencies below the Nyquist frequency at which a filter of samples leaves nothing, Hz.
+    fn zeros_hz(&self, _fitted: &[f64], _dt_s: f64) -> Vec<f64> {
+        vec![]
+    }
+
+    /// The filter that simulated samples go through, where the noise model has none for it.
+    fn low_pass(&self, _fitted: &[f64], _dt_s: f64) -> Option<LowPass> {
+        None
+    }
+
+    /// Size to ask for when it is determined which size would have been noticed; `None` for an effect whose size is no single
+    /// number.
+    fn sizing(&self, _context: &SpectralContext<'_>) -> Option<SpectralSizing> {
+        None
+    }
+
+    /// True for an effect of which a record can hold several, each with parameters of its own.
+    fn repeats(&self) -> bool {
+        false
+    }
+
+    /// True for exponentially correlated noise, which has the spectrum of independent jumps between two levels.
+    fn is_relaxation(&self) -> bool {
+        false
+    }
+
+    /// Values by which a claim states a process that was identified in samples of `dt_s`; `None` for one of another kind.
+    fn values_of(&self, _process: &Damped, _dt_s: f64) -> Option<Values> {
+        None
+    }
+
+    /// True when the course of the process can be estimated sample by sample (slow or narrow-band).
+    fn has_course(&self) -> bool {
+        false
+    }
+}
+
+/// The numbers that a claim states for all parameters but the first; `None` where one is missing.
+fn further_numbers(params: &[Param], values: &Values) -> Option<Vec<f64>> {
+    params.iter().skip(1).map(|p| number(values, p.name)).collect()
 }
 
 #[cfg(test)]
@@ -529,23 +613,6 @@ mod tests {
         assert!(of("line").is_none() && of("excess_arw").is_none());
         assert!(crate::effect::find("noise_variance_rate").unwrap().sets_level());
         assert!(!crate::effect::find("outlier_bursts").unwrap().sets_level());
-    }
-
-    #[test]
-    fn samples_count_inside_of_both_ends_where_their_rows_do() {
-        let drivers = Drivers::default();
-        let usable = [true, true, true, false, true, true, true];
-        let residual = FlatResidual {
-            white: vec![0.0; 7],
-            flat: vec![0.0; 7],
-            per_deg_h: 1.0,
-            ends: 2,
-            usable: &usable,
-            drivers: &drivers,
-            rounding_step: 0.0,
-        };
-        let counted: Vec<usize> = (0..9).filter(|i| residual.counts(*i)).collect();
-        assert_eq!(counted, [2, 4]);
     }
 
     #[test]

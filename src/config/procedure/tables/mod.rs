@@ -41,30 +41,6 @@ pub const CHANNEL_ROLES: &[Word] = &[
     ("auxiliary", "anything else that is kept beside"),
 ];
 
-/// Figures a report may show.
-pub const REPORT_FIGURES: &[Word] = &[
-    ("rate", "rate over time with the excluded spans"),
-    ("temperature", "temperature over time with its limits"),
-    ("sigma_tau", "Allan deviation over averaging time with the fitted terms"),
-    ("spectrum", "power spectral density with the lines found"),
-    ("allan_family", "modified Allan, Hadamard and total deviation beside the Allan deviation"),
-    ("autocorrelation", "autocorrelation of the record and of what the model leaves"),
-    ("histogram", "distribution of the samples against the normal one"),
-    ("residual", "distribution of what the model leaves against the normal one"),
-    ("scale_factor_residual", "residuals of the scale factor over rate, in ppm of full scale"),
-    ("table_steps", "rate of the table and residuals of the steps over time"),
-    ("dead_zone", "response to rates near zero"),
-    ("over_temperature", "bias over temperature, both branches, with the model and its band"),
-    ("temperature_schedule", "temperature and its rate over time with the segments"),
-    ("temperature_residual", "what the model over temperature leaves, over time"),
-    ("temperature_sensitivity", "slope of the bias over temperature"),
-    ("warm_up", "bias after switching on with its band"),
-    ("bias_of_runs", "bias of every switching-on with its interval"),
-    ("influence", "bias of every interval without and with an influence, and over its level"),
-    ("positions", "output in every position against the Earth rate"),
-    ("table_polar", "residual over the angle of the table, as a polar plot"),
-];
-
 words!(Role, CHANNEL_ROLES, |word: &str| Role::ALL.iter().copied().find(|role| role.id() == word));
 
 /// The procedure file as a whole.

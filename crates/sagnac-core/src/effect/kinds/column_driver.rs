@@ -5,11 +5,11 @@ use crate::effect::shared::chance::follows_by_chance;
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::response::{
-    self, CENTER_NAME, COEFFICIENTS_LIST, HALF_RANGE, ResponseLaw, SCALES_LIST, TERMS_LIST,
+    self, CENTER_NAME, COEFFICIENTS_LIST, HALF_RANGE, SCALES_LIST, TERMS_LIST,
 };
 use crate::effect::{
-    COLUMN_TEXT, Column, Domain, Drivers, MeanModel, OtherDriver, Param, Place, Regressors, SearchContext,
-    Sizing, Starts, Unmodelled, Value, Values, text,
+    COLUMN_TEXT, Column, Domain, Drivers, MeanModel, OtherDriver, Param, Place, Regressors, ResponseLaw,
+    SearchContext, Sizing, Starts, Unmodelled, Value, Values, text,
 };
 use crate::numeric::range::Bounds;
 

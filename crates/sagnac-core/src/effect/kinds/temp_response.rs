@@ -1,10 +1,14 @@
 //! The bias follows the history of the recorded temperature by more than one law at once: a curve, flow of heat through
 //! layers, hysteresis. The law that explains most gives the finding its name.
 
-use super::{
-    TempHysteresis, TempHysteresisLoops, TempLinear, TempLinearDelayed, TempPolynomial, TempRate,
-    TempRateDelayed, ThermalLag,
-};
+use super::temp_hysteresis::TempHysteresis;
+use super::temp_hysteresis_loops::TempHysteresisLoops;
+use super::temp_linear::TempLinear;
+use super::temp_linear_delayed::TempLinearDelayed;
+use super::temp_polynomial::TempPolynomial;
+use super::temp_rate::TempRate;
+use super::temp_rate_delayed::TempRateDelayed;
+use super::thermal_lag::ThermalLag;
 use crate::effect::shared::polynomial::sum;
 use crate::effect::shared::reach::reach;
 use crate::effect::shared::response::{

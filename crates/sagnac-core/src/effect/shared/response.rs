@@ -8,7 +8,7 @@
 use super::first_order::{decay, delayed};
 use super::polynomial::Scale;
 use super::pursuit::{choices, matching_pursuit, remove, unit};
-use crate::effect::{Drivers, Regressors, SearchContext, Unmodelled, Values, list, number};
+use crate::effect::{Drivers, Regressors, ResponseLaw, SearchContext, Unmodelled, Values, list, number};
 use crate::numeric::cosine::dct2;
 use crate::numeric::special;
 
@@ -55,6 +55,18 @@ pub(in crate::effect) enum Term {
 }
 
 impl Term {
+    /// True where the term distinguishes the law from the others.
+    fn is_of(&self, law: ResponseLaw) -> bool {
+        match (law, self) {
+            (ResponseLaw::Linear, Term::Curve { order }) => *order == 1,
+            (ResponseLaw::Curve, Term::Curve { order }) => *order > 1,
+            (ResponseLaw::Rate, Term::Rate | Term::Delay { .. })
+            | (ResponseLaw::Lag, Term::Delay { .. })
+            | (ResponseLaw::Hysteresis, Term::Play { .. }) => true,
+            _ => false,
+        }
+    }
+
     /// The terms of the dictionary.
     fn all() -> impl Iterator<Item = Term> {
         let curves = (1..=MAX_CURVE_ORDER).map(|order| Term::Curve { order });
@@ -113,55 +125,6 @@ impl Term {
         match self {
             Term::Delay { time_constant_s } => Some(decay(time_constant_s, drivers)),
             _ => None,
-        }
-    }
-}
-
-/// The law that a response follows mainly.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum ResponseLaw {
-    /// Proportional to the column.
-    Linear,
-    /// A curve of the column.
-    Curve,
-    /// Proportional to its rate of change.
-    Rate,
-    /// The delayed column.
-    Lag,
-    /// The direction from which a value was reached.
-    Hysteresis,
-}
-
-impl ResponseLaw {
-    /// All of them.
-    pub const ALL: [ResponseLaw; 5] = [
-        ResponseLaw::Linear,
-        ResponseLaw::Curve,
-        ResponseLaw::Rate,
-        ResponseLaw::Lag,
-        ResponseLaw::Hysteresis,
-    ];
-
-    /// True for a term that distinguishes the law from the others.
-    fn has(self, term: &Term) -> bool {
-        match (self, term) {
-            (ResponseLaw::Linear, Term::Curve { order }) => *order == 1,
-            (ResponseLaw::Curve, Term::Curve { order }) => *order > 1,
-            (ResponseLaw::Rate, Term::Rate | Term::Delay { .. })
-            | (ResponseLaw::Lag, Term::Delay { .. })
-            | (ResponseLaw::Hysteresis, Term::Play { .. }) => true,
-            _ => false,
-        }
-    }
-
-    /// Its id in `explain.json`.
-    pub fn id(self) -> &'static str {
-        match self {
-            ResponseLaw::Linear => "linear",
-            ResponseLaw::Curve => "curve",
-            ResponseLaw::Rate => "rate",
-            ResponseLaw::Lag => "lag",
-            ResponseLaw::Hysteresis => "hysteresis",
         }
     }
 }
@@ -259,7 +222,7 @@ fn leading_law(dictionary: &Dictionary) -> ResponseLaw {
             ResponseLaw::Curve => MAX_CURVE_ORDER,
         };
         let (mask, gain) = dictionary.matching_pursuit(allowed, most);
-        let own = |(i, t): (usize, &Term)| mask & (1 << i) != 0 && law.has(t);
+        let own = |(i, t): (usize, &Term)| mask & (1 << i) != 0 && t.is_of(law);
         let is_law = dictionary.terms.iter().enumerate().any(own);
         if is_law { gain - TERM_PRICE * f64::from(mask.count_ones()) } else { 0.0 }
     };

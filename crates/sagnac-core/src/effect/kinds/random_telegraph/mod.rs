@@ -5,7 +5,7 @@ mod detect;
 mod dwell;
 mod path;
 
-use super::MarkovLong;
+use super::markov::MarkovLong;
 use crate::effect::{
     Background, Detection, Detector, Domain, Drivers, Effect, JumpDetector, Jumps, Param, Place, Pulses,
     Reported, Samples, Value, Values, list, number,
