@@ -129,6 +129,8 @@ const OPEN: &[&str] = &[
 /// Dotted names in the sources that only look like keys: tables of procedures.
 const NO_KEYS: &[&str] = &[
     "measurand.options",
+    "attempt.number",
+    "attempt.earlier.result",
     "explain.columns",
     "explain.law",
     "explain.noticeable",
