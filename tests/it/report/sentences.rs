@@ -61,6 +61,8 @@ const LITERALS: &[(&str, &str, &str)] = &[
         "a mistake of a program that merges parts, not of a user",
     ),
     ("src/report/svg/mod.rs", "system-ui", "names of fonts"),
+    ("src/report/lot/mod.rs", "units small cards", "classes of a table in HTML"),
+    ("src/report/lot/quantity.rs", "units small cards", "classes of a table in HTML"),
     (
         "src/record/message.rs",
         "is not an argument of this presentation",
