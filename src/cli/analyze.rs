@@ -45,7 +45,6 @@ pub fn main(args: &AnalyzeArgs, lang: Lang) -> Result<u8, String> {
     execute(&args.output, lang, |_| {
         args.join.check(&args.recording, "join.help.other", lang)?;
         let taus = args.grid.grid(lang)?;
-        args.columns.check(lang)?;
         Ok(Analysis { args, taus })
     })
 }
@@ -70,7 +69,7 @@ impl Job for Analysis<'_> {
                 &args.columns.counter,
                 &args.columns.time,
             ),
-            (args.columns.sample_rate, args.columns.warm_up, &args.grid, &args.read),
+            (args.columns.sample_rate, args.columns.warm_up.seconds, &args.grid, &args.read),
         ));
         inputs.begin(&out, Kind::Result, frame.lang)
     }

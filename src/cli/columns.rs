@@ -1,8 +1,8 @@
 //! The options that name the columns of a recording without a procedure.
 
-use super::place::{self, for_shell};
+use super::length::{self, Length};
+use super::place::for_shell;
 use crate::acceptance::column_choice::ColumnChoice;
-use crate::i18n::{Lang, note};
 use clap::Args;
 
 /// Choice of the columns.
@@ -26,9 +26,9 @@ pub struct ColumnArgs {
     /// Sample rate, required without a time column
     #[arg(long, value_name = "HZ")]
     pub sample_rate: Option<f64>,
-    /// Time excluded at the start, s
-    #[arg(long, value_name = "S", default_value_t = 0.0)]
-    pub warm_up: f64,
+    /// Time excluded at the start, such as 30min; a number without a unit is in seconds
+    #[arg(long, value_name = "LENGTH", default_value = "0s", value_parser = length::from_zero_or_seconds)]
+    pub warm_up: Length,
 }
 
 impl ColumnArgs {
@@ -47,21 +47,10 @@ impl ColumnArgs {
         if let Some(hz) = self.sample_rate {
             add("--sample-rate", &hz.to_string());
         }
-        if self.warm_up > 0.0 {
+        if self.warm_up.seconds > 0.0 {
             add("--warm-up", &self.warm_up.to_string());
         }
         typed
-    }
-
-    /// Refuses a warm-up that is no length of time.
-    ///
-    /// # Errors
-    /// The diagnostic, in words.
-    pub fn check(&self, lang: Lang) -> Result<(), String> {
-        if self.warm_up >= 0.0 && self.warm_up.is_finite() {
-            return Ok(());
-        }
-        Err(place::error(&note!("cli.warm_up", given = self.warm_up.to_string()), lang))
     }
 
     /// The choice that they make.
@@ -73,7 +62,7 @@ impl ColumnArgs {
             counter: self.counter.clone(),
             time: self.time.clone(),
             sample_rate_hz: self.sample_rate,
-            warm_up_s: self.warm_up,
+            warm_up_s: self.warm_up.seconds,
         }
     }
 }

@@ -49,7 +49,6 @@ pub struct CompareArgs {
 
 pub fn main(args: &CompareArgs, lang: Lang) -> Result<u8, String> {
     execute(&args.output, lang, |_| {
-        args.columns.check(lang)?;
         if args.published && !args.recording.is_empty() {
             return Err(place::error(&"compare.error.published_alone".into(), lang));
         }
@@ -70,7 +69,7 @@ impl Job for &CompareArgs {
                 &self.columns.counter,
                 &self.columns.time,
             ),
-            (self.columns.sample_rate, self.columns.warm_up, self.published, &self.read),
+            (self.columns.sample_rate, self.columns.warm_up.seconds, self.published, &self.read),
         ));
         inputs.begin(&out, Kind::Comparison, frame.lang)
     }

@@ -28,7 +28,7 @@ pub struct DatasheetArgs {
     #[arg(long, value_name = "STORE", conflicts_with = "results")]
     store: Option<PathBuf>,
     /// Model of the units, for a store
-    #[arg(long, value_name = "MODEL", conflicts_with = "results")]
+    #[arg(long = "device-model", alias = "model", value_name = "DEVICE", conflicts_with = "results")]
     model: Option<String>,
     /// Lot of the units, for a store; several by repeating the option
     #[arg(long, value_name = "LOT", conflicts_with = "results")]

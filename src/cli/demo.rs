@@ -40,6 +40,7 @@ pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
         join: JoinArgs::default(),
         each: EachArgs::default(),
         limits: Some("sample-unit".into()),
+        require_limits: false,
         serial: Some("SN-0001".to_owned()),
         lot: None,
         unit_data: None,

@@ -198,6 +198,10 @@ impl Job for LotRun<'_> {
         Ok(Results::of_lot(lot::lot(self.test.procedure(), self.test.session(), units)).into())
     }
 
+    fn exit_code(&self, results: &Results) -> u8 {
+        self.args.exit_code(results)
+    }
+
     fn keep(&self, place: &Path, printer: Printer) -> Result<(), String> {
         self.members.iter().try_for_each(|member| self.keeper.keep(&place.join(&member.folder), printer))
     }

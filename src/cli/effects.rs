@@ -4,7 +4,7 @@ use super::{exit, place};
 use crate::effect::{EFFECTS, Effect, Param, find};
 use crate::i18n::{Arg, EffectText, Lang, Localize, Note, decimal, effect_text, note};
 use crate::report::unit::pretty;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use sagnac_core::spelling::nearest;
 use serde_json::{Value, json};
 
@@ -16,19 +16,29 @@ pub struct EffectsArgs {
     /// Effect to describe [default: list all]
     #[arg(value_name = "NAME")]
     effect: Option<String>,
-    /// Print JSON
-    #[arg(long)]
-    json: bool,
+    /// Form of the answer
+    #[arg(long, value_name = "FORM", default_value = "text")]
+    format: EffectsFormat,
+}
+
+/// Form of the catalogue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum EffectsFormat {
+    /// Text
+    Text,
+    /// Everything
+    Json,
 }
 
 pub fn main(args: &EffectsArgs, lang: Lang) -> Result<u8, String> {
+    let json = args.format == EffectsFormat::Json;
     let text = match &args.effect {
-        None if args.json => {
+        None if json => {
             format!("{:#}\n", Value::Array(EFFECTS.iter().map(|e| value(*e, lang)).collect()))
         }
         None => list(lang),
         Some(name) => match find(name) {
-            Some(effect) if args.json => format!("{:#}\n", value(effect, lang)),
+            Some(effect) if json => format!("{:#}\n", value(effect, lang)),
             Some(effect) => page(effect, lang),
             None => return Err(unknown(name, lang)),
         },

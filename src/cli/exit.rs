@@ -12,7 +12,7 @@ pub const PASS: u8 = 0;
 pub const FAIL: u8 = 1;
 /// The test could not be run, or not as required.
 pub const ERROR: u8 = 2;
-/// Neither pass nor fail.
+/// Neither pass nor fail; with `--require-limits` also where there were no limits.
 pub const INDETERMINATE: u8 = 3;
 
 /// The exit code of results.
@@ -32,6 +32,16 @@ pub fn of(results: &Results) -> u8 {
         },
         Record::Comparison(_) | Record::DataSheet(_) => PASS,
     }
+}
+
+/// The exit code of a test of which limits are required: nothing decided is no pass.
+pub fn where_limits_are_required(results: &Results) -> u8 {
+    let verdict = match results.record().record() {
+        Record::Run(run) => run.verdict,
+        Record::Lot(lot) => lot.verdict,
+        _ => return of(results),
+    };
+    if verdict == Verdict::None { INDETERMINATE } else { of_verdict(verdict) }
 }
 
 fn of_verdict(verdict: Verdict) -> u8 {

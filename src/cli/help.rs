@@ -3,6 +3,7 @@
 //! The English texts stand in the derived command and nowhere else. Another language translates each in its table `help_text`, whose keys
 //! are the English texts: one that changes has no translation until it is translated anew, and a test says so.
 
+use super::length::LengthError;
 use crate::i18n::{Lang, Localize, Note, lookup, note};
 use anstream::adapter::strip_str;
 use clap::builder::Str;
@@ -206,6 +207,9 @@ fn complaint(error: &Error, lang: Lang) -> String {
         .with("argument", if given.is_empty() { subcommand } else { given })
         .with("value", part(ContextKind::InvalidValue));
     let mut out = super::place::error(&note, lang);
+    if let Some(reason) = std::error::Error::source(error).and_then(|e| e.downcast_ref::<LengthError>()) {
+        out = format!("{}: {}\n", out.trim_end(), reason.say(lang));
+    }
     let near = [ContextKind::SuggestedArg, ContextKind::SuggestedSubcommand, ContextKind::SuggestedValue];
     if let Some(near) = near.into_iter().map(part).find(|text| !text.is_empty()) {
         let hint = note!("keyed.help.did_you_mean", name = near);

@@ -28,8 +28,8 @@ pub struct HistoryArgs {
     /// Store to ask [default: SAGNAC_STORE, else the configuration of the user]
     #[arg(long, value_name = "STORE")]
     store: Option<PathBuf>,
-    /// Model
-    #[arg(long, value_name = "MODEL")]
+    /// Model of the units
+    #[arg(long = "device-model", alias = "model", value_name = "DEVICE")]
     model: Option<String>,
     /// Lot; several by repeating the option
     #[arg(long, value_name = "LOT")]
@@ -50,7 +50,7 @@ pub struct HistoryArgs {
     #[arg(long, value_name = "NUMBER", default_value_t = 0.0, requires = "measurand")]
     common: f64,
     /// Form of the answer
-    #[arg(long, value_name = "FORMAT", default_value = "table")]
+    #[arg(long, value_name = "FORM", default_value = "table")]
     format: HistoryFormat,
     /// File to write [default: standard output]
     #[arg(long, value_name = "FILE")]

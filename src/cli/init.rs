@@ -11,7 +11,7 @@ use crate::acceptance::column_choice::channels;
 use crate::acceptance::verdict::contradicted;
 use crate::config::procedure::EffectiveLimits;
 use crate::criticism::temperature;
-use crate::i18n::{Lang, Localize, Note, note};
+use crate::i18n::{Lang, Localize, Note, lookup, note};
 use crate::ingest::lot::stated_serial;
 use crate::ingest::{Source, open_recording};
 use crate::measurand::{
@@ -61,6 +61,13 @@ const TEMPERATURE_MEASURANDS: &[&str] = &[
     ANGLE_RANDOM_WALK_AT_TEMPERATURE.id,
 ];
 
+/// Templates of procedure, limits and job for continuous integration.
+const TEMPLATES: [&str; 3] = [
+    include_str!("../../templates/init/procedure.toml"),
+    include_str!("../../templates/init/limits.toml"),
+    include_str!("../../templates/init/ci.yml"),
+];
+
 pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     let say = |note: Note| place::error(&note, lang);
     let names = ["procedure.toml", "limits.toml", "ci.yml"];
@@ -76,7 +83,7 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     let source = opened.source;
     let channels = channels(&args.columns.choice(), &args.recording, &source).map_err(say)?;
     let (record, sample_rate_hz) = analysed(args, &channels, &source, lang)?;
-    let files = written(args, layout.as_ref(), &channels, &source, (&record, sample_rate_hz))
+    let files = written(args, layout.as_ref(), &channels, &source, (&record, sample_rate_hz), lang)
         .map_err(|e| say(note!("init.template", reason = e.to_string())))?;
     let failed = |path: &Path, e: &std::io::Error| {
         let note = note!("procedures.not_saved", path = place::shown(path));
@@ -142,13 +149,14 @@ impl Layout {
     }
 }
 
-/// The three files.
+/// The three files, their comments in a language.
 fn written(
     args: &InitArgs,
     layout: Option<&Layout>,
     channels: &[Channel],
     source: &Source,
     (record, sample_rate_hz): (&RunRecord, Option<f64>),
+    lang: Lang,
 ) -> Result<[String; 3], minijinja::Error> {
     let mut environment = Environment::empty();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
@@ -158,7 +166,7 @@ fn written(
     let sweep = swept(record);
     let at_rest = || [QUANTIZATION.id].into_iter().chain(PROPOSED_LIMITS.iter().copied()).collect();
     let ids: Vec<&str> = if sweep.is_some() { TEMPERATURE_MEASURANDS.to_vec() } else { at_rest() };
-    let measurands: Vec<_> = ids.iter().map(|id| context! { id => *id, name => title(id) }).collect();
+    let measurands: Vec<_> = ids.iter().map(|id| context! { id => *id, name => title(id, lang) }).collect();
     let channel_ids = ids_of(channels);
     let is_temperature = |(c, _): &(&Channel, &String)| c.role == Role::Temperature;
     let temperature = channels.iter().zip(&channel_ids).find(is_temperature).map(|(_, id)| id);
@@ -180,13 +188,14 @@ fn written(
             role => c.role.id(),
             unit => toml_text(c.unit.text()),
         }).collect::<Vec<_>>(),
-        unused => unused(channels, source),
+        unused => unused(channels, source, lang),
+        example => if sweep.is_some() { "temperature-ramp" } else { "static-bias" },
         serial => one_line(&serial_of(source)),
         serial_text => toml_text(&serial_of(source)),
         sample_rate => sample_rate_hz.map(|hz| toml_text(&format!("{hz} Hz"))),
-        duration => duration(usable_s, Lang::En),
+        duration => duration(usable_s, lang),
         minimum_duration => toml_text(&minimum_duration(usable_s)),
-        warm_up => toml_text(&format!("{} s", args.columns.warm_up)),
+        warm_up => toml_text(&format!("{} s", args.columns.warm_up.seconds)),
         temperature => temperature.map(|id| toml_text(id)),
         sweep => sweep.zip(temperature).map(|((low, high), channel)| context! {
             channel => toml_text(channel),
@@ -194,16 +203,25 @@ fn written(
             high => toml_text(&format!("{} degC", high.floor())),
         }),
         measurands => measurands,
-        limits => limits(record),
+        limits => limits(record, lang),
     };
     // A template loses the end of its last line.
-    let render =
-        |text: &str| environment.render_str(text, &values).map(|text| format!("{}\n", text.trim_end()));
-    Ok([
-        render(include_str!("../../templates/init/procedure.toml"))?,
-        render(include_str!("../../templates/init/limits.toml"))?,
-        render(include_str!("../../templates/init/ci.yml"))?,
-    ])
+    let render = |template: &str| {
+        let text = environment.render_str(&commented(template, lang), &values)?;
+        Ok::<_, minijinja::Error>(format!("{}\n", text.trim_end()))
+    };
+    let [procedure, limits, ci] = TEMPLATES;
+    Ok([render(procedure)?, render(limits)?, render(ci)?])
+}
+
+/// A template with its comments in a language. Another than English translates them line by line in its table `init_comment`, whose
+/// keys are the English lines.
+fn commented(template: &str, lang: Lang) -> String {
+    let translated = |line: &str| {
+        let comment = line.strip_prefix("# ")?;
+        Some(format!("# {}", lookup(lang, &format!("init_comment.{comment}"))?))
+    };
+    template.lines().map(|l| translated(l).unwrap_or_else(|| l.to_owned())).collect::<Vec<_>>().join("\n")
 }
 
 /// The range of temperature that the bias followed, degC, where it did.
@@ -215,7 +233,7 @@ fn swept(record: &RunRecord) -> Option<(f64, f64)> {
 }
 
 /// A limit for each quantity that every channel bounds and no check contradicts: by the largest of them.
-fn limits(record: &RunRecord) -> Vec<minijinja::Value> {
+fn limits(record: &RunRecord, lang: Lang) -> Vec<minijinja::Value> {
     let rows = |id: &str| record.measurands.iter().filter(|m| m.id == id).collect::<Vec<_>>();
     let proposal = |id: &&str| {
         let rows = rows(id);
@@ -232,7 +250,7 @@ fn limits(record: &RunRecord) -> Vec<minijinja::Value> {
         let unit = &rows.first()?.unit;
         let measured = format!("{} {unit}", rounded_up(largest));
         let max = toml_text(&format!("{} {unit}", rounded_up(1.5 * largest)));
-        (largest > 0.0).then(|| context! { id => *id, name => title(id), measured, max })
+        (largest > 0.0).then(|| context! { id => *id, name => title(id, lang), measured, max })
     };
     PROPOSED_LIMITS.iter().filter_map(proposal).collect()
 }
@@ -250,16 +268,16 @@ fn minimum_duration(usable_s: f64) -> String {
     if hours >= 1.0 { format!("{hours} h") } else { format!("{} s", (0.9 * usable_s).floor().max(1.0)) }
 }
 
-fn title(id: &str) -> String {
-    crate::i18n::lookup(Lang::En, &format!("measurand.{id}")).unwrap_or(id).to_owned()
+fn title(id: &str, lang: Lang) -> String {
+    lookup(lang, &format!("measurand.{id}")).unwrap_or(id).to_owned()
 }
 
 /// Names of the columns that no channel reads, on one line.
-fn unused(channels: &[Channel], source: &Source) -> String {
+fn unused(channels: &[Channel], source: &Source, lang: Lang) -> String {
     let used: Vec<usize> = channels.iter().filter_map(|c| source.resolve(&c.column).ok()).collect();
     let left = source.columns().iter().enumerate().filter(|(i, _)| !used.contains(i));
     let names: Vec<String> = left.map(|(_, c)| one_line(&c.name)).collect();
-    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+    if names.is_empty() { note!("init.no_column").say(lang) } else { names.join(", ") }
 }
 
 /// The serial number that the recording states, or else an example.
@@ -307,6 +325,7 @@ fn id_of(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::BTreeSet;
 
     #[test]
     fn proposals_are_rounded_upwards() {
@@ -337,5 +356,25 @@ mod tests {
         assert_eq!(minimum_duration(36_000.0), "9 h");
         assert_eq!(minimum_duration(1_000.0), "900 s");
         assert_eq!(minimum_duration(0.0), "1 s");
+    }
+
+    #[test]
+    fn every_comment_of_the_templates_has_a_translation_and_none_is_left_over() {
+        let sources = TEMPLATES.iter().flat_map(|template| template.lines());
+        let comments: BTreeSet<&str> = sources.filter_map(|line| line.strip_prefix("# ")).collect();
+        // A key that is commented out, a table or a name is the same in every language.
+        let same = |comment: &str| {
+            comment.starts_with('[') || comment.contains(" = \"") || comment.ends_with("m.name }}")
+        };
+        for lang in Lang::ALL.iter().filter(|lang| **lang != Lang::En) {
+            let keys = crate::i18n::table(*lang).keys().filter_map(|key| key.strip_prefix("init_comment."));
+            let keys: BTreeSet<&str> = keys.collect();
+            let missing: Vec<&str> =
+                comments.iter().copied().filter(|c| !same(c) && !keys.contains(c)).collect();
+            assert!(missing.is_empty(), "{lang:?} has no translation of {missing:#?}");
+            let left_over: Vec<&&str> = keys.difference(&comments).collect();
+            assert!(left_over.is_empty(), "{lang:?} translates what no template says: {left_over:#?}");
+        }
+        assert_eq!(commented(TEMPLATES[1], Lang::En), TEMPLATES[1].trim_end_matches('\n'));
     }
 }

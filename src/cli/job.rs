@@ -37,6 +37,11 @@ pub trait Job {
         Ok(())
     }
 
+    /// The exit code of the results.
+    fn exit_code(&self, results: &Results) -> u8 {
+        exit::of(results)
+    }
+
     /// The advice that is printed last.
     fn next_step(&self, _results: &Results, _place: &Path) -> Option<Note> {
         None
@@ -83,7 +88,7 @@ pub struct Frame<'a> {
 impl Frame<'_> {
     /// The inputs of the results: those that every verb has.
     pub fn inputs(&self) -> Inputs {
-        Inputs::new(self.output.force).beside(self.output.templates.as_deref())
+        Inputs::new(self.output.force).beside(self.output.forms.templates.as_deref())
     }
 
     /// The moment of the results as records state it.
@@ -136,5 +141,5 @@ pub fn execute<J: Job>(
     printer.outcome(&place, &results)?;
     job.keep(&place, printer)?;
     printer.next_step(job.next_step(&results, &place).as_ref());
-    Ok(exit::of(&results))
+    Ok(job.exit_code(&results))
 }

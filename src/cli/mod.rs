@@ -21,6 +21,7 @@ mod inspect;
 mod job;
 mod join;
 mod keep;
+mod length;
 mod model;
 mod next_step;
 mod options;
@@ -99,7 +100,7 @@ enum Verb {
         sagnac run static-bias 'lot-7/*.csv' --each --limits sample-unit --out reports/lot-7"
     )]
     Run(run_args::RunArgs),
-    /// Render the report of a result anew, without its recording: in another language, with other templates
+    /// Render the report of a result again, without its recording: in another language, with other templates
     #[command(after_help = "Exit codes: 0 written, 2 could not.\n\n\
         Examples:\n  sagnac report reports/SN-0042 --lang ru --out reports/SN-0042-ru\n  \
         sagnac report result.json --format html --templates templates")]
@@ -112,7 +113,7 @@ enum Verb {
         sagnac explain recording.csv --simulation simulated.csv --hide temp_degC"
     )]
     Explain(explain_args::ExplainArgs),
-    /// Plan the next test: the shortest schedule that tells the explanations of a recording apart
+    /// Plan the next test: the shortest schedule that distinguishes the explanations of a recording
     #[command(
         after_help = "Exit codes: 0 the schedule decides, or nothing is to be decided, 2 could not run, 3 not decided within limits and budget.\n\n\
         Examples:\n  sagnac plan explained --model model.toml --budget 8h --out next\n  \
@@ -144,7 +145,7 @@ enum Verb {
     /// Write the data sheet of a lot from the results of its units, with limits that it can keep
     #[command(after_help = "Examples:\n  sagnac datasheet reports/*/result.json --out sheet\n  \
         sagnac datasheet 'samples/lot/*/result.json' --lang ru --out sheet\n  \
-        sagnac datasheet --store /srv/sagnac --model OIUS-501 --lot 2026-14")]
+        sagnac datasheet --store /srv/sagnac --device-model OIUS-501 --lot 2026-14")]
     Datasheet(datasheet::DatasheetArgs),
     /// Compare Russian and Allan figures and explain their ratio
     #[command(
@@ -160,7 +161,7 @@ enum Verb {
     Store(store::StoreVerbArgs),
     /// Show what the results of a store tell over time: verdicts, yields, reasons, control charts, drift
     #[command(after_help = "Examples:\n  sagnac history SN-0042 --store /srv/sagnac\n  \
-        sagnac history --model OIUS-501 --since 2026-01-01 --format html --out history.html")]
+        sagnac history --device-model OIUS-501 --since 2026-01-01 --format html --out history.html")]
     History(history::HistoryArgs),
     /// Sign a folder of results, and let rows pass where there is a reason
     #[command(

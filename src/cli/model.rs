@@ -1,8 +1,8 @@
 //! `sagnac model`: what a recording, or its result, shows, as a claim that others are held against.
 
+use super::length::{self, Length};
 use super::progress::{Display, Progress};
 use super::read::ReadArgs;
-use super::simulate::duration;
 use super::{exit, next_step, place};
 use crate::acceptance::claimed;
 use crate::claim::Claim;
@@ -27,11 +27,11 @@ pub struct ModelArgs {
     #[arg(long)]
     force: bool,
     /// Beginning of the part of the recording that is used, such as 2h [default: its start]
-    #[arg(long, value_name = "LENGTH")]
-    from: Option<String>,
+    #[arg(long, value_name = "LENGTH", value_parser = length::from_zero)]
+    from: Option<Length>,
     /// End of that part [default: that of the recording]
-    #[arg(long, value_name = "LENGTH")]
-    to: Option<String>,
+    #[arg(long, value_name = "LENGTH", value_parser = length::above_zero)]
+    to: Option<Length>,
     /// Name of the case in the model
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
@@ -91,10 +91,8 @@ fn of_result(args: &ModelArgs, file: &Path, lang: Lang) -> Result<(Claim, Vec<No
 
 fn of_recording(args: &ModelArgs, lang: Lang) -> Result<Claim, String> {
     let say = |note: Note| place::error(&note, lang);
-    let length = |option: &'static str, text: &Option<String>| {
-        text.as_deref().map(|text| duration(option, text, lang)).transpose()
-    };
-    let (from, to) = (length("--from", &args.from)?, length("--to", &args.to)?);
+    let from_s = args.from.map_or(0.0, |l| l.seconds);
+    let to_s = args.to.map_or(f64::INFINITY, |l| l.seconds);
     let mut progress = Progress::new(Display::unless(args.quiet), lang);
     let options = SeriesOptions {
         read: args.read.options(),
@@ -108,7 +106,7 @@ fn of_recording(args: &ModelArgs, lang: Lang) -> Result<Claim, String> {
     let series = load_series(std::slice::from_ref(&args.from_what), &options, &mut |done, total| {
         progress.reading(&reading, done, total);
     });
-    let series = series.map_err(|e| e.say(lang))?.between(from.unwrap_or(0.0), to.unwrap_or(f64::INFINITY));
+    let series = series.map_err(|e| e.say(lang))?.between(from_s, to_s);
     let claim = mismatch::identify(&series, &mut |p| progress.explaining(p));
     let claim = claim.and_then(|claim| {
         let found = mismatch::explain(series, &claim, &Options::default(), &mut |p| progress.explaining(p));

@@ -1,10 +1,11 @@
 //! `sagnac plan`: the schedule of the next test, which tells the explanations of a recording apart.
 
 use super::job::{Frame, Job, Made, execute};
+use super::length::{self, Length};
+use super::next_step;
 use super::options::OutputArgs;
 use super::place::{self, OutputPlace};
 use super::progress::Measure;
-use super::{next_step, simulate};
 use crate::claim::Claim;
 use crate::config::alternatives;
 use crate::config::model::load_model;
@@ -30,8 +31,8 @@ pub struct PlanArgs {
     #[arg(long, value_name = "FILE")]
     model: PathBuf,
     /// Longest test with its unit, such as 8h, 90min or "2 d"
-    #[arg(long, value_name = "LENGTH")]
-    budget: String,
+    #[arg(long, value_name = "LENGTH", value_parser = length::above_zero)]
+    budget: Length,
     /// Lowest and highest temperature of the chamber, degC [default: 10:50]
     #[arg(long, value_name = "RANGE", allow_hyphen_values = true)]
     temperature_range: Option<String>,
@@ -166,7 +167,7 @@ fn unplanned(named: &[String], alternatives: &[Alternative]) -> Option<Note> {
 
 /// The limits of the laboratory that the options state.
 fn limits(args: &PlanArgs, lang: Lang) -> Result<Limits, String> {
-    let usual = Limits::usual(simulate::duration("--budget", &args.budget, lang)?);
+    let usual = Limits::usual(args.budget.seconds);
     let chosen = |option: &'static str, text: &Option<String>, lowest: f64, default: [f64; 2]| match text {
         Some(text) => range(text, lowest).ok_or_else(|| {
             let note = note!("plan.error.range", option, given = text.as_str());

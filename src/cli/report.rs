@@ -1,7 +1,8 @@
 //! `sagnac report`: the report of a result anew, without its recording.
 
 use super::inputs::Inputs;
-use super::options::{Pages, pdf_pages, renderer};
+use super::options::FormArgs;
+use super::printer::record;
 use super::progress::{Display, Progress};
 use super::writer::Writer;
 use super::{exit, place};
@@ -10,61 +11,43 @@ use crate::i18n::{Lang, Note, note};
 use crate::moment;
 use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::LotUnit;
-use crate::report::export::{Dcc, EXPORTERS, FURTHER};
+use crate::report::export::{CERTIFICATE, Dcc};
 use crate::report::signatures::{self, SIGNATURES_SHOWN, Signature};
 use crate::report::{Record, StoredResults};
 use crate::signing;
 use crate::verify::{Folder, stated_hashes};
 use clap::Args;
-use clap::builder::PossibleValuesParser;
 use std::path::{Component, Path, PathBuf};
 
 #[derive(Debug, Args)]
 pub struct ReportArgs {
     /// Result: a result.json, explain.json, comparison.json, index.json or plan.json, or the folder that holds one
     result: PathBuf,
-    /// Forms to write, separated by commas; result.json is always written [default: html, md, csv, json, svg, junit]
-    #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = formats())]
-    format: Vec<String>,
+    #[command(flatten)]
+    forms: FormArgs,
     /// Laboratory, customer and persons, for the form dcc (laboratory.toml)
     #[arg(long, value_name = "FILE")]
     laboratory: Option<PathBuf>,
-    /// Pages of the PDF
-    #[arg(long, value_name = "PAGES")]
-    pages: Option<Pages>,
     /// Output folder [default: named after the unit and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     /// Replace an existing result made from different inputs
     #[arg(long)]
     force: bool,
-    /// Folder of templates that override built-in ones of the same name
-    #[arg(long, value_name = "DIR")]
-    templates: Option<PathBuf>,
-}
-
-/// The form that needs a laboratory, and the one that is made of the others.
-const DCC: &str = "dcc";
-const PDF: &str = "pdf";
-
-fn formats() -> PossibleValuesParser {
-    PossibleValuesParser::new(EXPORTERS.iter().chain(FURTHER).map(|e| e.id()).chain([DCC, PDF]))
 }
 
 pub fn main(args: &ReportArgs, lang: Lang) -> Result<u8, String> {
-    let asked = |id: &str| args.format.iter().any(|f| f == id);
-    let pdf = pdf_pages(asked(PDF), args.pages, lang)?;
     let signatures = signatures_of(&args.result);
-    let renderer = renderer(args.templates.as_deref(), lang)?.with_signatures(signatures.clone());
-    let writer = Writer::new(renderer, pdf, lang)?.of_forms(&args.format);
+    let writer = args.forms.writer(lang)?.with_signatures(signatures.clone());
     let laboratory = args.laboratory.as_deref().map(laboratory::load).transpose().map_err(|p| p.say(lang))?;
-    let writer = if asked(DCC) { writer.with_certificate(Dcc { laboratory }) } else { writer };
+    let writer =
+        if args.forms.names(CERTIFICATE) { writer.with_certificate(Dcc { laboratory }) } else { writer };
     let stored = StoredResults::open(&args.result).map_err(|note| place::error(&note, lang))?;
     let out = place::OutputPlace::new(args.out.as_deref(), "report", stored.results.subject(), moment::now());
     let folder = Inputs::new(args.force)
         .of_result(stored.inputs)
         .beside(Some(&args.result))
-        .beside(args.templates.as_deref())
+        .beside(args.forms.templates.as_deref())
         .begin(&out, stored.results.kind(), lang)?;
     for note in &stored.missing {
         place::eprint_diagnostic(&place::warning(note, lang));
@@ -86,7 +69,11 @@ pub fn main(args: &ReportArgs, lang: Lang) -> Result<u8, String> {
     }
     let folder = writer.publish(&stored.results, folder)?;
     drop(progress);
-    place::print(&format!("{}\n", place::shown(&folder)));
+    if args.forms.only_record() {
+        record(&folder, stored.results.kind(), lang)?;
+    } else {
+        place::print(&format!("{}\n", place::shown(&folder)));
+    }
     Ok(exit::PASS)
 }
 

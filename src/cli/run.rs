@@ -87,6 +87,10 @@ impl Job for Run<'_> {
         self.keeper.keep(place, printer)
     }
 
+    fn exit_code(&self, results: &Results) -> u8 {
+        self.args.exit_code(results)
+    }
+
     fn next_step(&self, results: &Results, _: &Path) -> Option<Note> {
         let Results::Run(run) = results else { return None };
         let failed = run.outcome.record.verdict == Verdict::Fail;

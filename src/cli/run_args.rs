@@ -1,10 +1,12 @@
 //! The arguments of `sagnac run`.
 
+use super::exit;
 use super::join::JoinArgs;
 use super::keep::StoreArgs;
 use super::options::{GridArgs, OutputArgs};
 use crate::i18n::Lang;
 use crate::ingest::unit_data::UnitData;
+use crate::report::Results;
 use clap::Args;
 use std::num::NonZeroUsize;
 use std::path::PathBuf;
@@ -23,6 +25,9 @@ pub struct RunArgs {
     /// Limits file; overrides the procedure's limits for the same measurand
     #[arg(long, value_name = "FILE")]
     pub limits: Option<PathBuf>,
+    /// End with exit code 3, not 0, where no limit decided anything
+    #[arg(long)]
+    pub require_limits: bool,
     /// Serial number of the unit under test
     #[arg(long, value_name = "SN", conflicts_with = "each")]
     pub serial: Option<String>,
@@ -50,6 +55,11 @@ pub struct RunArgs {
 }
 
 impl RunArgs {
+    /// The exit code of the results.
+    pub fn exit_code(&self, results: &Results) -> u8 {
+        if self.require_limits { exit::where_limits_are_required(results) } else { exit::of(results) }
+    }
+
     /// The table of units; empty where none is given.
     ///
     /// # Errors

@@ -75,6 +75,10 @@ impl Job for RunOfPhases<'_> {
         Ok(Results::Run(Box::new(results)).into())
     }
 
+    fn exit_code(&self, results: &Results) -> u8 {
+        self.args.exit_code(results)
+    }
+
     fn keep(&self, place: &Path, printer: Printer) -> Result<(), String> {
         self.keeper.keep(place, printer)
     }

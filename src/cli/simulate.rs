@@ -1,10 +1,10 @@
 //! `sagnac simulate`: a recording from a model.
 
 use super::join::JoinArgs;
+use super::length::{self, Length};
 use super::progress::{Display, Measure, Progress};
 use super::{exit, place};
 use crate::config::model::{ModelFile, Profile, load_model};
-use crate::config::quantity;
 use crate::config::schedule::{self, Schedule};
 use crate::effect::Column;
 use crate::i18n::{Arg, Lang, Localize, Note, note};
@@ -33,8 +33,8 @@ pub struct SimulateArgs {
     #[arg(long, value_name = "SEED")]
     seed: Option<u64>,
     /// Length with its unit, such as 10h, 600s or "2 d" [default: as in the model]
-    #[arg(long, value_name = "LENGTH")]
-    duration: Option<String>,
+    #[arg(long, value_name = "LENGTH", value_parser = length::above_zero)]
+    duration: Option<Length>,
     /// Recording that provides rows and columns: timestamps, gaps, temperatures, table rates
     #[arg(long, value_name = "RECORDING")]
     like: Option<PathBuf>,
@@ -65,7 +65,7 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
         let note = note!("simulate.onto_itself", path = args.out.display().to_string());
         return Err(say(&note));
     }
-    let asked_s = args.duration.as_deref().map(|d| duration("--duration", d, lang)).transpose()?;
+    let asked_s = args.duration.map(|d| d.seconds);
     if asked_s.is_some() && args.like.is_some() {
         return Err(say(&note!("simulate.both")));
     }
@@ -140,19 +140,7 @@ fn same(a: &Path, b: &Path) -> bool {
     }
 }
 
-/// A length in seconds, given to an option.
-pub(super) fn duration(option: &str, text: &str, lang: Lang) -> Result<f64, String> {
-    let refused = |what: Note| {
-        let note = note!("cli.of_option", option, what);
-        let help = note!("simulate.help.duration");
-        let help = format!("  {}: {}\n", note!("diagnostic.help").say(lang), help.say(lang));
-        format!("{}{help}", place::error(&note, lang))
-    };
-    let seconds = quantity::parse(text, "s", true, false).map_err(|e| refused(e.message))?;
-    if seconds > 0.0 { Ok(seconds) } else { Err(refused(note!("simulate.not_positive"))) }
-}
-
-/// What was made, in a few lines.
+/// The recording that was made, in a few lines.
 fn summary(
     args: &SimulateArgs,
     model: &ModelFile,

@@ -82,7 +82,7 @@ enum What {
         #[arg(long, value_name = "DATE")]
         before: Option<String>,
     },
-    /// Make the index anew from the result folders
+    /// Rebuild the index from the result folders
     Rebuild {
         /// Folder of the store
         #[arg(value_name = "STORE")]

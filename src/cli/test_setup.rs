@@ -81,7 +81,7 @@ impl<'a> Setup<'a> {
         Inputs::new(self.args.output.force)
             .file("unit_data", self.args.unit_data.as_deref())
             .options(&(&self.args.grid.taus, self.args.grid.exact))
-            .beside(self.args.output.templates.as_deref())
+            .beside(self.args.output.forms.templates.as_deref())
     }
 
     /// The people, the station and the moment.

@@ -20,7 +20,7 @@ pub struct VerifyArgs {
     /// Folder of results, its record, or a PDF on its own
     #[arg(value_name = "DIR")]
     folder: PathBuf,
-    /// Recording to compute the figures from anew, or those of the units of a lot; several files by repeating the option
+    /// Recording to recompute the figures from, or those of the units of a lot; several files by repeating the option
     #[arg(long, value_name = "FILE")]
     recording: Vec<PathBuf>,
     /// Procedure of that computation [default: the copy in the folder]

@@ -3,8 +3,9 @@
 use super::{inputs, place};
 use crate::i18n::{Lang, Note};
 use crate::output::{Kind, LIMITS_FILE, OutputError, PROCEDURE_FILE, StagedFolder, StagedPart};
-use crate::report::export::{Dcc, EXPORTERS, Exporter, FURTHER, export};
+use crate::report::export::{Dcc, EXPORTERS, Exporter, FURTHER, export, record_bytes};
 use crate::report::pdf::{MAKES_PDF, PdfPages};
+use crate::report::signatures::Signature;
 use crate::report::{Document, Renderer, ReportError, Results};
 use std::path::PathBuf;
 
@@ -37,6 +38,13 @@ impl Writer {
             let all = EXPORTERS.iter().chain(FURTHER).copied();
             self.exporters = all.filter(|e| named.iter().any(|n| n == e.id())).collect();
         }
+        self
+    }
+
+    /// The same, its pages with the signatures that a folder has.
+    #[must_use]
+    pub fn with_signatures(mut self, signatures: Vec<Signature>) -> Writer {
+        self.renderer = self.renderer.with_signatures(signatures);
         self
     }
 
@@ -74,7 +82,7 @@ impl Writer {
         let exporters: Vec<&dyn Exporter> = self.exporters.iter().copied().chain(certificate).collect();
         let files = export(document, &exporters, &self.renderer).map_err(|e| self.said(&e.note()))?;
         for (name, contents) in &files {
-            if !whole || name != record_file {
+            if name != record_file {
                 folder.write(&format!("{below}{name}"), contents).map_err(|e| self.refused(&e))?;
             }
         }
@@ -84,9 +92,14 @@ impl Writer {
                 folder.write(&format!("{below}{name}"), text.as_bytes()).map_err(|e| self.refused(&e))?;
             }
         }
-        // The hash on the pages of a part is that of its record; where no record is written, there is none to name.
-        if let Some((pages, record)) = self.pdf.zip(files.get(record_file)).filter(|_| !whole) {
-            let pdf = document.pdf(&self.renderer, record, pages).map_err(|e| self.said(&e.note()))?;
+        if whole {
+            return Ok(());
+        }
+        // The record of a part is written in every form, as that of the whole is; the hash on its pages is that of the record.
+        let record = record_bytes(document).map_err(|e| self.said(&e.note()))?;
+        folder.write(&format!("{below}{record_file}"), &record).map_err(|e| self.refused(&e))?;
+        if let Some(pages) = self.pdf {
+            let pdf = document.pdf(&self.renderer, &record, pages).map_err(|e| self.said(&e.note()))?;
             let name = format!("{below}{}", document.page("pdf"));
             folder.write(&name, &pdf).map_err(|e| self.refused(&e))?;
         }

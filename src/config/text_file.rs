@@ -3,6 +3,7 @@
 use super::diagnostics::{Problem, Problems, SourceText};
 use super::shipped;
 use crate::i18n::{Note, io_reason, note};
+use sagnac_core::spelling::nearest;
 use sagnac_ingest::open_file;
 use std::io::{ErrorKind, Read};
 use std::path::Path;
@@ -12,6 +13,9 @@ const MAX_BYTES: usize = 1 << 20;
 
 /// The byte order mark of UTF-8; it is no part of the text.
 const MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// Most names of a folder among which a similar one is looked for.
+const MAX_NAMES: usize = 1000;
 
 /// Most bytes that are read: enough to know that a file is too large.
 const MAX_READ_BYTES: u64 = (MAX_BYTES + MARK.len() + 1) as u64;
@@ -45,13 +49,30 @@ pub(crate) fn peek(path: &Path) -> Option<String> {
     read(path).ok().map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
 }
 
-/// What to do about a file that is not there: what looks like a name may be that of a shipped one.
+/// The advice where a file is not there: the nearest name among the files beside it and, for a plain name, the shipped ones; else
+/// where to look.
 fn help(path: &Path) -> Note {
+    if let Some(near) = nearest_file(path) {
+        return note!("keyed.help.did_you_mean", name = near);
+    }
     if path.extension().is_some() || path.components().count() > 1 {
         return "text_file.check_path".into();
     }
     let names = |list: &[shipped::Shipped]| list.iter().map(|s| s.name).collect::<Vec<_>>().join(", ");
     note!("text_file.check_name", procedures = names(shipped::PROCEDURES), limits = names(shipped::LIMITS))
+}
+
+/// The file of the most similar name, as a path that can be given in place of the wrong one.
+fn nearest_file(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?;
+    let is_plain = path.components().count() == 1;
+    let shipped = shipped::PROCEDURES.iter().chain(shipped::LIMITS).map(|s| s.name.to_owned());
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let beside = std::fs::read_dir(folder).into_iter().flatten().take(MAX_NAMES).flatten();
+    let beside = beside.filter_map(|entry| entry.file_name().into_string().ok());
+    let known: Vec<String> = shipped.filter(|_| is_plain).chain(beside).collect();
+    let near = nearest(name, known.iter().map(String::as_str))?;
+    Some(path.with_file_name(near).display().to_string())
 }
 
 /// The bytes of a file, one more than allowed at the most; where there is none, those of the shipped one of that name.

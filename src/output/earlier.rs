@@ -38,16 +38,7 @@ impl Earlier {
             return Ok(None);
         }
         if !is_of(target, kind) {
-            return in_the_way(match kind {
-                Kind::Result => "output_error.why.foreign".into(),
-                Kind::Lot => "output_error.why.foreign_lot".into(),
-                Kind::DataSheet => "output_error.why.foreign_datasheet".into(),
-                Kind::Comparison => "compare.more.foreign_folder".into(),
-                Kind::Explanation => "explain.error.foreign_folder".into(),
-                Kind::Joint => "joint.error.foreign_folder".into(),
-                Kind::Plan => "plan.error.foreign_folder".into(),
-                Kind::Proof => "prove.error.foreign_folder".into(),
-            });
+            return in_the_way(kind.foreign().into());
         }
         let Some(earlier) = Earlier::read(target, kind) else {
             return in_the_way("output_error.why.unlisted".into());
@@ -80,29 +71,24 @@ impl Earlier {
         let text = |at: &str| self.record.pointer(at).and_then(Value::as_str).map(str::to_owned);
         let made = self.made.clone().unwrap_or_else(|| "–".to_owned());
         let note = |key| Note::new(key).with("made", made.as_str());
+        let described = note(self.kind.description());
         match self.kind {
             Kind::Result => {
                 let verdict = text("/verdict").unwrap_or_default();
                 let result = match text("/unit_under_test/serial") {
-                    Some(serial) => note("output_error.what.result").with("serial", serial),
+                    Some(serial) => described.with("serial", serial),
                     None => note("output_error.what.result_of_no_unit"),
                 };
                 result.with("verdict", Arg::key("verdict", &verdict))
             }
-            Kind::Comparison => note("output_error.what.comparison"),
-            Kind::Joint => {
-                note("output_error.what.joint").with("verdict", text("/verdict").unwrap_or_default())
-            }
-            Kind::Plan => note("output_error.what.plan"),
-            Kind::Proof => note("output_error.what.proof"),
             Kind::Lot => {
                 let units = self.record.get("units").and_then(Value::as_array).map_or(0, Vec::len);
-                note("output_error.what.lot").with("n", units)
+                described.with("n", units)
             }
-            Kind::DataSheet => note("output_error.what.datasheet"),
-            Kind::Explanation => {
-                note("output_error.what.explanation").with("verdict", text("/verdict").unwrap_or_default())
+            Kind::Explanation | Kind::Joint => {
+                described.with("verdict", text("/verdict").unwrap_or_default())
             }
+            Kind::Comparison | Kind::Plan | Kind::DataSheet | Kind::Proof => described,
         }
     }
 

@@ -72,6 +72,34 @@ impl Kind {
         }
     }
 
+    /// The sentence about a result of this kind that is about to be replaced; of a run, one of a unit with a serial number.
+    pub(super) fn description(self) -> &'static str {
+        match self {
+            Kind::Result => "output_error.what.result",
+            Kind::Comparison => "output_error.what.comparison",
+            Kind::Explanation => "output_error.what.explanation",
+            Kind::Lot => "output_error.what.lot",
+            Kind::Joint => "output_error.what.joint",
+            Kind::Plan => "output_error.what.plan",
+            Kind::DataSheet => "output_error.what.datasheet",
+            Kind::Proof => "output_error.what.proof",
+        }
+    }
+
+    /// The reason why a folder that is none of this kind is not replaced.
+    pub(super) fn foreign(self) -> &'static str {
+        match self {
+            Kind::Result => "output_error.why.foreign",
+            Kind::Comparison => "compare.more.foreign_folder",
+            Kind::Explanation => "explain.error.foreign_folder",
+            Kind::Lot => "output_error.why.foreign_lot",
+            Kind::Joint => "joint.error.foreign_folder",
+            Kind::Plan => "plan.error.foreign_folder",
+            Kind::DataSheet => "output_error.why.foreign_datasheet",
+            Kind::Proof => "prove.error.foreign_folder",
+        }
+    }
+
     /// How that file begins, without spaces.
     pub(super) fn start(self) -> &'static str {
         match self {

@@ -3,7 +3,7 @@
 use super::finding::Finding;
 use crate::acceptance::verdict::whole;
 use crate::estimate::{Rule, Verdict};
-use crate::i18n::{Note, note};
+use crate::i18n::{Arg, Note, note};
 use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
 
 /// Relative difference of numbers that went through decimal digits within which they are equal.
@@ -21,7 +21,7 @@ pub fn verdict(record: &RunRecord) -> Vec<Finding> {
                 "verify.row_verdict",
                 measurand = row.id.as_str(),
                 channel = row.channel.as_str(),
-                verdict = row.verdict.id()
+                verdict = spoken(row.verdict)
             )));
         }
         if let (Some(value), Some(margin)) = (row.value, row.margin) {
@@ -48,11 +48,11 @@ pub fn verdict(record: &RunRecord) -> Vec<Finding> {
     let phases = record.phases.iter().map(|p| p.verdict).max();
     let of_phases = phases.is_some_and(|worst| worst == record.verdict);
     if whole != record.verdict && !left_open && !of_phases {
-        let note = note!("verify.verdict_differs");
-        findings.push(Finding::Differs(note.with("stated", record.verdict.id()).with("found", whole.id())));
+        let (stated, found) = (spoken(record.verdict), spoken(whole));
+        findings.push(Finding::Differs(note!("verify.verdict_differs", stated, found)));
     }
     if findings.is_empty() {
-        let note = note!("verify.verdict", verdict = record.verdict.id(), n = judged.len());
+        let note = note!("verify.verdict", verdict = spoken(record.verdict), n = judged.len());
         findings.push(Finding::Agrees(note));
     }
     findings
@@ -86,6 +86,11 @@ fn allowed(row: &MeasurandRecord, limit: &LimitRecord) -> Vec<Verdict> {
         Rule::GuardBand if inside(value, limit.min, limit.max) => vec![Verdict::Indeterminate],
         Rule::GuardBand => vec![Verdict::Fail, Verdict::Indeterminate],
     }
+}
+
+/// A verdict in the words of the reader's language.
+fn spoken(verdict: Verdict) -> Arg {
+    Arg::key("verdict", verdict.id())
 }
 
 #[cfg(test)]

@@ -150,7 +150,8 @@ fn what_cannot_be_made_is_refused_and_leaves_nothing() {
 #[test]
 fn the_catalogue_is_listed_and_each_effect_explained() {
     let dir = tempdir().unwrap();
-    let json: Value = serde_json::from_str(&sagnac(dir.path(), &["effects", "--json"]).out).unwrap();
+    let json: Value =
+        serde_json::from_str(&sagnac(dir.path(), &["effects", "--format", "json"]).out).unwrap();
     let effects = json.as_array().unwrap();
     let list = sagnac(dir.path(), &["effects"]);
     let mut kinds = BTreeSet::new();

@@ -108,7 +108,7 @@ fn shipped_files_are_found_by_name_and_a_file_of_the_name_wins() {
     assert!(String::from_utf8(own.stderr).unwrap().contains("static-bias: the file in this folder"));
     let wrong = printed(at, "80", &[], &["run", "static-bia", &pass]);
     assert_eq!(wrong.status.code(), Some(2));
-    assert!(String::from_utf8(wrong.stderr).unwrap().contains("shipped procedures: acceptance, "));
+    assert!(String::from_utf8(wrong.stderr).unwrap().contains("did you mean `static-bias`?"));
 }
 
 #[test]

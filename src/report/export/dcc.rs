@@ -26,6 +26,9 @@ const CERTIFICATE: &str = "https://ptb.de/dcc";
 const SI: &str = "https://ptb.de/si";
 const VERSION: &str = "3.3.0";
 
+/// Id of the form that is a calibration certificate.
+pub const CERTIFICATE: &str = "dcc";
+
 /// The certificate of a run as `dcc.xml`; of other results nothing.
 pub struct Dcc {
     /// The laboratory that issues it.
@@ -34,7 +37,7 @@ pub struct Dcc {
 
 impl Exporter for Dcc {
     fn id(&self) -> &'static str {
-        "dcc"
+        CERTIFICATE
     }
 
     fn files(&self, document: &Document<'_>, _: &Renderer) -> Result<Vec<ExportedFile>, ReportError> {

@@ -14,12 +14,19 @@ impl Exporter for Json {
     }
 
     fn files(&self, document: &Document<'_>, _: &Renderer) -> Result<Vec<ExportedFile>, ReportError> {
-        let record = serde_json::to_vec_pretty(&document.record()).map_err(ReportError::Json)?;
-        let mut files = vec![ExportedFile::new(document.kind().record_file(), record)];
+        let mut files = vec![ExportedFile::new(document.kind().record_file(), record_bytes(document)?)];
         let figures = document.own_figures();
         if !figures.is_empty() {
             files.push(ExportedFile::new(FIGURES_FILE, text(figures).map_err(ReportError::Json)?));
         }
         Ok(files)
     }
+}
+
+/// The record of a document as its file holds it.
+///
+/// # Errors
+/// [`ReportError::Json`].
+pub fn record_bytes(document: &Document<'_>) -> Result<Vec<u8>, ReportError> {
+    serde_json::to_vec_pretty(&document.record()).map_err(ReportError::Json)
 }

@@ -14,10 +14,10 @@ mod xml;
 
 pub use atml::Atml;
 pub use csv::Csv;
-pub use dcc::{Dcc, missing};
+pub use dcc::{CERTIFICATE, Dcc, missing};
 pub use exporter::{ExportedFile, Exporter};
 pub use html::Html;
-pub use json::Json;
+pub use json::{Json, record_bytes};
 pub use junit::Junit;
 pub use markdown::Markdown;
 pub use measurands::Parquet;

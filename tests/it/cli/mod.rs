@@ -1,6 +1,7 @@
 //! Every verb from the command line: exit codes, verdicts, files, messages.
 
 mod diagnostics;
+mod options;
 mod report;
 mod verbs;
 

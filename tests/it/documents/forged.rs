@@ -87,7 +87,7 @@ fn a_forged_pass_does_not_agree_with_its_own_recording() {
     assert!(said.out.ends_with("Not everything could be checked: 1.\n"), "{said:?}");
     // Neither is the result of another version, though its pages are what they are.
     let (code, said) = verified(at, &["version"]);
-    assert!(code == 3 && said.contains("? Pages not made anew"), "{said}");
+    assert!(code == 3 && said.contains("? Pages not re-rendered"), "{said}");
 }
 
 #[test]
@@ -154,10 +154,7 @@ fn a_lot_says_what_its_units_say() {
         lot["counts"]["fail"] = 0.into();
         lot["counts"]["pass"] = 2.into();
     });
-    assert!(
-        code == 1 && said.contains(&format!("{folder}: the index of the lot says something else")),
-        "{said}"
-    );
+    assert!(code == 1 && said.contains(&format!("{folder}: the index of the lot contradicts")), "{said}");
     let (code, said) = forge(&|lot| lot["verdict"] = "pass".into());
     assert!(code == 1 && said.contains("do not follow from its units"), "{said}");
     // A unit whose verdict does not follow from its own numbers.

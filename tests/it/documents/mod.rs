@@ -32,7 +32,7 @@ fn a_result_is_verified_from_its_hashes_to_its_figures() {
     let (code, said) = verified(dir.path(), &["r", "--recording", &recording]);
     assert_eq!(code, 0, "{said}");
     for part in
-        ["hashes computed anew", "reproduce from the record", "pass; rows with a limit: 7", "same figures: 28 quantities"]
+        ["hashes recomputed", "reproduce from the record", "pass; rows with a limit: 7", "same figures: 28 quantities"]
     {
         assert!(said.contains(part), "{part}: {said}");
     }
@@ -75,7 +75,7 @@ fn a_verdict_that_the_numbers_do_not_give_is_found_behind_new_hashes() {
     let (code, said) = verified(dir.path(), &["r"]);
     assert_eq!(code, 1, "{said}");
     assert!(
-        said.contains("hashes computed anew") && said.contains("does not follow from value and limit"),
+        said.contains("hashes recomputed") && said.contains("does not follow from value and limit"),
         "{said}"
     );
     assert!(said.contains("report.html: not what the record gives"), "{said}");

@@ -67,7 +67,10 @@ fn two_keys_sign_one_after_the_other() {
     let page = fs::read_to_string(at.join("anew/report.html")).unwrap();
     assert!(page.contains("no qualified electronic signatures"));
     let (_, said) = verified(at, &["anew"]);
-    assert!(said.contains("reproduce from the record") && !said.contains("not what the record gives"), "{said}");
+    assert!(
+        said.contains("reproduce from the record") && !said.contains("not what the record gives"),
+        "{said}"
+    );
 }
 
 #[test]

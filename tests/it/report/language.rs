@@ -209,9 +209,14 @@ const LATIN: &[&str] = &[
     "joint",
 ];
 
-/// Prefix of the translations of the help. They have their English text for a key; the command itself holds it, and its tests compare
-/// the two.
-const HELP_TEXT: &str = "help_text.";
+/// Prefixes of translations that have their English text for a key: of the help and of the comments that `init` writes. The command
+/// and the templates hold the English, and their tests compare the two.
+const KEYED_BY_ENGLISH: [&str; 2] = ["help_text.", "init_comment."];
+
+/// The English text of a key that is one.
+fn english_of_key(key: &str) -> Option<&str> {
+    KEYED_BY_ENGLISH.iter().find_map(|prefix| key.strip_prefix(prefix))
+}
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
@@ -322,7 +327,7 @@ fn both_tables_have_the_same_keys_and_arguments() {
     let missing: Vec<&String> = en.keys().filter(|k| !ru.contains_key(*k)).collect();
     assert!(missing.is_empty(), "not in Russian: {missing:#?}");
     let idle: Vec<&String> =
-        ru.keys().filter(|k| !en.contains_key(*k) && !k.starts_with(HELP_TEXT)).collect();
+        ru.keys().filter(|k| !en.contains_key(*k) && english_of_key(k).is_none()).collect();
     assert!(idle.is_empty(), "in Russian only: {idle:#?}");
     for (key, english) in en {
         // In English the TOML parser is quoted; in Russian its faults have words of their own.
@@ -349,7 +354,7 @@ fn nothing_is_left_untranslated() {
             continue;
         }
         let same = SAME.iter().any(|s| key == s || (s.ends_with('.') && key.starts_with(s)));
-        let english = key.strip_prefix(HELP_TEXT).unwrap_or_else(|| &en[key]);
+        let english = english_of_key(key).unwrap_or_else(|| &en[key]);
         if !same && russian == english {
             latin.push(format!("{key} is the same in both languages: {russian}"));
         }

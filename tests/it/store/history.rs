@@ -213,7 +213,7 @@ fn a_data_sheet_is_made_of_what_counts_in_the_store() {
     write_result(&made, "ref", &reference);
     write_result(&made, "other", &a_result("B-1", "L9", "2026-03-20T10:00:00Z", 0.9));
     store(dir.path(), &["import", "store", "made"]);
-    let args = ["datasheet", "--store", "store", "--model", "A-1", "--lot", "L1", "--out", "sheet"];
+    let args = ["datasheet", "--store", "store", "--device-model", "A-1", "--lot", "L1", "--out", "sheet"];
     let said = sagnac(dir.path(), &args);
     assert_eq!(said.code, 0, "{said:?}");
     let sheet: Value =

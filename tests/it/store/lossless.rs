@@ -98,13 +98,13 @@ fn a_missing_index_keeps_no_run_from_its_store() {
     let (procedure, limits, pass) = (procedure(), limits(), sample("pass"));
     let run = ["run", &procedure, &pass, "--limits", &limits, "--serial", "1", "--out", "again"];
     let said = sagnac(dir.path(), &[&run[..], &["--store", "store"]].concat());
-    assert!(said.code == 0 && said.err.contains("the index was missing and was made anew"), "{said:?}");
+    assert!(said.code == 0 && said.err.contains("the index was missing and has been rebuilt"), "{said:?}");
     assert_eq!(result(&dir.path().join("again"))["attempt"]["number"], 2);
     lose();
     // The log of an index that is gone belongs to no other.
     fs::write(dir.path().join("store/index.sqlite-wal"), [1_u8; 5000]).unwrap();
     let said = sagnac(dir.path(), &["history", "--store", "store"]);
-    assert!(said.code == 0 && said.err.contains("made anew"), "{said:?}");
+    assert!(said.code == 0 && said.err.contains("rebuilt"), "{said:?}");
     store(dir.path(), &["verify", "store"]);
 }
 

@@ -76,7 +76,7 @@ fn how_long_a_large_store_takes() {
         "{:.2} s: history of a lot of 100 units",
         timed(&["history", "--lot", "L7", "--store", "store"])
     );
-    let sheet = ["datasheet", "--store", "store", "--model", "LOT-MODEL", "--out", "sheet"];
+    let sheet = ["datasheet", "--store", "store", "--device-model", "LOT-MODEL", "--out", "sheet"];
     println!("{:.2} s: data sheet of {UNITS} units", timed(&sheet));
     store(dir.path(), &["init", "empty"]);
     println!("{:.1} ms: start of the program and nothing else", 1e3 * timed(&["effects"]));
