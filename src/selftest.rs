@@ -14,7 +14,7 @@ use crate::units::Unit;
 /// One oracle.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Check {
-    /// What is computed.
+    /// The quantity that is computed.
     pub name: Note,
     /// Where the number was published.
     pub source: Note,

@@ -1,4 +1,4 @@
-//! What happens when the program is asked to end: what it was making is removed first.
+//! Reaction to a request to end: unfinished files are removed first.
 
 use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;

@@ -1,4 +1,4 @@
-//! What a result shows of a unit, as a claim that later recordings are held against.
+//! A result as a claim about its unit, which later recordings are held against.
 
 use super::verdict::contradicted;
 use crate::claim::{Claim, Coefficient, Stated, Uncertainty};
@@ -34,7 +34,7 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
     let (Some(interval_s), true) = (interval_s, n.value > 0.0 || b.value > 0.0 || k.value > 0.0) else {
         return Err("model_verb.no_noise".into());
     };
-    // What the gyro reads at rest holds the rotation of the Earth; a bias is without it.
+    // The rate at rest contains the rotation of the Earth; a bias does not.
     let earth = row(measurand::EARTH_RATE_COMPONENT.id).and_then(|m| m.value).unwrap_or(0.0);
     let bias = row(measurand::STATIC_BIAS.id);
     let deviation = bias.and_then(standard_uncertainty).unwrap_or(0.0);

@@ -14,7 +14,7 @@ pub(super) fn interval95(c: &Combination) -> Interval {
     spread.interval(c.value, 0.95).unwrap_or(Interval { low: f64::NAN, high: f64::NAN, coverage: 0.95 })
 }
 
-/// What every mean has, of a channel and by its number from 0.
+/// Columns that every mean has, of a channel and by its number from 0.
 fn record(channel: &str, i: usize, mean: &Combination, temperature_deg_c: f64) -> IntervalMeanRecord {
     let interval = interval95(mean);
     IntervalMeanRecord {

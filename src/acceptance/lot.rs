@@ -7,7 +7,7 @@ use crate::record::{
     Session, VerdictCounts,
 };
 
-/// What a lot has of one of its units.
+/// The part of the record of a unit that a lot keeps.
 pub fn unit(member: &Member, record: &RunRecord) -> LotUnit {
     of_record(record, member.serial_from, member.recording.display().to_string(), member.folder.clone())
 }

@@ -81,7 +81,7 @@ pub(super) fn window(procedure: &Procedure) -> WindowSpec {
     }
 }
 
-/// What reading gave, and what was met on the way.
+/// Samples that were read, and faults met on the way.
 type Read<T> = Result<(T, StreamReport), RunError>;
 
 /// Reads a recording once, or twice where it holds angles.

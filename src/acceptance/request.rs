@@ -1,4 +1,4 @@
-//! What is to be run, what a run gives, and why it may give nothing.
+//! A request, its outcome, and the reasons why there may be none.
 
 use crate::config::procedure::model::Taus;
 use crate::config::procedure::{EffectiveLimits, Procedure};
@@ -96,7 +96,7 @@ pub enum RunError {
 }
 
 impl RunError {
-    /// What is wrong, as a note.
+    /// The error as a note.
     pub fn note(&self) -> Note {
         match self {
             RunError::Ingest(e) => e.note(),

@@ -85,7 +85,7 @@ impl Overview {
                 .enumerate()
                 .filter_map(|(slot, c)| {
                     let spec = procedure.channel(&c.id)?;
-                    // What is inside is the rate; an angle has no rails.
+                    // The inside value is the rate; an angle has no rails.
                     let angle = c.role == Role::AccumulatedAngle;
                     if angle || spec.rail_low.is_none() && spec.rail_high.is_none() {
                         return None;

@@ -18,7 +18,7 @@ use std::collections::BTreeMap;
 
 /// A recording that was read once for a request: what every kind of test needs of it.
 pub(super) struct Reading<'r> {
-    /// What is to be run.
+    /// The request.
     pub request: &'r Request<'r>,
     /// The channels that were read.
     pub channels: Vec<Channel>,
@@ -34,7 +34,7 @@ pub(super) struct Reading<'r> {
     pub window: Window,
     /// Statistics of the channels that must stay within a band.
     pub stability: BTreeMap<StabilityKey, StabilityFacts>,
-    /// What is drawn over time, by position of the channel.
+    /// Curves drawn over time, by position of the channel.
     pub envelopes: BTreeMap<usize, Envelope>,
     /// Which checks were made.
     pub checks: CheckLog,
@@ -72,10 +72,10 @@ impl Reading<'_> {
     }
 }
 
-/// What the common conditions are judged by where a test shows a gyro at rest.
+/// Facts that the common conditions are judged by where a test shows a gyro at rest.
 #[derive(Default)]
 pub(super) struct RestFacts<'e> {
-    /// What is left of a warm-up transient.
+    /// Remainder of a warm-up transient.
     pub warm_up: Vec<WarmUpFact>,
     /// The gyro channels.
     pub gyros: Vec<GyroFact>,
@@ -122,14 +122,14 @@ pub(super) trait TestKind: Sized {
         Pauses::default()
     }
 
-    /// What collects; `interval_s` is the nominal sample interval.
+    /// The collector; `interval_s` is the nominal sample interval.
     ///
     /// # Errors
     /// What the request asks for does not suit the recording.
     fn collector(&self, request: &Request<'_>, channels: &[Channel], interval_s: f64)
     -> Run<Self::Collector>;
 
-    /// What the collected data show. A quantity that one pass cannot give is read in another one here.
+    /// The evidence in the collected data. A quantity that one pass cannot give is read in another one here.
     ///
     /// # Errors
     /// [`RunError::Nothing`] when nothing was left to evaluate; those of reading.
@@ -154,7 +154,7 @@ pub(super) trait Evidence {
         vec![]
     }
 
-    /// What the conditions of every test are judged by besides the recording.
+    /// Facts that the conditions of every test are judged by besides the recording.
     fn rest_facts(&self, _reading: &Reading<'_>) -> RestFacts<'_> {
         RestFacts::default()
     }

@@ -169,7 +169,7 @@ impl<'a> LotRun<'a> {
         let lang = frame.lang;
         let error = |note: Note| place::error(&note, lang);
         let keeper = Keeper::new(&args.store, lang)?;
-        // What is wrong with a template is said before the first unit is tested.
+        // A fault of a template is said before the first unit is tested.
         let none = Results::of_lot(lot::lot(test.procedure(), test.session(), vec![]));
         export(&none.whole(lang), EXPORTERS, &frame.writer.renderer).map_err(|e| error(e.note()))?;
         frame.progress.stage("progress.inputs");

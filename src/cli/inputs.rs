@@ -1,4 +1,4 @@
-//! What a result is made from, so that it takes the place of none made from something else.
+//! Inputs of a result, so that it takes the place of none made from something else.
 
 use super::place::{self, OutputPlace};
 use crate::config::manifest::Manifest;

@@ -8,7 +8,7 @@ use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::{Path, PathBuf};
 
-/// What the user decides about the file; the rest is found from it, and the report says what was found.
+/// Decisions of the user about the file; the rest is detected, and the report says as what.
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "How the recording is read")]
 pub struct ReadArgs {

@@ -12,7 +12,7 @@ use chrono::SecondsFormat;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
-/// What is signed, in which role and by which key.
+/// The folder to sign, the role and the key.
 #[derive(Debug, Args)]
 pub struct SignArgs {
     /// Folder of a result, or its record

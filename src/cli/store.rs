@@ -186,7 +186,7 @@ impl Tally {
     fn add(&mut self, store: &mut Store, folder: &Path, lang: Lang) -> Result<(), String> {
         let added = match store.add(folder) {
             Ok(added) => added,
-            // What is no result is left out; a store that cannot be written ends the import.
+            // A folder that is no result is left out; a store that cannot be written ends the import.
             Err(
                 e @ (StoreError::Result { .. }
                 | StoreError::NoTest(_)

@@ -1,4 +1,4 @@
-//! What is wrong with a file, where, and what to do: all problems of a file together.
+//! Problems of a file: place, reason and advice, all of a file together.
 //!
 //! A [`Problem`] carries the line it is about, so that it can be shown without the file. The rendering is plain text:
 //! no colours, columns counted in characters, so that it lines up for text in any alphabet.
@@ -38,7 +38,7 @@ pub struct Problem {
     pub line: usize,
     /// Column in characters, counted from 1; 0 when the problem is of the file as a whole.
     pub column: usize,
-    /// What is wrong.
+    /// The problem.
     pub message: Note,
     /// What to do.
     pub help: Option<Note>,

@@ -4,7 +4,7 @@
 use super::diagnostics::{SourceText, Span};
 use toml::de::DeTable;
 
-/// What is wrong with a line.
+/// A mistake in a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fault {
     /// Text without quotes.
@@ -19,10 +19,10 @@ pub(super) enum Fault {
     Colon,
 }
 
-/// What is wrong with a line, and the line as it is right.
+/// A mistake in a line, and the line as it is right.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Repair {
-    /// What is wrong.
+    /// The mistake.
     pub fault: Fault,
     /// The line without its comment.
     pub line: String,

@@ -9,7 +9,7 @@ use std::ops::Range;
 pub struct QuantityError {
     /// The part of the text that is wrong, in bytes.
     pub span: Range<usize>,
-    /// What is wrong.
+    /// The problem.
     pub message: Note,
     /// What to do, where that follows from the text alone.
     pub help: Option<Note>,

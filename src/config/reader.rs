@@ -32,7 +32,7 @@ pub(crate) struct Reader<'s> {
     pub source: &'s SourceText,
     /// Description of the file as a whole.
     pub(super) root: &'static TableSpec,
-    /// What is wrong with it, so far.
+    /// Its problems so far.
     pub problems: Problems,
 }
 

@@ -3,7 +3,7 @@
 use crate::i18n::Lang;
 use std::path::{Component, Path, PathBuf};
 
-/// What a shipped file is.
+/// Kind of a shipped file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ShippedKind {
     /// A procedure.
@@ -17,7 +17,7 @@ pub enum ShippedKind {
 pub struct Shipped {
     /// Name by which it is found.
     pub name: &'static str,
-    /// What it is.
+    /// Its kind.
     pub kind: ShippedKind,
     /// Its text.
     pub text: &'static str,

@@ -36,7 +36,7 @@ pub enum LotError {
     Recording(RecordingError),
     /// A serial number cannot be identified, or is that of several recordings.
     Serial {
-        /// What is wrong, one note for each serial number or file.
+        /// The problems, one note for each serial number or file.
         notes: Vec<Note>,
         /// What to do.
         help: Note,

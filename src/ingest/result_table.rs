@@ -20,7 +20,7 @@ const DEEPEST: usize = 12;
 /// A result of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TableResult {
-    /// What the table calls its recording; the table and the row where it has no such column.
+    /// Name of the recording in the table; the table and the row where it has no such column.
     pub name: String,
     /// The record, as the text of `result.json`; `None` where the recording gave none.
     pub record: Option<String>,

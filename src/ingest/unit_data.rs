@@ -1,4 +1,4 @@
-//! What is known of units before they are tested: a table in CSV with a row for each.
+//! Facts about units known before they are tested: a table in CSV with a row for each.
 //!
 //! The first line names the columns: `serial`, and as far as there are any `model`, `lot`, `build_date` and `reference`; every
 //! other column is a free attribute of the unit. Fields are separated by commas, semicolons or tabulators.
@@ -13,7 +13,7 @@ use csv::{ByteRecord, ReaderBuilder, StringRecord};
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// What is said of a table that cannot be read at all.
+/// Messages about a table that cannot be read at all.
 const WORDING: Wording = Wording { unreadable: "unit_data.unreadable", folder: "unit_data.folder" };
 
 /// The units of a table, by their serial numbers.
@@ -23,7 +23,7 @@ pub struct UnitData {
 }
 
 impl UnitData {
-    /// What the table has of a unit.
+    /// The facts of a unit in the table.
     pub fn of(&self, serial: &str) -> Option<&UnitUnderTest> {
         self.units.get(&plain(serial))
     }

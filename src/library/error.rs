@@ -58,7 +58,7 @@ impl Error {
         Error::argument(note)
     }
 
-    /// What is wrong with a recording and where, when that is what the error is about.
+    /// The problem of a recording and its place, when that is what the error is about.
     pub fn ingest(&self) -> Option<&IngestError> {
         match self.0.as_ref() {
             Kind::Recording(SeriesError::Open(RecordingError::File(e)) | SeriesError::Read(e))

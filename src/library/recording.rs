@@ -135,7 +135,7 @@ impl Recording {
         Ok(load_series_of(&self.source, options, &mut |_, _| {})?)
     }
 
-    /// What is decided about reading so far.
+    /// The decisions about reading so far.
     pub(super) fn series_options(&self) -> SeriesOptions {
         SeriesOptions {
             read: self.options.clone(),

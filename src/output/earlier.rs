@@ -1,4 +1,4 @@
-//! What stands where a result is to go.
+//! An earlier result in the place where a new one is to go.
 
 use super::error::{OutputError, io};
 use super::kind::{Kind, MAX_RECORD_BYTES};
@@ -16,7 +16,7 @@ pub(super) struct Earlier {
     kind: Kind,
     record: Value,
     made: Option<String>,
-    /// What it was made from.
+    /// Its inputs.
     pub(super) inputs: BTreeMap<String, String>,
     files: BTreeSet<String>,
 }

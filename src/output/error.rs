@@ -20,7 +20,7 @@ pub enum OutputError {
     InTheWay {
         /// Where.
         path: PathBuf,
-        /// What is the matter with it.
+        /// The problem.
         why: Note,
     },
     /// The target is `..`, the root or the like.
@@ -31,7 +31,7 @@ pub enum OutputError {
     Other {
         /// Where.
         path: PathBuf,
-        /// What it is.
+        /// Description of the earlier result.
         what: Note,
         /// The inputs that differ.
         differ: Vec<String>,
@@ -48,7 +48,7 @@ pub enum OutputError {
 }
 
 impl OutputError {
-    /// What is wrong, as a note.
+    /// The error as a note.
     pub fn note(&self) -> Note {
         let at = |path: &Path| path.display().to_string();
         match self {

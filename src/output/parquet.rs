@@ -25,7 +25,7 @@ pub enum Column<R> {
 /// Writes rows as a table of measurands, compressed, with their columns by name.
 ///
 /// # Errors
-/// What the library says: a name that is none, or a file that cannot be written.
+/// The message of the library: a name that is none, or a file that cannot be written.
 pub fn write_table<R, W: Write + Send>(
     rows: &[R],
     columns: &[(&str, Column<R>)],

@@ -18,7 +18,7 @@ const ABANDONED_AFTER: Duration = Duration::from_secs(24 * 3600);
 /// Attempts to make something that no other run takes for abandoned before it is locked.
 const ATTEMPTS: usize = 10;
 
-/// What this process is making.
+/// Files that this process is making.
 static LIVE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 static BOOT: LazyLock<String> = LazyLock::new(|| {

@@ -24,7 +24,7 @@ pub(super) fn all(
     figures
 }
 
-/// What was concealed above, the inferred course below; `None` where nothing has a course.
+/// The concealed quantity above, the inferred course below; `None` where nothing has a course.
 fn against(prepared: &Prepared, course: &[f64]) -> Option<Figure> {
     let time = &prepared.shown.time_s;
     let panel = |label: &'static str, unit: &str, layers| Panel {

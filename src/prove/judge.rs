@@ -36,7 +36,7 @@ pub(super) fn rules(proof: &ProofFile, answers: &Answers<'_>) -> Vec<RuleRecord>
     proof.rules.iter().map(one).collect()
 }
 
-/// What must hold, what was found, and whether it holds.
+/// The rule, the finding, and whether the rule holds.
 fn judged(rule: &Rule, references: &[Reference], answers: &Answers<'_>) -> (Note, Note, bool) {
     let said = answers.of(rule.when);
     let must = |key: &'static str| Note::new(key);
@@ -206,7 +206,7 @@ fn of_value(found: &FoundValue, unit: &Unit) -> Note {
     )
 }
 
-/// What is known from elsewhere, with what was found for it.
+/// Facts known from elsewhere, with the finding for each.
 pub(super) fn references(proof: &ProofFile, answers: &Answers<'_>) -> Vec<KnownRecord> {
     let one = |(place, known): (usize, &Reference)| {
         let rule = proof.rules.iter().find_map(|rule| match &rule.must {
@@ -231,7 +231,7 @@ pub(super) fn references(proof: &ProofFile, answers: &Answers<'_>) -> Vec<KnownR
     proof.references.iter().enumerate().map(one).collect()
 }
 
-/// What was named, or the verdict where nothing was.
+/// The named effects, or the verdict where nothing was named.
 fn named(said: &Explanation) -> Note {
     if said.effects.is_empty() {
         return note!("prove.found.verdict", verdict = verdict(said.verdict.id()));

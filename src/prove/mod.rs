@@ -101,7 +101,7 @@ fn claim(
     }
 }
 
-/// What was done.
+/// Steps of the proof.
 struct Done {
     hidden: Vec<Hidden>,
     origin: ClaimOrigin,

@@ -1,9 +1,9 @@
-//! What is to be proved.
+//! The order of a proof.
 
 use crate::config::proof::ProofFile;
 use std::path::Path;
 
-/// What is to be proved.
+/// The order of a proof.
 #[derive(Debug, Clone, Copy)]
 pub struct ProofOrder<'a> {
     /// The proof file.

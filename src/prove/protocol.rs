@@ -1,4 +1,4 @@
-//! What was done, each step with the hash of the step before, so that none can be put in afterwards.
+//! Steps of a proof, each with the hash of the step before, so that none can be put in afterwards.
 
 use crate::output::sha256;
 use crate::record::ProtocolStep;

@@ -35,7 +35,7 @@ pub struct PlanContext {
 /// What `joint.json` holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JointFile {
-    /// What was found.
+    /// The findings.
     #[serde(flatten)]
     pub explanation: JointExplanation,
     /// What its page shows besides.

@@ -95,7 +95,7 @@ fn correction_csv(correction: &[(f64, f64)]) -> String {
     out
 }
 
-/// What several recordings give that are explained together.
+/// Results of several recordings that are explained together.
 pub struct JointResults {
     /// What `joint.json` holds.
     pub file: JointFile,
@@ -235,7 +235,7 @@ impl Results {
 pub struct StoredResults {
     /// The results.
     pub results: Results,
-    /// What they were made from, as the result lists it.
+    /// Their inputs, as the result lists them.
     pub inputs: BTreeMap<String, String>,
     /// The files of the folder, as the result lists them.
     pub files: Vec<String>,

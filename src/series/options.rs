@@ -34,7 +34,7 @@ pub enum SeriesError {
 }
 
 impl SeriesError {
-    /// What is wrong, as a note.
+    /// The error as a note.
     pub fn note(&self) -> Note {
         match self {
             SeriesError::Open(RecordingError::File(e)) | SeriesError::Read(e) => e.note(),

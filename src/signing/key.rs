@@ -7,7 +7,7 @@ use std::io::Write;
 use std::path::Path;
 use std::process::{Command, Stdio};
 
-/// What the signatures are for, as `ssh-keygen -n` takes it: a signature for something else is none here.
+/// Purpose of the signatures, as `ssh-keygen -n` takes it: a signature for something else is none here.
 pub const NAMESPACE: &str = "sagnac";
 
 /// Largest file of a key that is read, bytes.

@@ -39,7 +39,7 @@ pub struct BadLine {
     pub fault: LineFault,
 }
 
-/// What is wrong with a line.
+/// The mistake in a line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum LineFault {
     /// A quote is not closed, or nothing follows the name.

@@ -1,10 +1,10 @@
-//! What is signed: an in-toto statement (<https://in-toto.io/Statement/v1>) about the files of a folder.
+//! The signed statement: an in-toto statement (<https://in-toto.io/Statement/v1>) about the files of a folder.
 
 use super::role::Role;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// What every such statement says that it is.
+/// Type that every such statement declares.
 pub const STATEMENT: &str = "https://in-toto.io/Statement/v1";
 
 /// The kind of what it says of the files.

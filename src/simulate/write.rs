@@ -39,7 +39,7 @@ impl Format {
     }
 }
 
-/// What was written.
+/// The recording that was written.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Written {
     /// Rows.

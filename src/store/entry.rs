@@ -1,4 +1,4 @@
-//! What the index has of a result.
+//! Entry of a result in the index.
 //!
 //! It is read from `result.json` alone, with as few demands as a data sheet makes, so that results of other programs and of
 //! earlier versions have their place too.
@@ -54,7 +54,7 @@ const INDEXED_MEMBERS: &[&str] = &[
     "errors.id",
 ];
 
-/// What the index has of a result.
+/// Entry of a result in the index.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {
     /// Unit.
@@ -65,7 +65,7 @@ pub struct Entry {
     pub verdict: Verdict,
     /// SHA-256 of `result.json`.
     pub result_sha256: String,
-    /// What was measured, in the order of the result: of each row the members that the index has.
+    /// Rows in the order of the result: of each the members that the index has.
     pub measurands: Vec<MeasurandRecord>,
     /// What kept the unit from passing.
     pub reasons: Vec<Reason>,
@@ -172,7 +172,7 @@ pub struct EntryRecording {
 }
 
 impl Entry {
-    /// What the index has of the result in the bytes of a `result.json`; `path` stands in diagnostics.
+    /// Entry of the result in the bytes of a `result.json`; `path` stands in diagnostics.
     ///
     /// # Errors
     /// [`StoreError::Result`] where the bytes are no result, [`StoreError::NoTest`] for one without a procedure.
@@ -186,7 +186,7 @@ impl Entry {
     }
 }
 
-/// What the index has of a result.
+/// Entry of a result.
 fn entry(result: RunRecord, result_sha256: String) -> Entry {
     let reasons = reasons(&result);
     let text = |given: Option<&str>| given.unwrap_or_default().trim().to_owned();

@@ -98,7 +98,7 @@ pub enum StoreError {
     InsideStore(PathBuf),
     /// No result, or more than one, has an address that begins so.
     Address {
-        /// What was given.
+        /// The given text.
         given: String,
         /// How many there are.
         count: usize,
@@ -111,7 +111,7 @@ pub enum StoreError {
 }
 
 impl StoreError {
-    /// What is wrong, as a note.
+    /// The error as a note.
     pub fn note(&self) -> Note {
         let at = |key: &'static str, path: &Path| Note::new(key).with("path", path.display().to_string());
         match self {

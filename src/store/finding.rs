@@ -98,7 +98,7 @@ impl Part {
 }
 
 impl Finding {
-    /// What is wrong, as a note.
+    /// The finding as a note.
     pub fn note(&self) -> Note {
         let of_path =
             |key: &'static str, path: &Path| Note::new(key).with("path", path.display().to_string());

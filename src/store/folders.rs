@@ -1,4 +1,4 @@
-//! What the folders and statements of a store tell, which is all that the index has.
+//! Results and statements in the folders of a store, which is all that the index has.
 
 use super::entry::Entry;
 use super::error::StoreError;
@@ -9,7 +9,7 @@ use super::statement::{self, Statement};
 use crate::output::Kind;
 use crate::record::read;
 
-/// What the index has of the result at an address.
+/// Entry of the result at an address.
 pub(super) fn entry_at(layout: &Layout, address: &str) -> Result<Entry, StoreError> {
     let path = layout.result(address).join(Kind::Result.record_file());
     let bytes = read::bytes(&path).map_err(|source| StoreError::Result { path: path.clone(), source })?;
@@ -26,13 +26,13 @@ pub(super) fn index_in_memory(layout: &Layout) -> Result<Index, StoreError> {
     Ok(index)
 }
 
-/// What was put into an index.
+/// Results put into an index.
 pub(super) struct Filled {
     /// Results.
     pub results: usize,
     /// Statements.
     pub statements: usize,
-    /// What was left out.
+    /// Results left out.
     pub findings: Vec<Finding>,
 }
 

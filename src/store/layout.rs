@@ -77,7 +77,7 @@ impl Layout {
         self.root.join("index.sqlite")
     }
 
-    /// What is locked.
+    /// Locked part of the store.
     pub fn lock(&self) -> PathBuf {
         self.root.join("lock")
     }

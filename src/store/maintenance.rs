@@ -13,14 +13,14 @@ use crate::output::sync_folder;
 use std::fs;
 use std::path::Path;
 
-/// What an index was made from.
+/// Sources of an index.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Rebuilt {
     /// Results.
     pub results: usize,
     /// Statements.
     pub statements: usize,
-    /// What was left out.
+    /// Results left out.
     pub findings: Vec<Finding>,
 }
 

@@ -1,4 +1,4 @@
-//! What says that a folder is a store.
+//! The file that marks a folder as a store.
 
 use super::database::{database_files, remove_database};
 use super::error::{StoreError, io};
@@ -69,7 +69,7 @@ fn is_free(layout: &Layout) -> Result<bool, StoreError> {
     Ok(true)
 }
 
-/// What is to be known of a store on a disk that its users share.
+/// Remark on a store on a disk that its users share.
 pub(super) fn on_shared_disk(layout: &Layout) -> Note {
     note!("store.shared_disk", path = layout.root().display().to_string())
 }

@@ -18,14 +18,14 @@ const STATEMENT_FORMAT: &str = "statement/1";
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Statement {
     format: String,
-    /// What is stated.
+    /// Subject of a statement.
     #[serde(flatten)]
     pub what: What,
     /// When, RFC 3339.
     pub stated_at: String,
 }
 
-/// What is stated.
+/// Subject of a statement.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case", tag = "kind")]
 pub enum What {

@@ -13,14 +13,14 @@ use crate::signing;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
-/// What was looked at.
+/// Counts of what was examined.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Verified {
     /// Results.
     pub results: usize,
     /// Statements.
     pub statements: usize,
-    /// What is wrong.
+    /// Faults found.
     pub findings: Vec<Finding>,
 }
 
@@ -76,7 +76,7 @@ fn of_folder(folder: &Path, expected: &str) -> Vec<Finding> {
     findings
 }
 
-/// What stands in the folders of a store and is none of its own.
+/// Files in the folders of a store that are none of its own.
 fn strays(layout: &Layout) -> Result<Vec<Finding>, StoreError> {
     let mut strays: Vec<PathBuf> = vec![];
     let mut look = |folder: &Path, is_own: &dyn Fn(&str) -> bool| -> Result<(), StoreError> {
@@ -129,7 +129,7 @@ fn index_against(index: &Index, fresh: &Index, there: &[String]) -> Result<Vec<F
             }
             (None, Some(_)) => findings.push(Finding::NotIndexed(address.clone())),
             (Some(_), None) => findings.push(Finding::NoFolder(address.clone())),
-            // What cannot be read was named where its folder was looked at.
+            // An unreadable folder was named where it was examined.
             (None, None) => {}
         }
     }

@@ -15,7 +15,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-/// What a result is computed from anew.
+/// Sources that a result is recomputed from.
 #[derive(Debug, Clone, Copy)]
 pub struct Anew<'a> {
     /// The recordings: of a result its own, of a lot those of its units.
@@ -45,7 +45,7 @@ const ASIDE: [&str; 10] = [
     "explained",
 ];
 
-/// What no option that leaves the procedure as it is should change.
+/// Members that no option changes unless it changes the procedure.
 const DECISIVE: [&str; 2] = ["verdict", "measurands"];
 
 /// Computes a result, or every unit of a lot, from its recording anew and compares what was measured, with tables and figures.

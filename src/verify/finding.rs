@@ -21,7 +21,7 @@ impl Finding {
         matches!(self, Finding::Differs(_))
     }
 
-    /// What was found.
+    /// The finding as a note.
     pub fn note(&self) -> &Note {
         match self {
             Finding::Agrees(note)

@@ -78,7 +78,7 @@ pub(super) fn folder_of(lot: &Folder, unit: &LotUnit) -> Option<Folder> {
     is_name.then(|| Folder { path: lot.path.join(&unit.folder), kind: Kind::Result })
 }
 
-/// What was found of a unit, with its folder.
+/// Findings of a unit, with its folder.
 pub(super) fn below(unit: &str, finding: Finding) -> Finding {
     let of = |note: Note| note!("verify.of_unit", name = unit, what = note);
     match finding {

@@ -121,7 +121,7 @@ pub struct CheckedRow {
     pub crossover_h: f64,
     /// σ10 over σ100, σ10 from the Russian angle random walk.
     pub sigma10_over_sigma100: f64,
-    /// What does not follow, or is worth knowing.
+    /// Contradictions and remarks.
     #[serde(with = "crate::record::message::notes")]
     pub remarks: Vec<Note>,
     /// True when something does not follow.

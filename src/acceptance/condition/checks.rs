@@ -33,7 +33,7 @@ pub const CHECKS: &[&str] = &[
 pub const OF_EVERY_TEST: &[&str] =
     &["column_units", "temperature_unit", "clock", "full_scale", "plausible", "serial_number"];
 
-/// What the checks note of themselves while a recording is judged.
+/// Log of the checks while a recording is judged.
 #[derive(Debug, Default)]
 pub struct CheckLog(Mutex<Vec<CheckRecord>>);
 

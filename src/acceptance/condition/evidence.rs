@@ -1,4 +1,4 @@
-//! What stands behind each condition: the recording, what is inferred from the output, or what somebody declared.
+//! Evidence of each condition: the recording, an inference from the output, or a declaration.
 
 use crate::record::{ConditionRecord, Evidence};
 

@@ -1,4 +1,4 @@
-//! What conditions are judged by, what a condition is, and how it is recorded.
+//! Facts that conditions are judged by, a condition, and its record.
 
 use super::checks::CheckLog;
 use super::stability_track::{StabilityFacts, StabilityKey};
@@ -46,7 +46,7 @@ pub struct Facts<'a> {
     pub longest_gap_s: f64,
     /// Statistics of the channels that must stay within a band, by condition.
     pub stability: &'a BTreeMap<StabilityKey, StabilityFacts>,
-    /// What is left of a warm-up transient on each gyro channel.
+    /// Remainder of a warm-up transient on each gyro channel.
     pub warm_up: &'a [WarmUpFact],
     /// Gyro channels in the evaluated window.
     pub gyros: &'a [GyroFact],
@@ -72,7 +72,7 @@ pub struct Facts<'a> {
     pub checks: &'a CheckLog,
 }
 
-/// What is left of a warm-up transient at the start of the evaluated window.
+/// Remainder of a warm-up transient at the start of the evaluated window.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WarmUpFact {
     /// Channel.

@@ -1,4 +1,4 @@
-//! What a series of switching off and on, and a comparison without and with an influence, must have been.
+//! Conditions of a series of switching off and on, and of a comparison without and with an influence.
 
 use super::facts::record;
 use crate::i18n::{Arg, Note, note};
@@ -6,7 +6,7 @@ use crate::influence::nuisance::Following;
 use crate::influence::repeatability::factors;
 use crate::record::{ConditionRecord, ConditionStatus, Evidence};
 
-/// What was found of a series.
+/// Findings of a series.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RunFacts {
     /// Runs that were evaluated.
@@ -141,7 +141,7 @@ fn acted(facts: &ComparedFacts<'_>) -> ConditionRecord {
     known(record("influence_acted", status, &[], Some(required), note), Some(facts.acted.evidence()))
 }
 
-/// What was found of a comparison.
+/// Findings of a comparison.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparedFacts<'a> {
     /// Intervals that were evaluated.

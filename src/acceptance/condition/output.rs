@@ -1,4 +1,4 @@
-//! What was done to the output before it was recorded: coarse steps, smoothing. Remarks only.
+//! Processing of the output before it was recorded: coarse steps, smoothing. Remarks only.
 
 use super::facts::{Condition, Facts, GyroFact, record};
 use crate::i18n::{Note, note};

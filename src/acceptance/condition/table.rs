@@ -8,7 +8,7 @@ use crate::i18n::{Arg, Note, note};
 use crate::record::{ConditionRecord, ConditionStatus};
 use crate::units::RateUnit;
 
-/// What was found of the table.
+/// Findings of the table.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct TableFacts {
     /// Time by the angle of the table over time by the stamps.
@@ -294,7 +294,7 @@ fn response(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord
     Some(record(id, ConditionStatus::Invalid, &observed, required, note))
 }
 
-/// What is wrong with an output that does not follow the table.
+/// The fault of an output that does not follow the table.
 fn response_error(channel: &ChannelFact, factor: f64, facts: &TableFacts) -> Note {
     let shown = Arg::figures(factor, 4);
     let mistakes = unit_slip::rate_factors(&channel.unit);

@@ -5,7 +5,7 @@ use sagnac_ingest::read_file;
 use serde::Deserialize;
 use std::path::Path;
 
-/// What a compensation table says, as far as it is used here.
+/// A compensation table, as far as it is used here.
 #[derive(Debug, Clone, Deserialize)]
 pub struct Table {
     pub(super) channel: String,

@@ -7,7 +7,7 @@ use crate::measurand::{
 use crate::numeric::order::quantile;
 use crate::record::{SheetPair, SheetQuantity};
 
-/// What is set side by side.
+/// Quantities set side by side.
 static PAIRS: [(&Measurand, &Measurand); 5] = [
     (&RUSSIAN_DRIFT_100S, &BIAS_INSTABILITY_MINIMUM),
     (&RUSSIAN_DRIFT_100S, &BIAS_INSTABILITY),

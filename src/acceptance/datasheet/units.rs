@@ -116,7 +116,7 @@ pub struct Selected {
     pub model: Option<String>,
     /// Their procedure.
     pub procedure: SheetProcedure,
-    /// What was left out, and what must be known.
+    /// Results that were left out, and remarks.
     pub notes: Vec<Note>,
 }
 

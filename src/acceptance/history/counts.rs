@@ -51,7 +51,7 @@ pub(super) fn yields(selection: &Selection<'_>) -> Vec<HistoryYield> {
     procedures.into_iter().filter_map(each).collect()
 }
 
-/// What kept products from passing, the most frequent first. Tests that were not done as required are among them.
+/// Reasons that kept products from passing, the most frequent first. Tests that were not done as required are among them.
 pub(super) fn reasons(selection: &Selection<'_>) -> Vec<HistoryReason> {
     let mut counts: BTreeMap<&Reason, usize> = BTreeMap::new();
     let results: Vec<Tested<'_>> =

@@ -1,4 +1,4 @@
-//! What a recording can support, each statement with its reason. Nothing is promised that the data cannot give.
+//! Tests that a recording can support, each statement with its reason. Nothing is promised that the data cannot give.
 
 use super::clock_check::{ClockRemark, clock_remark, earth, is_mains};
 use super::collect::{DrivenChannel, Gyro, Inspection, Temperature};

@@ -34,7 +34,7 @@ pub fn range(values: impl Iterator<Item = f64>) -> f64 {
 }
 
 impl Stretches<'_> {
-    /// What a channel shows; `rest` is its mean where the axis lies as the site states it.
+    /// Facts of a channel; `rest` is its mean where the axis lies as the site states it.
     pub fn fact(&self, reading: &Reading<'_>, channel: &str, rest: Option<&RestMean>) -> Option<GyroFact> {
         let (slot, _) = reading.gyros().find(|(_, c)| c.id == channel)?;
         let gyro = self.blocks.gyros.iter().position(|g| g == channel)?;

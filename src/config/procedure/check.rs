@@ -115,7 +115,7 @@ pub fn check_report(paths: &[&Path], lang: Lang, answer: Answer<'_>) -> CheckRep
     report
 }
 
-/// What is worth knowing of a sound file.
+/// Remarks on a sound file.
 fn warnings(checked: &Checked, procedures: &[&Loaded<Procedure>], answer: Answer<'_>) -> Vec<Problem> {
     match checked {
         Checked::Procedure(p) => p.warnings.iter().cloned().chain(pairs::of_procedure(p, answer)).collect(),
@@ -127,7 +127,7 @@ fn warnings(checked: &Checked, procedures: &[&Loaded<Procedure>], answer: Answer
     }
 }
 
-/// What a sound file is, in clauses.
+/// Description of a sound file, in clauses.
 fn sentences(checked: &Checked, procedures: &[&Loaded<Procedure>]) -> Vec<Note> {
     match checked {
         Checked::Procedure(p) => {

@@ -21,7 +21,7 @@ pub fn belonging<'a>(file: &LimitsFile, procedures: &[&'a Loaded<Procedure>]) ->
     procedures.iter().filter(measures).copied().collect()
 }
 
-/// What is worth knowing of a limits file with the procedures that it belongs to.
+/// Remarks on a limits file with the procedures that it belongs to.
 ///
 /// A limit that one of them uses is not reported for the others: a file may serve several tests.
 pub fn of_limits(
@@ -51,7 +51,7 @@ pub fn of_limits(
     found
 }
 
-/// What is worth knowing of the limits that stand in a procedure itself.
+/// Remarks on the limits that stand in a procedure itself.
 pub fn of_procedure(procedure: &Loaded<Procedure>, answer: Answer<'_>) -> Vec<Problem> {
     let effective = effective(procedure, None);
     let asked = questions(&procedure.value, &effective);

@@ -1,4 +1,4 @@
-//! What a procedure can decide, asked before there are data.
+//! Decisions that a procedure can make, asked before there are data.
 //!
 //! Each limit on noise becomes a question: with this record length and this typical noise, would a unit over the
 //! limit be failed, and one well inside be passed? The answer comes from the statistics of the estimators, which

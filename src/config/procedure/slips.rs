@@ -1,4 +1,4 @@
-//! What in limits and procedures is likely a slip of the pen, although it can be used.
+//! Likely slips of the pen in limits and procedures that can be used.
 
 use super::diagnostics::{Problem, SourceText, Span};
 use super::limit_set::{FastUnit, LimitSet, LimitSpec};

@@ -25,7 +25,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     super::tables::influence::validate(procedure, root, reader);
 }
 
-/// What is worth knowing about a procedure that can be used.
+/// Remarks on a procedure that can be used.
 pub(super) fn warnings(procedure: &Procedure, root: &Section, source: &SourceText) -> Vec<Problem> {
     let mut found = super::limits::warnings(&procedure.limits, source);
     found.extend(super::slips::against_channels(procedure, &procedure.limits, source));

@@ -52,7 +52,7 @@ pub struct EffectView {
     pub kind: String,
     /// True for a cause that has no name.
     pub unknown: bool,
-    /// What is said of it.
+    /// Sentences about it.
     pub sentences: Vec<String>,
     /// What happens in the instrument or around it.
     pub mechanism: String,

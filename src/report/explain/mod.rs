@@ -25,7 +25,7 @@ use serde::{Deserialize, Serialize};
 /// What `explain.json` holds.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExplainFile {
-    /// What was found.
+    /// The findings.
     #[serde(flatten)]
     pub explanation: Explanation,
     /// What its page shows besides.
@@ -86,7 +86,7 @@ pub struct ExplainView {
     pub alpha: String,
     /// Tests of the residual, the most significant first.
     pub tests: Vec<TestRow>,
-    /// What was tried.
+    /// The candidates tried.
     pub candidates: Vec<CandidateRow>,
     /// Columns of the recording.
     pub columns: Vec<ColumnRow>,

@@ -100,7 +100,7 @@ fn shape(finding: &Finding, words: Translator) -> Vec<String> {
     out
 }
 
-/// What remains when everything found has been added.
+/// The remainder when everything found has been added.
 fn rest(all: &Explanation, words: Translator) -> Vec<String> {
     if let Some(rest) = &all.rest {
         let shown: Vec<String> =

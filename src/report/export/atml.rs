@@ -20,7 +20,7 @@ use std::io;
 const RESULTS: &str = "urn:IEEE-1636.1:2013:TestResults";
 const COMMON: &str = "urn:IEEE-1671:2010:Common";
 
-/// What stands where the schema demands a text and the record has none.
+/// Text where the schema demands one and the record has none.
 const UNKNOWN: &str = "unknown";
 
 /// Names and texts are those of this language.
@@ -92,7 +92,7 @@ pub(super) fn observed(condition: &ConditionRecord, name: &str) -> Option<f64> {
 /// A number of a row that can be written, the ends of its interval and their coverage.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Figure {
-    /// What it is: `value`, `upper_limit` or `lower_limit`.
+    /// Its kind: `value`, `upper_limit` or `lower_limit`.
     pub of: &'static str,
     /// The number.
     pub value: f64,

@@ -1,4 +1,4 @@
-//! What a form of results is.
+//! A form of results.
 
 use crate::report::{Document, Renderer, ReportError};
 

@@ -24,11 +24,11 @@ const SHOWN: usize = 12;
 /// Everything that the page of a history shows.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct HistoryView {
-    /// What was asked for, in one line.
+    /// The question, in one line.
     pub title: String,
     /// How many results and units there are.
     pub size: String,
-    /// What was asked for.
+    /// The question.
     pub asked: Vec<Field>,
     /// What must be known of the whole.
     pub notes: Vec<String>,
@@ -70,7 +70,7 @@ pub struct YieldView {
 /// A reason, printed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ReasonView {
-    /// What it is of, in words.
+    /// Its subject, in words.
     pub kind: String,
     /// Its name.
     pub name: String,

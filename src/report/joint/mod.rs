@@ -179,7 +179,7 @@ fn in_recordings(s: &SharedEffect, all: &JointExplanation, words: Translator) ->
         )
 }
 
-/// What each recording says without the others, and beside what is shared.
+/// Findings of each recording without the others, and beside the shared ones.
 fn recordings(all: &JointExplanation, words: Translator) -> Table {
     let link =
         |r: &JointRecording| Value::Link { text: r.name.clone(), to: format!("{}/report.html", r.folder) };

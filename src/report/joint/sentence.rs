@@ -41,7 +41,7 @@ pub(super) fn summary(all: &JointExplanation, words: Translator) -> Vec<String> 
     out
 }
 
-/// What is said of one effect.
+/// Sentences about one effect.
 pub(super) fn shared(s: &SharedEffect, words: Translator) -> Vec<String> {
     let recordings = count(s.of.len() as u64, words.lang);
     let worth = words.with(

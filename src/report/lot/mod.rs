@@ -126,7 +126,7 @@ fn worst_first(units: &[LotUnit]) -> Vec<&LotUnit> {
     units
 }
 
-/// What every unit has: a row each.
+/// Columns that every unit has: a row each.
 fn table(units: &[&LotUnit], words: Translator) -> Table {
     let all = |of: fn(&LotUnit) -> String| units.iter().map(move |u| of(u)).collect::<Vec<_>>();
     let link =

@@ -141,7 +141,7 @@ fn summary(record: &ProofRecord, words: Translator) -> String {
     words.with(&format!("prove.summary.{outcome}"), &[("n", &rules), ("failed", &failed)])
 }
 
-/// What was hidden, what was said, and what is known from elsewhere.
+/// Hidden quantities, answers, and facts known from elsewhere.
 fn beside(record: &ProofRecord, said: &[Said], words: Translator) -> Vec<Block> {
     let is_hidden = !record.hidden.is_empty();
     let hint = if is_hidden { "prove.hint.hidden" } else { "prove.hint.nothing_hidden" };
@@ -175,7 +175,7 @@ struct Said {
 }
 
 impl Said {
-    /// What was said while something was concealed, and with it shown.
+    /// Answers while something was concealed, and with it shown.
     fn all(record: &ProofRecord, words: Translator) -> Vec<Said> {
         let said = |key: &str, explanation: &Explanation, before| {
             let context = Context { explained_at: record.proved_at.clone(), ..Context::default() };
@@ -250,7 +250,7 @@ fn hidden(hidden: &[Hidden], words: Translator) -> Table {
         .laid_out(Layout::List, Layout::Grid)
 }
 
-/// What is known from elsewhere, and what was found of it.
+/// Facts known from elsewhere, and the finding for each.
 fn references(all: &[KnownRecord], words: Translator) -> Table {
     let lang = words.lang;
     let unit = |r: &KnownRecord| r.unit.as_deref().map(|u| words.unit(u)).unwrap_or_default();

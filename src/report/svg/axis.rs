@@ -14,7 +14,7 @@ const HUGE: f64 = 1e300;
 pub struct Tick {
     /// Value, in the unit of the data.
     pub at: f64,
-    /// What is written, `None` for a minor mark.
+    /// Label, `None` for a minor mark.
     pub label: Option<String>,
 }
 

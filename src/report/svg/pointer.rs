@@ -100,7 +100,7 @@ fn scaled(axis: &Ruled) -> Scaled<'_> {
     }
 }
 
-/// What has a name in the legend, each once.
+/// Series with a name in the legend, each once.
 fn series(panel: &Panel, plot: &Plot<'_>, lang: Lang) -> Vec<Series> {
     let mut out: Vec<Series> = vec![];
     for layer in &panel.layers {

@@ -35,7 +35,7 @@ pub(super) struct Index {
     pub journal: Journal,
 }
 
-/// What is to be done with an index before it is used.
+/// Treatment of an index before it is used.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Age {
     /// Nothing.

@@ -41,7 +41,7 @@ pub struct Counted {
 pub struct Attempt {
     /// Address of its folder.
     pub address: String,
-    /// What the index has of it.
+    /// Its entry in the index.
     pub entry: Entry,
     /// Which test of the unit by the procedure it is, from 1: as many as there are up to it, or as it states where some are missing;
     /// 0 for a unit without a serial number.
@@ -65,7 +65,7 @@ pub struct Correction {
     pub stated_at: String,
 }
 
-/// What the index has of a statement: its hash, and its columns as text.
+/// A statement in the index: its hash, and its columns as text.
 pub(in super::super) type StatementRow = (String, Vec<String>);
 
 /// Columns of a result, in the order of [`result`].

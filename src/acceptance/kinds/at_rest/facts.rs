@@ -1,4 +1,4 @@
-//! What the conditions are judged by for gyros at rest.
+//! Facts that the conditions are judged by for gyros at rest.
 
 use super::{change_detection, warm_up_transient};
 use crate::acceptance::condition::{BiasStep, GyroFact, NoiseChange, WarmUpFact};

@@ -1,4 +1,4 @@
-//! What is left of a warm-up transient at the start of the evaluated window.
+//! Remainder of a warm-up transient at the start of the evaluated window.
 //!
 //! A decaying exponential is fitted to some fifty means over the record, for a range of time constants. Its
 //! uncertainty is taken under the noise that was identified, correlations included, so that a random walk is not taken

@@ -99,7 +99,7 @@ fn against_channels(
             let values: Vec<f64> =
                 list.iter().filter_map(|b| b.beside.get(at).copied()).filter(|v| v.is_finite()).collect();
             let recorded = values.iter().sum::<f64>() / values.len() as f64;
-            // What is not recorded in an interval agrees with nothing.
+            // A level that is not recorded in an interval agrees with nothing.
             let near = (recorded - stated).abs() <= LEVEL_TOLERANCE * largest;
             if !near {
                 let at_s = blocks.start_s(interval.blocks.0);

@@ -190,7 +190,7 @@ fn may_disturb(c: &Channel, test: &ComparisonTest) -> bool {
     role && c.role != test.influence.role()
 }
 
-/// What was recorded besides output and level. In the blocks the channels of the level come first.
+/// Channels recorded besides output and level. In the blocks the channels of the level come first.
 fn context(channels: &[Channel], test: &ComparisonTest, levels: usize) -> Beside {
     let nuisance = |c: &Channel| Nuisance {
         channel: c.id.clone(),

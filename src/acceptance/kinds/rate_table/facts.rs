@@ -1,4 +1,4 @@
-//! What the conditions of a rate table are judged by.
+//! Facts that the conditions of a rate table are judged by.
 
 use crate::acceptance::condition::table::{ChannelFact, Settling, TableFacts};
 use crate::acceptance::request::Request;
