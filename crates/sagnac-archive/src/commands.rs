@@ -155,7 +155,7 @@ pub struct WorkerArgs {
 /// Carries out a command and gives the exit code.
 ///
 /// # Errors
-/// What is wrong, and what to do.
+/// The problem, and what to do.
 pub fn execute(command: Command) -> Result<u8, String> {
     let mut runtime = tokio::runtime::Builder::new_multi_thread();
     let runtime = runtime.enable_all().thread_stack_size(STACK_BYTES).build().map_err(|e| e.to_string())?;

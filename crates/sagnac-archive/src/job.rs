@@ -30,7 +30,7 @@ pub struct Job {
     pub scheduler: Option<String>,
 }
 
-/// What is done with a recording.
+/// Treatment of a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Call {

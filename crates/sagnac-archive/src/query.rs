@@ -1,4 +1,4 @@
-//! What of a query is run for each recording.
+//! The part of a query that is run for each recording.
 //!
 //! `SELECT sagnac_run(uri, procedure, limits) FROM jobs WHERE ...` says two things: which rows of the job list are meant, and what
 //! is to be done with each. They are taken apart here, so that the rows can be compared with what is done already, cut

@@ -83,7 +83,7 @@ pub struct Report {
 ///
 /// # Errors
 /// A sentence: when the query is of another kind, a folder cannot be read or written, or the cluster does not answer.
-/// What is written by then stays, and the same command resumes.
+/// Results written by then stay, and the same command resumes.
 pub async fn run(order: &Order, progress: &ProgressBar) -> std::result::Result<Report, String> {
     let _lock = lock(&order.out)?;
     let sentence = |e: DataFusionError| e.strip_backtrace();

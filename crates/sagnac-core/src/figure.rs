@@ -50,9 +50,9 @@ pub enum Style {
     Unit(u8),
     /// A limit; points are upper ones.
     Limit,
-    /// What was measured while the temperature rose: red.
+    /// Measured while the temperature rose: red.
     Heating,
-    /// What was measured while it fell: blue.
+    /// Measured while it fell: blue.
     Cooling,
     /// A reference line or point, such as the Russian 100-s value.
     Reference,

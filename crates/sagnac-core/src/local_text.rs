@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// A text of a user, such as a title or a note, as a reader of each language sees it.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 pub struct LocalText {
-    /// What is shown where the language of the reader has no text of its own.
+    /// The text where the language of the reader has none of its own.
     text: String,
     /// Text by language code, such as `en` and `ru`; empty where one text serves every language.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]

@@ -45,7 +45,7 @@ impl From<Real> for f64 {
     }
 }
 
-/// What is made of numbers, with the form in which it is written.
+/// A type made of numbers, with the form in which it is written.
 pub(crate) trait Numbers: Sized {
     type Written: Serialize + DeserializeOwned;
     fn written(&self) -> Self::Written;

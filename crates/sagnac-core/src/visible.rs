@@ -5,7 +5,7 @@
 
 use std::borrow::Cow;
 
-/// What stands for a character that is not shown.
+/// Replacement of a character that is not shown.
 const SIGN: char = '·';
 
 /// True for a character that steers in place of being shown: controls, marks of direction, what has no width, separators

@@ -114,7 +114,7 @@ impl IngestError {
         self.0.text.as_deref()
     }
 
-    /// What is wrong, without place and hint.
+    /// The fault, without place and hint.
     pub fn message(&self) -> &Note {
         &self.0.message
     }

@@ -1,4 +1,4 @@
-//! What must be known before a recording is read: its columns, the units of its channels, its clock.
+//! Facts needed before a recording is read: its columns, the units of its channels, its clock.
 
 use super::pauses::Pauses;
 use super::{IngestError, IngestErrorKind, Source};

@@ -28,7 +28,7 @@ pub(super) struct TimeSpan {
     pub last_s: f64,
 }
 
-/// What goes along while a recording is read.
+/// State that goes along while a recording is read.
 pub(super) struct RowClock<'a> {
     pub plan: &'a Plan<'a>,
     pub tracker: Tracker,

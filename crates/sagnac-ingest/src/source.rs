@@ -67,7 +67,7 @@ pub(crate) enum NoNumbers {
     PassedOn,
 }
 
-/// What was read of one file of a recording of several.
+/// Rows read of one file of a recording of several.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PartFacts {
     /// Hash, size and rows.

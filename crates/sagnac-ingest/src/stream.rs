@@ -47,7 +47,7 @@ pub struct FileReport {
     pub duration_s: f64,
 }
 
-/// What is known of a recording that was streamed to its end: hash, faults, time base, channels.
+/// Facts about a recording that was streamed to its end: hash, faults, time base, channels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StreamReport {
     /// Hash, size and rows of the file.
@@ -119,7 +119,7 @@ impl Plan<'_> {
     }
 }
 
-/// What was looked for: a check that had nothing to look at, or too little, found nothing and says nothing.
+/// Checks that were made: one that had nothing to look at, or too little, found nothing and says nothing.
 fn examined(plan: &Plan<'_>, values: &[ValueFacts], rows: u64) -> Vec<String> {
     let gyros = plan.channels.iter().zip(values).filter(|(c, _)| c.role.is_gyro());
     let samples = gyros.map(|(_, v)| v.count).min().unwrap_or(0);
@@ -236,7 +236,7 @@ impl RowClock<'_> {
         notes
     }
 
-    /// What is known of each file.
+    /// Facts about each file.
     fn files(&self, facts: &FileFacts, parts: Vec<PartFacts>, measured: f64) -> Vec<FileReport> {
         let source = self.plan.source;
         let parts =

@@ -19,12 +19,12 @@ use typst_layout::PagedDocument;
 use typst_pdf::{PdfOptions, PdfStandard, PdfStandards, Timestamp};
 use world::InMemory;
 
-/// What is typeset.
+/// The text to typeset.
 #[derive(Debug, Clone)]
 pub struct Paper<'a> {
     /// Language of its text: `en` or `ru`.
     pub language: &'a str,
-    /// What the document is of, on the right of the head of every page. On the left stands its title: its first heading.
+    /// Subject of the document, on the right of the head of every page. On the left stands its title: its first heading.
     pub subject: &'a str,
     /// Left of the foot of every page.
     pub foot: &'a str,
@@ -50,7 +50,7 @@ pub enum Pages {
     /// All.
     #[default]
     All,
-    /// What stands before the end of the summary; all where none is stated.
+    /// Headings before the end of the summary; all where none is stated.
     Summary,
 }
 
@@ -74,15 +74,15 @@ pub struct Attachment<'a> {
     pub name: &'a str,
     /// Its contents.
     pub bytes: &'a [u8],
-    /// What kind of file it is, such as `application/json`.
+    /// Media type, such as `application/json`.
     pub media_type: &'a str,
-    /// What it is, in words.
+    /// Description in words.
     pub description: &'a str,
-    /// What it is to the document.
+    /// Its relation to the document.
     pub relation: Relation,
 }
 
-/// What an attached file is to the document.
+/// Relation of an attached file to the document.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Relation {
     /// The document was made from it.
@@ -126,7 +126,7 @@ pub fn typeset(paper: &Paper<'_>) -> Result<Vec<u8>, PdfError> {
         ..PdfOptions::default()
     };
     let bytes = typst_pdf::pdf(&document, &options).map_err(|errors| said(&errors));
-    // What was remembered of earlier documents helps none that come.
+    // The memory of earlier documents helps none that come.
     comemo::evict(1);
     bytes
 }

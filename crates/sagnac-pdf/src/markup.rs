@@ -61,7 +61,7 @@ const LONGEST_WORD: usize = 40;
 const PAGE_WIDTH: usize = 100;
 const SHORT: usize = 20;
 
-/// What is collected before it can be written.
+/// Text collected before it can be written.
 enum Nested {
     /// Text in bold.
     Strong(String),
@@ -196,7 +196,7 @@ impl Body<'_> {
 
     /// A word that is coloured, as markup.
     fn marked(&self, text: &str) -> Option<String> {
-        // What stands before a colon says of what the word is.
+        // The text before a colon says of what the word is.
         let (before, word) = match text.trim().rsplit_once(": ") {
             Some((before, word)) => (format!("#strong[{}] ", plain(&format!("{before}:"))), word),
             None => (String::new(), text.trim()),

@@ -214,7 +214,7 @@ fn analyze(
     })
 }
 
-/// What is known of a test besides its recording.
+/// Facts about a test besides its recording.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 struct Session {

@@ -17,7 +17,7 @@ pub struct ArrowValues {
     pieces: Vec<ArrayRef>,
     /// Row at which each piece begins, and the number of rows at the end.
     starts: Vec<usize>,
-    /// What is taken off integers before they become numbers, and what they are then multiplied by.
+    /// Offset taken off integers before they become numbers, and the factor they are then multiplied by.
     stamps: Option<(i64, f64)>,
 }
 

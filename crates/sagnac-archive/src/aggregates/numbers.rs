@@ -16,7 +16,7 @@ pub const WIDTH: usize = 3;
 /// The arguments of one row.
 pub type Row = [f64; WIDTH];
 
-/// What is made of the rows of a group.
+/// Results made of the rows of a group.
 pub trait Finish: Debug + Send + Sync + 'static {
     /// Its value, from the rows in ascending order.
     ///

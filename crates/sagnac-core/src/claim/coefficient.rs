@@ -25,7 +25,7 @@ pub fn prior_of_zero(deviation: f64, at_most: f64) -> f64 {
 }
 
 impl Coefficient {
-    /// What is known by a value, with its 95 % interval, low and high, if there is one.
+    /// A value, with its 95 % interval, low and high, if there is one.
     pub fn found(value: f64, interval: Option<(f64, f64)>) -> Coefficient {
         // The prior of the engine is that of the logarithm: the longer side of an interval of unequal sides counts.
         let relative = interval.map_or(0.0, |(low, high)| {
@@ -36,7 +36,7 @@ impl Coefficient {
         Coefficient { value, relative: if relative.is_finite() { relative } else { LARGEST }, at_most: 0.0 }
     }
 
-    /// What is known by an upper limit.
+    /// An upper limit.
     pub fn at_most(limit: f64) -> Coefficient {
         Coefficient { at_most: if limit.is_finite() { limit } else { 0.0 }, ..Coefficient::default() }
     }

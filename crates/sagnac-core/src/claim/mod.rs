@@ -108,7 +108,7 @@ pub struct Stated {
 pub struct ModelFile {
     /// The claim.
     pub claim: Claim,
-    /// What is made when the command line does not say.
+    /// The simulation where the command line does not say.
     pub simulation: SimulationPlan,
     /// Courses of columns.
     pub drivers: Vec<Profile>,

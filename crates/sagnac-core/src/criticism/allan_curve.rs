@@ -82,7 +82,7 @@ fn reading(
     let (seen, expected) = (curve.observed.get(line.clone())?, predicted.get(line)?);
     let (seen_line, expected_line) = (through(seen, term)?, through(expected, term)?);
     let ratio = seen_line.value / expected_line.value;
-    // What the prediction is known to counts as well.
+    // The uncertainty of the prediction counts as well.
     let level = |model: &Composite| {
         seen.iter().map(|p| model.allan_variance(p.tau_s, tau0_s).max(f64::MIN_POSITIVE).ln()).sum::<f64>()
             / (2.0 * seen.len() as f64)
@@ -143,7 +143,7 @@ fn findings(found: &Identification, octaves: &[BoundedPoint], tau0_s: f64, sampl
         };
         let read = match estimate.value {
             Some(_) => reading(&curve, described, term, &parts, coefficient, tau0_s),
-            // What is read of white noise beside a limit on it would have been claimed.
+            // White noise read beside a limit on it would have been claimed.
             None if white => None,
             None => unclaimed(&curve, described, term, tau0_s),
         };

@@ -44,7 +44,7 @@ pub struct Earth {
     pub uncertainty_deg_h: f64,
 }
 
-/// What one pass over a recording at rest left behind about a gyro channel, with what was identified from it.
+/// Evidence that one pass over a recording at rest gives about a gyro channel, with its identified noise.
 #[derive(Debug)]
 pub struct GyroEvidence {
     /// Channel id.

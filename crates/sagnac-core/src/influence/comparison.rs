@@ -52,7 +52,7 @@ pub struct Shift {
 pub struct Comparison {
     /// Channel.
     pub channel: String,
-    /// What was asked.
+    /// The test as the procedure states it.
     pub test: ComparisonTest,
     /// Axes.
     pub axes: Vec<String>,
@@ -91,7 +91,7 @@ pub struct NoiseChange {
     pub with: Option<(f64, f64)>,
 }
 
-/// What was recorded beside the output and the level.
+/// Channels recorded beside the output and the level.
 #[derive(Debug, Clone, Default)]
 pub struct Beside {
     /// Temperature of the unit.

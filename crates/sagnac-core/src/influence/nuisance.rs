@@ -22,7 +22,7 @@ pub struct Nuisance {
 /// How a quantity goes with the levels.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Following {
-    /// What it is.
+    /// Its kind.
     pub what: Nuisance,
     /// Change at every level against none, a steady drift taken out.
     pub shifts: Vec<f64>,

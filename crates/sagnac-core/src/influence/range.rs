@@ -36,7 +36,7 @@ pub struct PossibleMeans {
     pub dof: f64,
 }
 
-/// What is known of the range.
+/// The range as far as it is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Range {
     /// Median of the confidence distribution.

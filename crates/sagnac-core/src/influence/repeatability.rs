@@ -121,7 +121,7 @@ pub fn evaluate(blocks: &Blocks, runs: &Runs, gyro: usize, earth_deg_h: f64) -> 
     let span = temperatures.iter().fold(f64::NEG_INFINITY, |m, t| m.max(*t))
         - temperatures.iter().fold(f64::INFINITY, |m, t| m.min(*t));
     let known = count >= 4 && temperatures.iter().all(|t| t.is_finite()) && span > 1e-6;
-    // What goes with the order of the runs may be their temperature, and the reverse: each is stated beside the other.
+    // A change with the order of the runs may be one of their temperature, and the reverse: each is stated beside the other.
     let trend = match known {
         true => line(&[&order, &temperatures]),
         false if count >= 4 => line(&[&order]),

@@ -100,7 +100,7 @@ impl Changes {
         self.starts_s.iter().zip(&self.ends_s).map(|(from, to)| to - from)
     }
 
-    /// What a lag is behind the drive along one axis, by row. The level of the first interval had been there before.
+    /// Lag behind the drive along one axis, by row. The level of the first interval had been there before.
     fn behind(&self, axis: usize, cut: &Cut, time_constant_s: f64) -> DVector<f64> {
         let drive = &self.drives[axis];
         let mut behind = vec![0.0; drive.len()];

@@ -30,7 +30,7 @@ pub struct RepeatabilityTest {
     pub runs: Vec<Stated>,
 }
 
-/// What is changed on purpose.
+/// The influence that is changed on purpose.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Influence {
     /// Magnetic field, mT.
@@ -77,7 +77,7 @@ impl Influence {
         }
     }
 
-    /// What the bias is taken to be proportional to: the level itself, or its square for vibration, which is rectified.
+    /// The quantity that the bias is proportional to: the level itself, or its square for vibration, which is rectified.
     pub fn drive(self, level: f64) -> f64 {
         if self == Influence::Vibration { level * level } else { level }
     }
@@ -102,7 +102,7 @@ pub struct StatedLevel {
 /// A comparison without and with an influence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparisonTest {
-    /// What is changed.
+    /// The influence that is changed.
     pub influence: Influence,
     /// Level that counts as without.
     pub reference: f64,

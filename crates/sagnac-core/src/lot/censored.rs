@@ -16,7 +16,7 @@ pub struct Sample {
     pub bounds: Vec<f64>,
 }
 
-/// What the likelihood is largest for.
+/// Normal distribution of the largest likelihood.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Normal {
     /// Mean.

@@ -31,11 +31,11 @@ const ONE_BOUND: f64 = 1e-6;
 pub struct Unit {
     /// Number of its lot, from 0.
     pub lot: usize,
-    /// What is known of it.
+    /// The value or its bound.
     pub reading: Reading,
 }
 
-/// What is known of a unit.
+/// The value of a unit, or its bound.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Reading {
     /// A value with its standard uncertainty.
@@ -63,7 +63,7 @@ pub enum Side {
     Lower,
 }
 
-/// What a bound is for.
+/// Target of a bound.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Of {
     /// The true value of a unit.

@@ -96,12 +96,12 @@ impl Core {
         values.column_iter_mut().for_each(|mut column| column -= &mean);
         let covariance = &values * values.transpose() / (chosen.len() as f64 - 1.0);
         let deviations = covariance.diagonal().map(f64::sqrt);
-        // What is the same in all differs by its rounding.
+        // A quantity that is the same in all differs by its rounding.
         if deviations.iter().zip(mean.iter()).any(|(deviation, mean)| *deviation <= ROUNDING * mean.abs()) {
             return None;
         }
         let root = covariance.cholesky()?.unpack();
-        // What each quantity has of its own beside those before it.
+        // The part of each quantity that those before it do not have.
         let own = root.diagonal().zip_map(&deviations, |own, all| (own / all).powi(2));
         own.iter().all(|share| *share >= OWN).then_some(Core { mean, deviations, root })
     }

@@ -117,7 +117,7 @@ fn noise(m: &Measurand, z: &DeadZone) -> Estimate {
     }
 }
 
-/// What a zone that is not shown is at most, and what would show less.
+/// Upper limit of a zone that is not shown, and the test that would show less.
 fn bounded(m: &Measurand, z: &DeadZone, value: f64) -> Estimate {
     let found = at_most(m, z, Some(value));
     match z.between {
@@ -134,7 +134,7 @@ fn at_most(m: &Measurand, z: &DeadZone, value: Option<f64>) -> Estimate {
     m.not_identifiable(&z.channel, value.map(|value| UpperLimit { value, coverage: 0.95 }), METHOD)
 }
 
-/// What a zone that is shown has.
+/// Estimates of a zone that is shown.
 fn of_zone(m: &Measurand, z: &DeadZone, value: f64, curve: &[(f64, f64)]) -> Estimate {
     let key = match z.shape.kind {
         Kind::Subtractive => "dead_zone.subtractive",

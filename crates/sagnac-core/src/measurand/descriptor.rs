@@ -1,4 +1,4 @@
-//! What a measured quantity is: its id and unit, the test that gives it, what it needs, and how it is evaluated.
+//! A measured quantity: its id and unit, the test that gives it, its needs, and its evaluation.
 
 use super::evidence::{ComparisonEvidence, GyroEvidence, KnownInputEvidence, TableEvidence};
 use crate::criticism;
@@ -71,15 +71,15 @@ pub enum Evaluation {
 /// How steps of a rate table show a measurand.
 #[derive(Clone, Copy)]
 pub struct OfSteps {
-    /// What the table has to do.
+    /// Motion of the table that is needed.
     pub stimulus: Stimulus,
-    /// What the model of the response has to hold beside the rate.
+    /// Terms that the model of the response has to hold beside the rate.
     pub extras: &'static [Extra],
     /// The evaluation.
     pub evaluate: fn(&Measurand, &TableEvidence<'_>) -> Vec<Estimate>,
 }
 
-/// What a rate table has to do to show a measurand.
+/// Motion of a rate table that is needed to show a measurand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stimulus {
     /// Rates about the input axis.
@@ -112,7 +112,7 @@ pub enum TurnAxis {
     Other,
 }
 
-/// What decides whether a record is long enough to judge a limit on a measurand.
+/// The quantity that decides whether a record is long enough to judge a limit on a measurand.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PowerModel {
     /// The information on a coefficient of the noise model.
@@ -133,7 +133,7 @@ pub struct Measurand {
     pub id: &'static str,
     /// Unit in results; limits and references are converted to it. Empty: as recorded.
     pub unit: &'static str,
-    /// What it is, in one line.
+    /// Definition in one line.
     pub doc: &'static str,
     /// Other names that people write for it, in lower case, so that the id can be offered; no file may use them.
     pub other_names: &'static [&'static str],

@@ -74,7 +74,7 @@ fn shift(m: &Measurand, compared: &ComparisonEvidence<'_>) -> Vec<Estimate> {
     rows.collect()
 }
 
-/// What a difference of temperature may do to the bias is at most this: the standard uncertainty of a uniform law.
+/// Largest effect of a difference of temperature on the bias: the standard uncertainty of a uniform law.
 fn of_temperature(found: &Comparison, degrees: Option<&f64>) -> f64 {
     let coefficient = found.test.temperature_coefficient.unwrap_or(0.0);
     coefficient * degrees.map_or(0.0, |d| d.abs()) / 3f64.sqrt()
@@ -112,7 +112,7 @@ fn remarks(found: &Comparison) -> Vec<Note> {
     notes
 }
 
-/// What the values are of, where the bias followed the level late and had settled.
+/// Note on the samples that the values are of, where the bias followed the level late and had settled.
 fn late(found: &Comparison) -> Option<Note> {
     let response = found.response.as_ref().filter(|r| !r.goes_on())?;
     Some(note!("compared.responded", time_constant = Arg::figures(response.time_constant_s, 2)))

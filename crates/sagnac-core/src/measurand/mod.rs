@@ -139,7 +139,7 @@ pub fn with_word(word: &str) -> Vec<&'static Measurand> {
     MEASURANDS.iter().copied().filter(|m| m.id.split('_').any(|part| part == plain)).collect()
 }
 
-/// What the model of the response to a rate table has to hold beside the rate, for the measurands that are wanted.
+/// Terms that the model of the response to a rate table has to hold beside the rate, for the measurands that are wanted.
 pub fn table_extras(wanted: &dyn Fn(&Measurand) -> bool) -> Vec<Extra> {
     let steps = MEASURANDS.iter().filter(|m| wanted(m)).filter_map(|m| m.by_steps());
     steps.flat_map(|s| s.extras).copied().collect()

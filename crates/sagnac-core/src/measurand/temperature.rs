@@ -173,7 +173,7 @@ struct Row<'a> {
 }
 
 impl Row<'_> {
-    /// What `of` gives of the model, or why there is none.
+    /// The result of `of` for the model, or the reason why there is none.
     fn of(&self, found: &Findings, of: fn(&Self, &Analysis) -> Estimate) -> Vec<Estimate> {
         vec![match &found.analysis {
             Some(analysis) => of(self, analysis),
@@ -423,7 +423,7 @@ fn gap(draw: &Draw, c: &DVector<f64>, x: f64, a: &Analysis) -> f64 {
 /// What a record says of its lag.
 struct Lag {
     reading: Reading,
-    /// What it is at most with 95 %, s.
+    /// Upper limit with 95 %, s.
     upper_s: f64,
     /// Longest lag that was looked at, s.
     longest_s: f64,

@@ -201,7 +201,7 @@ fn causes(
         rest = Some(Rest { p_value: small.p_value, share: share(small), places: small.places.clone() });
     } else if let Some(mut unknown) = departs {
         unnamed::absorb(&mut unknown, &mut out);
-        // What repeats without being a sinusoid has lines for its parts: they are no causes beside it.
+        // A cycle that is no sinusoid has lines for its parts: they are no causes beside it.
         if after.iter().any(|d| d.is_periodic() && d.below(unnamed::DEPARTURE_PROBABILITY, after.len())) {
             out.retain(|f| find(&f.kind).and_then(|e| e.family()) != Some(Family::Line));
         }
@@ -295,7 +295,7 @@ fn named(chosen: &Chosen, best: &FittedHypothesis, problem: &Problem, options: &
         let whole = best.fit.log_likelihood - chosen.without.fit.log_likelihood;
         let of_whole = estimated.reported.remove("rms_deg_h").filter(|_| law.gain >= DOMINANT_SHARE * whole);
         (estimated.reported, places) = by_law(law, chosen, problem);
-        // What one of several laws adds by itself is not told by the response, which is all of them.
+        // The share of one of several laws is not told by the response, which is all of them.
         estimated.reported.remove("rms_deg_h");
         estimated.reported.extend(of_whole.map(|rms| ("rms_deg_h".to_owned(), rms)));
     }

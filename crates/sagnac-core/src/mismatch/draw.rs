@@ -38,7 +38,7 @@ pub fn all(problem: &Problem, drawn: &FigureData<'_>) -> Vec<Figure> {
         let mean = left.iter().sum::<f64>() / left.len().max(1) as f64;
         left.iter().map(|l| l - mean).collect()
     });
-    // What is drawn over the residual has its mean taken out as that has.
+    // A draw over the residual has its mean taken out as the residual has.
     let contribution: Option<Vec<f64>> = drawn.correction.map(|c| {
         let mean = c.iter().sum::<f64>() / c.len().max(1) as f64;
         c.iter().map(|v| v - mean).collect()

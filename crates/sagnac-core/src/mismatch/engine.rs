@@ -52,7 +52,7 @@ pub fn explain(
     // What the table does at low frequencies looks like a filter of the noise while no course says so.
     let mut moved = with_table_courses(&base, &problem.spectra, options);
     for _ in 0..MAX_ROUNDS {
-        // What is drawn for them follows the course as it was found with them, so it is found again.
+        // The draws for them follow the course as it was found with them, so it is found again.
         let bent = problem.without_bends(&moved);
         if !problem.reimpute_until_stable(&moved) && !bent {
             break;

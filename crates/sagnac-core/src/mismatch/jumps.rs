@@ -228,7 +228,7 @@ fn take(
     found.gained_in_fit += base.fit.log_likelihood - start.fit.log_likelihood;
     found.named.push(named);
     found.take(jumps.course);
-    // What was tried on the claim alone is what the jumps stood against.
+    // The first trials, on the claim alone, are those that the jumps were set against.
     let first = std::mem::take(&mut selection.first);
     *selection = Selection { first, ..select::select(&base, problem, options) };
 }

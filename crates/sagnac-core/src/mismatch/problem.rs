@@ -80,7 +80,7 @@ impl Problem {
             aside.into_iter().for_each(|i| usable[i] = false);
         }
         let rows = usable.iter().filter(|u| **u).count();
-        // What follows the sensed rate follows the bias that the gyro has, of which the claim knows only so much.
+        // A response to the sensed rate follows the bias that the gyro has, of which the claim knows only so much.
         let seen = residual.iter().zip(&usable).filter(|(_, u)| **u).map(|(r, _)| r);
         drivers.claim.bias_deg_h = seen.sum::<f64>() / rows.max(1) as f64;
         let drivers = Arc::new(drivers);

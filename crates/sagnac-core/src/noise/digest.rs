@@ -167,7 +167,7 @@ impl RateAccumulator {
         }
     }
 
-    /// What this digest has chosen so far, for the parts that follow.
+    /// Choices of this digest so far, for the parts that follow.
     pub fn settings(&self) -> PartSettings {
         PartSettings {
             segment_len: self.welch.segment_len(),

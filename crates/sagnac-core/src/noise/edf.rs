@@ -9,7 +9,7 @@ use super::data::{DeviationPoint, NoiseType};
 use super::family::Estimator;
 use super::stretches::StretchLengths;
 
-/// What the phase between samples is taken for.
+/// Assumption about the phase between samples.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum PhaseModel {
     /// The exact integral of the rate: gyro data.

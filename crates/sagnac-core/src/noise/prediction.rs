@@ -200,7 +200,7 @@ pub fn covariance_of(
     0.25 * (square(1.0) - square(-1.0)) * size_a * size_b
 }
 
-/// What a term that was not shown would add to E\[s²\] at its upper limit, (deg/h)².
+/// Addition of a term that was not shown to E\[s²\] at its upper limit, (deg/h)².
 pub fn unseen_variance(term: NoiseType, limit: f64, window_s: f64, windows: u64) -> f64 {
     limit * limit * super::russian::unit_expected_variance(term, window_s, windows).unwrap_or(0.0)
 }

@@ -41,12 +41,12 @@ pub(crate) struct PhaseShift {
 }
 
 impl PhaseShift {
-    /// What a phase is moved by.
+    /// Offset of a phase.
     pub(crate) fn at(self, number: u64) -> f64 {
         self.offset + self.slope * (number - self.origin) as f64
     }
 
-    /// What the sum of `count` phases from number `from` on is moved by.
+    /// Offset of the sum of `count` phases from number `from` on.
     fn of_sum(self, from: u64, count: u64) -> f64 {
         let n = count as f64;
         n * self.at(from) + self.slope * 0.5 * n * (n - 1.0)

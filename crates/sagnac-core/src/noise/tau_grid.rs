@@ -27,7 +27,7 @@ const LARGEST_FACTOR: u64 = 1 << 48;
 /// Relative tolerance within which an averaging time must be a multiple of the sample interval.
 const MULTIPLE_TOLERANCE: f64 = 1e-6;
 
-/// What is wrong with a choice of averaging times.
+/// Mistake in a choice of averaging times.
 #[derive(Debug, Clone, PartialEq)]
 pub enum TauGridError {
     /// The text is neither a known word nor a list of numbers.
@@ -49,7 +49,7 @@ pub enum TauGridError {
 }
 
 impl TauGridError {
-    /// What is wrong, as a note.
+    /// The mistake as a note.
     pub fn note(&self) -> Note {
         match self {
             TauGridError::Unreadable { text } => note!("tau_grid.unreadable", text = text.as_str()),

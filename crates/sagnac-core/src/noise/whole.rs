@@ -60,7 +60,7 @@ impl Whole {
         Whole { half_range: 0.5 * (digest.max - digest.min), variances, windows, tau0_s }
     }
 
-    /// What a part has at its least against what the record has at most; `None` where it fits.
+    /// Least value of a part against the largest of the record; `None` where it fits.
     fn excess(&self, part: &Composite, size: f64, least: f64) -> Option<(f64, f64)> {
         let share = if size > 0.0 { (least / size).powi(2) } else { 0.0 };
         let beyond =

@@ -52,7 +52,7 @@ pub struct WindowMeans {
     filled: u64,
     /// Samples of the open window that are in `sum`.
     summed: u64,
-    /// What a part adds to the window that was open before it.
+    /// Addition of a part to the window that was open before it.
     lead: Option<Lead>,
     /// Whether the open window was open before the part.
     leading: bool,

@@ -27,7 +27,7 @@ pub(super) struct Evaluated {
     pub causes: Vec<Vec<Answer>>,
 }
 
-/// What a record tells if one explanation is true.
+/// Decision that a record allows if one explanation is true.
 #[derive(Clone)]
 pub(super) struct Answer {
     pub found: Decision,

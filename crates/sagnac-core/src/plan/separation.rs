@@ -39,7 +39,7 @@ pub(super) struct Shown {
     dof: f64,
 }
 
-/// What an alternative is in a later record: the stated effect, another one, or nothing.
+/// An alternative in a later record: the stated effect, another one, or nothing.
 pub(super) fn later(alternative: &Stated, claim: &Claim) -> Option<Stated> {
     match alternative.effect.later(&alternative.values, &claim.mean) {
         Later::Same => Some(alternative.clone()),
@@ -229,7 +229,7 @@ pub(super) fn told_apart(truth: &Shown, rival: &Shown, trial: &Trial, asked: f64
         return Decision::certain(0.0);
     }
     let squared = squared_distance(truth, rival, trial);
-    // What the rival gains by chance is its degrees of freedom in the mean.
+    // The gain of the rival by chance is its degrees of freedom in the mean.
     let by_chance = if rival.effect.is_some() { rival.dof } else { 0.0 };
     let decided = Decision::by_gain(squared, MIN_DELTA_BIC - price + by_chance, truth.dof, asked);
     if truth.is_process() && rival.is_process() && decided.probability >= MIN_DECIDABLE_PROBABILITY {

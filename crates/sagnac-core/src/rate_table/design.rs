@@ -25,7 +25,7 @@ pub enum Extra {
 /// A kind of noise: its name, and the covariance of the rows that it makes at a strength of one.
 type Kind = (&'static str, DMatrix<f64>);
 
-/// What the fit of a channel is made from.
+/// Rows of the fit of a channel.
 pub struct Design {
     /// Step of each row.
     pub step: Vec<usize>,

@@ -22,7 +22,7 @@ const DRAWS: usize = 2000;
 /// Normal scores at which the confidence distribution is tabled.
 const SCORES: std::ops::RangeInclusive<i32> = -12..=12;
 
-/// What is known of the largest magnitude.
+/// The largest magnitude as far as it is known.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Largest {
     /// Position of the largest observed.

@@ -64,7 +64,7 @@ impl Rows {
         self.centred(|d, a, b| -0.5 / 3600.0 * second_difference(&integral, d, a, b))
     }
 
-    /// What is common to rows of one group, and independent between groups.
+    /// Matrix with 1 between rows of one group, whose part is common, and 0 between groups.
     pub fn shared(&self, group: &[usize]) -> DMatrix<f64> {
         DMatrix::from_fn(self.len(), self.len(), |i, j| if group[i] == group[j] { 1.0 } else { 0.0 })
     }

@@ -1,4 +1,4 @@
-//! What a procedure states of a test on a rate table: how it is evaluated, and inputs that are known without a table.
+//! Statements of a procedure about a test on a rate table: its evaluation, and inputs that are known without a table.
 
 /// How a test on a table is evaluated. Uncertainties are standard uncertainties (k = 1).
 #[derive(Debug, Clone, PartialEq)]

@@ -136,7 +136,7 @@ pub fn fit(steps: &Steps, channel: usize) -> Option<Sine> {
         length_s: rows.iter().map(|(_, p)| p.length_s).collect(),
         step: rows.iter().map(|(s, _)| *s).collect(),
     };
-    // What repeats at a rate (an error of the table's gear, a response that is no pure sine) is common to its steps.
+    // An error that repeats at a rate (of the table's gear, of a response that is no pure sine) is common to its steps.
     let level: Vec<usize> = rows.iter().map(|(s, _)| steps.list[*s].level).collect();
     let components = [grid.white(), grid.flicker(), grid.shared(&level)];
     let fixed = DMatrix::identity(n, n) * (1e-9 * data.y.variance());

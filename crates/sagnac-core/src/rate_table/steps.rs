@@ -333,7 +333,7 @@ fn number_levels(steps: &mut Steps, largest: f64) {
         }
         steps.list[i].level = levels.len() - 1;
     }
-    // What the levels really were is shown by the angle.
+    // The true levels are shown by the angle.
     steps.levels = (0..levels.len())
         .map(|l| {
             let of: Vec<f64> = steps.list.iter().filter(|s| s.level == l).map(|s| s.rate).collect();

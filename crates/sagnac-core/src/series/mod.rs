@@ -23,7 +23,7 @@ pub struct Series {
     /// Position of each row on the uniform grid of the recording, 0 for the first; where samples are missing,
     /// positions are skipped.
     pub index: Vec<u64>,
-    /// What was left out or mended.
+    /// Rows left out or mended.
     pub faults: Faults,
     /// Which column of the file each quantity was read from.
     pub read_from: Vec<ReadFrom>,
@@ -72,7 +72,7 @@ impl Series {
         }
     }
 
-    /// What must be known of the recording: what was found about it, and the rows that were left out or mended.
+    /// Remarks on the recording: findings about it, and the rows that were left out or mended.
     pub fn remarks(&self) -> Vec<Note> {
         let mut out = self.notes.clone();
         let faults = &self.faults;

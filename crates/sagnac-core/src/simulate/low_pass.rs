@@ -6,7 +6,7 @@ use crate::effect::LowPass;
 /// A filter at work.
 pub(super) struct Filtering {
     filter: LowPass,
-    /// What makes the recursion's response the one that is wanted.
+    /// Taps that correct the response of the recursion to the wanted one.
     taps: Option<[f64; SIDE + 1]>,
     /// The last two samples that came in, and that went out, the latest first.
     before: Option<([f64; 2], [f64; 2])>,

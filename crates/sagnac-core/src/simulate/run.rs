@@ -39,7 +39,7 @@ pub enum Over<'a> {
     Like(&'a Series),
 }
 
-/// What is to be simulated.
+/// The order of a simulation.
 #[derive(Clone, Copy)]
 pub struct Order<'a> {
     /// The claim.

@@ -80,7 +80,7 @@ pub struct Analysis {
 /// Everything found about one channel over temperature.
 #[derive(Debug, Clone)]
 pub struct Findings {
-    /// What was asked.
+    /// The test as the procedure states it.
     pub test: TemperatureTest,
     /// The schedule; `None` without a temperature.
     pub schedule: Option<Schedule>,

@@ -5,7 +5,7 @@ use super::test::{SegmentKind, TemperatureTest};
 /// A segment with what was measured in it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Segment {
-    /// What it is.
+    /// Its kind.
     pub kind: SegmentKind,
     /// Start, s from the start of the recording.
     pub from_s: f64,
@@ -79,7 +79,7 @@ fn boundaries(steps: &Steps<'_>, threshold_deg_c_h: f64) -> Vec<(SegmentKind, f6
     }
     let (low, high) = steps.values.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
     let way = |run: &(i8, usize, usize)| (steps.values[run.2 - 1] - steps.values[run.1]).abs();
-    // What is too short or covers too little is no segment of its own.
+    // A stretch that is too short or covers too little is no segment of its own.
     loop {
         let least = |run: &(i8, usize, usize)| {
             let short = run.2 - run.1 < 2 * reach;

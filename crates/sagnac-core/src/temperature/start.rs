@@ -15,7 +15,7 @@ const FIRST_S: f64 = 30.0;
 /// Lengths of the recording beyond which its first stamp is that of a clock with a zero of its own.
 const MAX_START_RATIO: f64 = 10.0;
 
-/// What is known of the start.
+/// The start as far as it is known.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Start {
     /// The recording shows it, so many seconds after its first sample.

@@ -46,7 +46,7 @@ pub struct TemperatureTest {
 /// A segment stated in a procedure.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct StatedSegment {
-    /// What it is.
+    /// Its kind.
     pub kind: SegmentKind,
     /// Start, s from the beginning of the recording.
     pub from_s: f64,
@@ -54,7 +54,7 @@ pub struct StatedSegment {
     pub to_s: f64,
 }
 
-/// What a segment of a schedule is.
+/// Kind of a segment of a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SegmentKind {
     /// Constant temperature before the first ramp.
@@ -95,11 +95,11 @@ pub struct WarmUpTest {
     pub band_deg_h: f64,
     /// Share of the record at its end that gives the final value.
     pub final_share: f64,
-    /// What says when the unit was switched on.
+    /// Source of the moment of switching on.
     pub start: StartAsked,
 }
 
-/// What says when a unit was switched on.
+/// Source of the moment at which a unit was switched on.
 #[derive(Debug, Clone, PartialEq)]
 pub enum StartAsked {
     /// Nothing.

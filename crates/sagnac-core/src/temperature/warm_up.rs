@@ -37,9 +37,9 @@ const SWEEPS: usize = 500;
 /// The warm-up time of a record, with the transient behind it.
 #[derive(Debug, Clone)]
 pub struct WarmUpFindings {
-    /// What was asked.
+    /// The test as the procedure states it.
     pub test: WarmUpTest,
-    /// What is known of the start, which times count from.
+    /// The start, which times count from, as far as it is known.
     pub start: Start,
     /// Time until the transient stays within the band, s.
     pub time: Reading,
@@ -59,7 +59,7 @@ pub struct WarmUpFindings {
     pub final_deg_h: f64,
     /// True when the end of the record is not long enough after the transient to show a final value.
     pub too_short: bool,
-    /// What the transient has still to go at the end of the record.
+    /// Remainder of the transient at the end of the record.
     pub settled: Settled,
     /// The bias out of its band again after the transient, by running means.
     pub departure: Option<Departure>,
@@ -225,7 +225,7 @@ fn best(
 pub struct Settled {
     /// Distance from where the decays lead, at the end of the record, deg/h.
     pub remaining: Reading,
-    /// What it is at most with 95 %, deg/h.
+    /// Upper limit with 95 %, deg/h.
     pub at_most_deg_h: f64,
     /// The bias comes into the band for good not before this time with 95 %, s; never beyond the record.
     pub at_least_s: f64,

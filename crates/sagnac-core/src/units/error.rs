@@ -17,7 +17,7 @@ pub enum UnitError {
     Grammar {
         /// The whole text.
         text: String,
-        /// What was wrong with it: a key of the locale tables.
+        /// The mistake: a key of the locale tables.
         reason: &'static str,
     },
     /// Two units measure different things.
@@ -28,13 +28,13 @@ pub enum UnitError {
         to: String,
         /// What the given unit measures, in words.
         from_dimension: Box<Arg>,
-        /// What is needed, in words.
+        /// The expected unit, in words.
         to_dimension: Box<Arg>,
     },
 }
 
 impl UnitError {
-    /// What is wrong, as a note.
+    /// The error as a note.
     pub fn note(&self) -> Note {
         match self {
             UnitError::Unknown { symbol, suggestion: None } => {

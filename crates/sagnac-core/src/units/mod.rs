@@ -34,7 +34,7 @@ use symbols::{CELSIUS, FAHRENHEIT};
 pub struct Affine {
     /// Factor.
     pub factor: f64,
-    /// What is added after, in the new unit.
+    /// Offset added after, in the new unit.
     pub offset: f64,
 }
 

@@ -53,7 +53,7 @@ pub(crate) fn belongs(array: &Array, rows: u64, part: Option<&str>, arrays: &[Ar
     array.rows == rows && (!alone || part == Some(array.name.as_str()))
 }
 
-/// What is said of arrays that are left out; `left` holds the reason of each.
+/// Remarks on arrays that are left out; `left` holds the reason of each.
 pub(crate) fn notes(left: Vec<Note>) -> Vec<Note> {
     let more = left.len().saturating_sub(NAMED);
     let mut notes: Vec<Note> = left.into_iter().take(NAMED).collect();

@@ -41,7 +41,7 @@ pub(crate) enum Coding {
 /// A stream of bytes in a file.
 #[derive(Debug, Clone)]
 pub(crate) struct Stream {
-    /// What it is called in diagnostics.
+    /// Its name in diagnostics.
     pub name: String,
     /// First byte in the file.
     pub from: u64,

@@ -50,7 +50,7 @@ const MISSING: f64 = 0.4;
 /// Anchors kept. Longer recordings are not read as batches.
 const MAX_BATCHES: usize = 1 << 20;
 
-/// What is compared with the uniform clock.
+/// The stamps that are compared with the uniform clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Anchor {
     /// Number of the row.
@@ -279,7 +279,7 @@ fn lifts(anchors: &[Anchor], interval_s: f64, early: bool, reach: usize) -> Opti
     let (mut at, mut changes, mut fell, mut taken) = (vec![0.0; n], Vec::new(), 0, 0.0);
     for j in 1..n {
         let (from, to) = (j.saturating_sub(reach), (j + reach).min(n));
-        // What was lost before is taken from the anchors behind, which are not changed.
+        // Samples lost before are taken from the anchors behind, which are not changed.
         let (before, after) = (off.get(from..j)?, off.get(j..to)?);
         let step = edge(after) - taken - edge(before);
         let full = from + reach == j && j + reach == to;
@@ -341,7 +341,7 @@ fn median(mut values: Vec<f64>) -> Option<f64> {
     Some(*values.select_nth_unstable_by(middle, f64::total_cmp).1)
 }
 
-/// What the stamps of a recording are like beside a uniform clock.
+/// Stamps of a recording beside a uniform clock.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Course {
     /// The mean interval, from stretches that are unbroken.

@@ -175,7 +175,7 @@ impl Fit {
         self.done = merged;
     }
 
-    /// What was found; `None` with fewer than two stamps in every stretch.
+    /// The fitted clock; `None` with fewer than two stamps in every stretch.
     pub fn measured(&self) -> Option<Measured> {
         let mut all = self.done.clone();
         if self.current.n > 0.0 {

@@ -24,9 +24,9 @@ pub struct Rollover {
 /// Undoes roll-overs as values go by.
 #[derive(Debug, Clone)]
 pub struct Unwrapper {
-    /// What was declared: every fall by more than half of it is a roll-over.
+    /// The declared period: every fall by more than half of it is a roll-over.
     declared: Option<f64>,
-    /// What else is looked for.
+    /// Other periods that are looked for.
     periods: Vec<f64>,
     /// Longest step across a roll-over that was not declared.
     step_limit: f64,

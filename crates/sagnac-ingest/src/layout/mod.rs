@@ -23,7 +23,7 @@ pub const MAX_COLUMNS: usize = 4096;
 pub struct LayoutFile {
     /// The file.
     pub path: PathBuf,
-    /// What it says; `None` until it is read.
+    /// Its contents; `None` until it is read.
     pub layout: Option<Arc<Layout>>,
 }
 

@@ -1,4 +1,4 @@
-//! What no sensor of a role can show: values and steps beyond physical bounds are faults of the recording.
+//! Values and steps that no sensor of a role can show: those beyond physical bounds are faults of the recording.
 
 use crate::faults::FaultLog;
 use sagnac_core::message::{Arg, Note, note};
@@ -118,7 +118,7 @@ impl Plausible {
                 let step = w.latest.map_or(0.0, |l| (value - l).abs());
                 let most = change.map(|c| c.at_once + c.hourly * interval_s / 3600.0);
                 let out = value < low || value > high;
-                // What is none is no start of a change: the way back from it is not counted again.
+                // A step that is none starts no change: the way back from it is not counted again.
                 if !out {
                     w.latest = Some(value);
                 }

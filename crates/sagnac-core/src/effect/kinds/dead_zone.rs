@@ -101,7 +101,7 @@ impl MeanModel for DeadZone {
     }
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
-        // What holds at nearly every rate is no zone around zero.
+        // A reading that holds at nearly every rate is no zone around zero.
         let around_zero = |high: f64, low: f64| (MAX_HALF_WIDTH_SHARE * high).max(low);
         sizes(drivers).map_or(vec![Bounds::new(1e-9, 1e-9), Bounds::new(0.0, 1.0)], |(low, high, _)| {
             vec![Bounds::new(low, around_zero(high, low)), Bounds::new(0.0, 1.0)]

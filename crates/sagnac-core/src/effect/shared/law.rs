@@ -385,7 +385,7 @@ pub(in crate::effect) fn search(drivers: &Drivers, context: &SearchContext<'_>) 
         if !found.terms.iter().any(|i| search.terms[*i].second.is_some()) {
             return None;
         }
-        // What is chance as a whole is not looked at column by column.
+        // A whole that is chance is not examined column by column.
         if barred.is_empty() && search.is_chance(&found) {
             return None;
         }

@@ -77,7 +77,7 @@ impl White {
         let mut modes = tried.residual(spectra);
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(UNSEEN_SEED);
         for (k, (x, root)) in modes.iter_mut().zip(&roots).enumerate() {
-            // What is left out of the fit is no departure either: a draw stands for it.
+            // A sample left out of the fit is no departure either: a draw stands for it.
             *x = if k == 0 || root.is_finite() { *x / root } else { StandardNormal.sample(&mut rng) };
         }
         let series = inverse_dct2(&modes);

@@ -111,7 +111,7 @@ impl Looks {
     /// ln of the least probability over a part, and how many numbers were looked at.
     fn judge(&self, from: usize, to: usize) -> (f64, f64) {
         let windows = to - from;
-        // What is no more than usual is not worked out.
+        // A usual number is not worked out.
         let large = |seen: f64, mean: f64, variance: f64| seen > mean + MAX_USUAL_SIGMAS * variance.sqrt();
         let (sum, many) = (self.scores[to] - self.scores[from], windows as f64);
         let by_sum = if large(sum, 0.5 * many, 1.25 * many) { ln_tail(sum, windows) } else { 0.0 };

@@ -118,7 +118,7 @@ fn propagate(
     for i in 0..p {
         let deviation = covariance[(i, i)].max(0.0).sqrt();
         if deviation == 0.0 {
-            // What is known is not moved: a whole number less a little is another one.
+            // A known parameter is not moved: a whole number less a little is another one.
             slopes.push(vec![0.0; count]);
             continue;
         }

@@ -88,7 +88,7 @@ impl Law {
         let params = self.effect.params().iter().filter(|p| Some(p.name) != fitted && !p.whole);
         let at = |p: &'static Param| number(&self.values, p.name).filter(|v| *v != 0.0).map(|v| (p, v));
         let lists = self.effect.list_params().iter().any(|p| !list(&self.values, p.name).is_empty());
-        // What a list describes has its scale in the list.
+        // A listed parameter has its scale in the list.
         if lists { vec![] } else { params.filter_map(at).collect() }
     }
 

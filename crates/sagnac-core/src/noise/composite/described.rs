@@ -24,7 +24,7 @@ pub enum Parameter {
     LineAmplitude(usize),
 }
 
-/// What a record says about its noise: the best description and how well its parameters are known.
+/// Noise of a record: the best description and how well its parameters are known.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Described {
     /// The description.

@@ -58,7 +58,7 @@ pub struct Composite {
     pub quasi_periodic: Vec<Damped>,
     /// Coherent lines.
     pub lines: Vec<Line>,
-    /// What the output is filtered by before it is sampled. Acts on N, B and K.
+    /// Filter of the output before it is sampled. Acts on N, B and K.
     pub bandwidth: Option<Bandwidth>,
     /// How samples are taken.
     pub sampling: Sampling,

@@ -32,7 +32,7 @@ const MIN_DOF: f64 = 200.0;
 /// An identification and the range it rests on.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RangedIdentification {
-    /// What was identified.
+    /// The identified model.
     pub identification: Identification,
     /// Highest frequency used, Hz; `None`: all.
     pub highest_hz: Option<f64>,

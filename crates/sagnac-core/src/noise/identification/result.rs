@@ -1,4 +1,4 @@
-//! What was found about the noise of one channel.
+//! Noise identified in one channel.
 
 use super::claims::METHOD;
 use super::joint::{Extras, Plateau};

@@ -119,7 +119,7 @@ fn estimate(
         && let Some(profile) = Profile::new(likelihood, &structure, term)
     {
         let mut spread = profile.spread();
-        // What is too weak to be named may still hold a part of the level of the white noise.
+        // A part too weak to be named may still hold a part of the level of the white noise.
         for other in suspects(term) {
             if !structure[*other]
                 && ratios[*other] > MIN_SUSPICION_RATIO

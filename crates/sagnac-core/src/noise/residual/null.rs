@@ -1,4 +1,4 @@
-//! What a correct model would show: scores of residuals after parameters were fitted to them.
+//! Scores of residuals under a correct model, after parameters were fitted to them.
 
 use crate::estimate::normal_probability;
 use nalgebra::{DMatrix, DVector};

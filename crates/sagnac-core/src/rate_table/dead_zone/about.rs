@@ -34,7 +34,7 @@ const WIDTHS: usize = 40;
 /// Noises inside the loop that are tried, in parts of the half width.
 const NOISES: [f64; 5] = [0.35, 0.7, 1.4, 2.8, 5.6];
 
-/// What the levels are with the noise that is expected.
+/// Levels with the noise that is expected.
 pub struct Means {
     /// Means about the slope of the design, deg/h.
     pub means: DVector<f64>,
@@ -196,7 +196,7 @@ fn with_zone(design: &Design, points: &Points) -> Option<Vec<DVector<f64>>> {
     let zone = widths::tried(largest, WIDTHS)
         .skip(1)
         .flat_map(|w| {
-            // What noise inside the loop rounds off is no drift either.
+            // A change that noise inside the loop rounds off is no drift either.
             let rounded = NOISES.map(|n| Shape { kind: Kind::Rounded, half_width: w, noise: n * w });
             Kind::CLEAN.map(|kind| Shape::clean(kind, w)).into_iter().chain(rounded)
         })

@@ -12,7 +12,7 @@ const OF_SPACING: f64 = 0.25;
 pub struct Place {
     /// Middle of the rates and the rate at which the output is none, deg/h.
     pub at_rest: [f64; 2],
-    /// What these two are known to, deg/h.
+    /// Uncertainties of these two, deg/h.
     pub standard: f64,
     /// Half of the rates that the centre is sought in, deg/h.
     pub half: f64,

@@ -25,7 +25,7 @@ const ARRAY: u64 = 16;
 pub(super) struct Place {
     /// Path of the dataset.
     pub dataset: String,
-    /// What is read of it.
+    /// The part that is read.
     pub pick: Pick,
     /// How a number is stored; `None` where there is none.
     pub storage: Option<Storage>,
@@ -39,7 +39,7 @@ pub(super) struct Place {
     pub logical_bytes: u64,
 }
 
-/// What is read of a dataset.
+/// The part of a dataset that is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Pick {
     /// Everything, in order.

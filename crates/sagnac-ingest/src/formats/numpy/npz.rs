@@ -31,7 +31,7 @@ struct Member {
     columns: array::Columns,
 }
 
-/// What was found in an archive.
+/// Contents of an archive.
 #[derive(Default)]
 struct ArchiveContents {
     streams: Vec<Stream>,
@@ -112,7 +112,7 @@ impl Format for Npz {
     }
 }
 
-/// What is said of an array that does not belong to the recording.
+/// Remark on an array that does not belong to the recording.
 fn other_length(array: &array_selection::Array, rows: u64) -> Note {
     note!("ingest.binary.other_length", name = array.name.as_str(), rows = array.rows, chosen = rows)
 }

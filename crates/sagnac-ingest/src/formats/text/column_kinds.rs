@@ -25,11 +25,11 @@ pub(super) struct Kinds {
     pub pairs: Vec<Pair>,
     /// All columns: one for each field, then one for each pair.
     pub columns: Vec<Column>,
-    /// What was decided about stamps.
+    /// Decision about stamps.
     pub notes: Vec<Note>,
 }
 
-/// What most fields of a column look like; `None` when none is filled.
+/// Kind of most fields of a column; `None` when none is filled.
 pub(super) fn usual(cells: &[&[u8]], decimal: u8) -> Option<Looks> {
     let mut counts: Vec<(Looks, usize)> = Vec::new();
     for found in cells.iter().map(|c| looks(c, decimal)).filter(|l| *l != Looks::Empty) {

@@ -27,7 +27,7 @@ pub(super) struct Dialect {
     pub data_offset: usize,
     /// Line the data start on, counted from 1.
     pub data_line: u64,
-    /// What was decided and why.
+    /// Decisions and their reasons.
     pub notes: Vec<Note>,
     /// What the file says of itself.
     pub metadata: Vec<(String, String)>,
@@ -135,7 +135,7 @@ fn lines<'a>(head: &'a [u8], all: bool, most: usize, comment: &dyn Fn(&[u8]) -> 
     lines
 }
 
-/// What is known once the lines can be cut.
+/// Facts that are known once the lines can be cut.
 pub(super) struct Sniffed<'a> {
     pub path: &'a Path,
     pub file: &'a Candidate,

@@ -96,7 +96,7 @@ pub(super) fn find(lines: &[&[u8]], delimiter: Option<u8>, decimal: Option<u8>) 
     })
 }
 
-/// What is counted of the lines with one number of fields.
+/// Counts of the lines with one number of fields.
 #[derive(Default)]
 struct Count {
     /// Fields that hold values.

@@ -20,7 +20,7 @@ pub(super) struct Contradiction {
 /// Columns that belong together: positions of the two fields, and the name of the column they make.
 type Together = (usize, usize, String);
 
-/// What was stated of stamps, by position.
+/// Stated kinds of stamps, by position.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Stated {
     /// Dates with clock times.

@@ -1,4 +1,4 @@
-//! What MCAP files and ROS 1 bags share: messages by topic, of which those of one topic are the rows.
+//! Common parts of MCAP files and ROS 1 bags: messages by topic, of which those of one topic are the rows.
 //!
 //! Both readers are our own. The reader of the crate `mcap` that streams (0.26, `sans_io::LinearReader`) takes every record
 //! into memory as a whole, attachments and the chunks of other topics among them, where this one passes over them, and

@@ -12,7 +12,7 @@ use std::path::PathBuf;
 /// Rows in a block.
 const ROWS: usize = 1 << 15;
 
-/// What a column is read from.
+/// Source of a column.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Origin {
     /// Stamp of the header, s after a full second.

@@ -115,7 +115,7 @@ pub(super) fn bursts(flat: &FlatResidual<'_>) -> Option<Outliers> {
 /// Groups that may have been too small to be found.
 fn missed(scan: &Scan, groups: &[(usize, usize)]) -> usize {
     let found = groups.len() as f64;
-    // What chance may hold of as many looks at the share of false groups that is admitted.
+    // The least gain beyond which chance gives no more than the admitted share of false groups.
     let smallest = (scan.trials / (FALSE_SHARE * found.max(1.0))).ln().max(1.0);
     // Gain goes with the square of the size.
     groups.iter().filter(|g| scan.gain(g.0, g.1) < 4.0 * smallest).count()

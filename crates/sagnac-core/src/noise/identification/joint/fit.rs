@@ -160,7 +160,7 @@ impl<'a> Joint<'a> {
             }
             Variable::DecayTime(i) => {
                 if let Some((_, d)) = out.damped.get_mut(i) {
-                    // What decays in less than a few periods is a bump and no oscillation.
+                    // A process that decays in less than a few periods is a bump and no oscillation.
                     let least = if d.frequency_hz > 0.0 { MIN_PERIODS / d.frequency_hz } else { 0.05 * tau0 };
                     d.decay_time_s = (d.decay_time_s * step.exp()).max(least).min(100.0 * span);
                 }

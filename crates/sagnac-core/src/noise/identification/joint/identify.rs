@@ -232,7 +232,7 @@ impl ShapeFits {
         let plateau = Plateau::of(&model, evidence.tau0_s, evidence.span_s)?;
         let value = plateau.level(&model);
         let mut spread = plateau.spread(joint, &self.supported, &self.free);
-        // What is too weak to be named may still hold a part of the level.
+        // A part too weak to be named may still hold a part of the level.
         for other in suspects(0) {
             if !self.free.variance[*other] && self.ratios[*other] > MIN_SUSPICION_RATIO {
                 let mut wide = self.free.clone();
@@ -254,7 +254,7 @@ impl ShapeFits {
         if self.claimed[term] {
             let (best, mut spread) = self.profile(joint, variable, &free);
             let value = best.reported(variable);
-            // What is too weak to be named may still hold a part of the level of the white noise.
+            // A part too weak to be named may still hold a part of the level of the white noise.
             for other in suspects(term) {
                 if !free.variance[*other] && self.ratios[*other] > MIN_SUSPICION_RATIO {
                     let mut wide = free.clone();

@@ -1,4 +1,4 @@
-//! What there is beside N, B, K, Q and R: one more part at a time, while one is worth its parameters.
+//! Parts beside N, B, K, Q and R: one more at a time, while one is worth its parameters.
 
 use super::super::options::ProcessThresholds;
 use super::ends::usable_evidence;
