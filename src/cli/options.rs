@@ -5,7 +5,7 @@ use super::{length, place};
 use crate::i18n::{Lang, note};
 use crate::noise::tau_grid::TauGrid;
 use crate::report::Renderer;
-use crate::report::export::{CERTIFICATE, Dcc, EXPORTERS, Exporter, FURTHER, Json};
+use crate::report::export::{CERTIFICATE_FORM, Dcc, EXPORTERS, Exporter, FURTHER, Json};
 use crate::report::pdf::PdfPages;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
@@ -61,7 +61,7 @@ pub struct FormArgs {
 const PDF: &str = "pdf";
 
 fn form_ids() -> PossibleValuesParser {
-    PossibleValuesParser::new(EXPORTERS.iter().chain(FURTHER).map(|e| e.id()).chain([CERTIFICATE, PDF]))
+    PossibleValuesParser::new(EXPORTERS.iter().chain(FURTHER).map(|e| e.id()).chain([CERTIFICATE_FORM, PDF]))
 }
 
 impl FormArgs {
@@ -83,7 +83,7 @@ impl FormArgs {
         let pdf = pdf_pages(self.names(PDF), self.pages, lang)?;
         let writer =
             Writer::new(renderer(self.templates.as_deref(), lang)?, pdf, lang)?.of_forms(&self.forms);
-        Ok(if self.names(CERTIFICATE) { writer.with_certificate(Dcc { laboratory: None }) } else { writer })
+        Ok(if self.names(CERTIFICATE_FORM) { writer.with_certificate(Dcc { laboratory: None }) } else { writer })
     }
 }
 

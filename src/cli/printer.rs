@@ -54,7 +54,8 @@ impl Printer {
             return record(folder, kind, self.lang);
         }
         let page = first_page(folder, kind);
-        let place = note!("terminal.report", place = place::shown(&page)).say(self.lang);
+        let key = if kind == Kind::DataSheet { "terminal.data_sheet" } else { "terminal.report" };
+        let place = Note::new(key).with("place", place::shown(&page)).say(self.lang);
         let text = if self.quiet {
             String::new()
         } else {

@@ -11,7 +11,7 @@ use crate::i18n::{Lang, Note, note};
 use crate::moment;
 use crate::output::{Kind, StagedFolder, StagedPart};
 use crate::record::LotUnit;
-use crate::report::export::{CERTIFICATE, Dcc};
+use crate::report::export::{CERTIFICATE_FORM, Dcc};
 use crate::report::signatures::{self, SIGNATURES_SHOWN, Signature};
 use crate::report::{Record, StoredResults};
 use crate::signing;
@@ -41,7 +41,7 @@ pub fn main(args: &ReportArgs, lang: Lang) -> Result<u8, String> {
     let writer = args.forms.writer(lang)?.with_signatures(signatures.clone());
     let laboratory = args.laboratory.as_deref().map(laboratory::load).transpose().map_err(|p| p.say(lang))?;
     let writer =
-        if args.forms.names(CERTIFICATE) { writer.with_certificate(Dcc { laboratory }) } else { writer };
+        if args.forms.names(CERTIFICATE_FORM) { writer.with_certificate(Dcc { laboratory }) } else { writer };
     let stored = StoredResults::open(&args.result).map_err(|note| place::error(&note, lang))?;
     let out = place::OutputPlace::new(args.out.as_deref(), "report", stored.results.subject(), moment::now());
     let folder = Inputs::new(args.force)

@@ -27,7 +27,7 @@ const SI: &str = "https://ptb.de/si";
 const VERSION: &str = "3.3.0";
 
 /// Id of the form that is a calibration certificate.
-pub const CERTIFICATE: &str = "dcc";
+pub const CERTIFICATE_FORM: &str = "dcc";
 
 /// The certificate of a run as `dcc.xml`; of other results nothing.
 pub struct Dcc {
@@ -37,7 +37,7 @@ pub struct Dcc {
 
 impl Exporter for Dcc {
     fn id(&self) -> &'static str {
-        CERTIFICATE
+        CERTIFICATE_FORM
     }
 
     fn files(&self, document: &Document<'_>, _: &Renderer) -> Result<Vec<ExportedFile>, ReportError> {

@@ -14,7 +14,7 @@ mod xml;
 
 pub use atml::Atml;
 pub use csv::Csv;
-pub use dcc::{CERTIFICATE, Dcc, missing};
+pub use dcc::{CERTIFICATE_FORM, Dcc, missing};
 pub use exporter::{ExportedFile, Exporter};
 pub use html::Html;
 pub use json::{Json, record_bytes};
