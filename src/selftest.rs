@@ -91,7 +91,7 @@ impl SelfTest {
 }
 
 /// The nine values of NIST SP 1065 table 30.
-const NINE: [f64; 9] = [892.0, 809.0, 823.0, 798.0, 671.0, 644.0, 883.0, 903.0, 677.0];
+const SP1065_VALUES: [f64; 9] = [892.0, 809.0, 823.0, 798.0, 671.0, 644.0, 883.0, 903.0, 677.0];
 
 /// The 1000-point suite of NIST SP 1065 section 12.4.
 fn thousand() -> Vec<f64> {
@@ -159,7 +159,7 @@ fn deviations(add: Add<'_>) {
     ];
     for (estimator, name, nine, suite) in family {
         for (m, value) in [1, 2].into_iter().zip(nine) {
-            add(points(name, 9, m), SP1065, value, deviation(&NINE, m, estimator), 1e-7);
+            add(points(name, 9, m), SP1065, value, deviation(&SP1065_VALUES, m, estimator), 1e-7);
         }
         for (m, value) in [1, 10, 100].into_iter().zip(suite) {
             add(points(name, 1000, m), SP1065, value, deviation(&thousand, m, estimator), 3e-7);

@@ -66,7 +66,7 @@ pub fn claim(record: &RunRecord, channel: Option<&str>) -> Result<(Claim, Vec<No
             b_at_most_deg_h: b.at_most,
             k_at_most_deg_h_rt_h: k.at_most,
             // Nothing is known of a bias that was not measured.
-            bias_deg_h: if bias.is_some() { deviation } else { UNKNOWN },
+            bias_deg_h: if bias.is_some() { deviation } else { UNMEASURED_SIGMA_DEG_H },
             ..Uncertainty::default()
         },
         effects: vec![],
@@ -102,7 +102,7 @@ pub fn with_lasting(claim: Claim, augmented: &Claim, skewness: f64) -> Claim {
 }
 
 /// Standard uncertainty of what was not measured, deg/h.
-const UNKNOWN: f64 = 1e6;
+const UNMEASURED_SIGMA_DEG_H: f64 = 1e6;
 
 fn standard_uncertainty(row: &MeasurandRecord) -> Option<f64> {
     let interval = row.interval?;

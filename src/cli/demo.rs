@@ -13,7 +13,7 @@ use sagnac_ingest::read_file;
 use std::path::{Path, PathBuf};
 
 /// A synthetic unit, 100 h at rest.
-const RECORDING: &[u8] = include_bytes!("../../samples/unit-pass.csv");
+const DEMO_RECORDING: &[u8] = include_bytes!("../../samples/unit-pass.csv");
 
 #[derive(Debug, Args)]
 pub struct DemoArgs {
@@ -63,13 +63,13 @@ fn write(recording: &Path, lang: Lang) -> Result<(), String> {
         let note = note!("procedures.not_saved", path = place::shown(recording));
         place::error(&note.with("reason", reason), lang)
     };
-    match read_file(recording, RECORDING.len() as u64) {
-        Ok(found) if found == RECORDING => return Ok(()),
+    match read_file(recording, DEMO_RECORDING.len() as u64) {
+        Ok(found) if found == DEMO_RECORDING => return Ok(()),
         Ok(_) => return Err(failed(note!("procedures.other_content").say(lang))),
         Err(_) => {}
     }
     if let Some(folder) = recording.parent() {
         std::fs::create_dir_all(folder).map_err(|e| failed(e.to_string()))?;
     }
-    std::fs::write(recording, RECORDING).map_err(|e| failed(e.to_string()))
+    std::fs::write(recording, DEMO_RECORDING).map_err(|e| failed(e.to_string()))
 }

@@ -9,7 +9,7 @@ use sagnac_core::spelling::nearest;
 use serde_json::{Value, json};
 
 /// Width of the text of a page, characters.
-const WIDTH: usize = 76;
+const PAGE_WIDTH: usize = 76;
 
 #[derive(Debug, Args)]
 pub struct EffectsArgs {
@@ -154,13 +154,13 @@ fn bounded(value: f64) -> Option<f64> {
     (value.abs() < 1e300).then_some(value)
 }
 
-/// Lines of at most [`WIDTH`] characters, set in.
+/// Lines of at most [`PAGE_WIDTH`] characters, set in.
 fn wrapped(text: &str) -> String {
     let mut out = String::new();
     for paragraph in text.lines() {
         let mut line = String::new();
         for word in paragraph.split_whitespace() {
-            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > WIDTH {
+            if !line.is_empty() && line.chars().count() + 1 + word.chars().count() > PAGE_WIDTH {
                 out.push_str(&format!("  {line}\n"));
                 line.clear();
             }

@@ -62,7 +62,7 @@ const TEMPERATURE_MEASURANDS: &[&str] = &[
 ];
 
 /// Templates of procedure, limits and job for continuous integration.
-const TEMPLATES: [&str; 3] = [
+const INIT_TEMPLATES: [&str; 3] = [
     include_str!("../../templates/init/procedure.toml"),
     include_str!("../../templates/init/limits.toml"),
     include_str!("../../templates/init/ci.yml"),
@@ -210,7 +210,7 @@ fn written(
         let text = environment.render_str(&commented(template, lang), &values)?;
         Ok::<_, minijinja::Error>(format!("{}\n", text.trim_end()))
     };
-    let [procedure, limits, ci] = TEMPLATES;
+    let [procedure, limits, ci] = INIT_TEMPLATES;
     Ok([render(procedure)?, render(limits)?, render(ci)?])
 }
 
@@ -360,7 +360,7 @@ mod tests {
 
     #[test]
     fn every_comment_of_the_templates_has_a_translation_and_none_is_left_over() {
-        let sources = TEMPLATES.iter().flat_map(|template| template.lines());
+        let sources = INIT_TEMPLATES.iter().flat_map(|template| template.lines());
         let comments: BTreeSet<&str> = sources.filter_map(|line| line.strip_prefix("# ")).collect();
         // A key that is commented out, a table or a name is the same in every language.
         let same = |comment: &str| {
@@ -375,6 +375,6 @@ mod tests {
             let left_over: Vec<&&str> = keys.difference(&comments).collect();
             assert!(left_over.is_empty(), "{lang:?} translates what no template says: {left_over:#?}");
         }
-        assert_eq!(commented(TEMPLATES[1], Lang::En), TEMPLATES[1].trim_end_matches('\n'));
+        assert_eq!(commented(INIT_TEMPLATES[1], Lang::En), INIT_TEMPLATES[1].trim_end_matches('\n'));
     }
 }

@@ -49,7 +49,7 @@ pub struct FormArgs {
     /// Forms to write, separated by commas; the record is always written, and json alone prints it [default: html, md, csv, json, svg, junit]
     #[arg(long = "format", value_name = "FORM", value_delimiter = ',', value_parser = form_ids())]
     forms: Vec<String>,
-    /// Pages of the PDF
+    /// Pages of the PDF_FORM
     #[arg(long, value_name = "PAGES")]
     pages: Option<Pages>,
     /// Folder of templates that override built-in ones of the same name
@@ -58,10 +58,12 @@ pub struct FormArgs {
 }
 
 /// The form that is made of the others.
-const PDF: &str = "pdf";
+const PDF_FORM: &str = "pdf";
 
 fn form_ids() -> PossibleValuesParser {
-    PossibleValuesParser::new(EXPORTERS.iter().chain(FURTHER).map(|e| e.id()).chain([CERTIFICATE_FORM, PDF]))
+    PossibleValuesParser::new(
+        EXPORTERS.iter().chain(FURTHER).map(|e| e.id()).chain([CERTIFICATE_FORM, PDF_FORM]),
+    )
 }
 
 impl FormArgs {
@@ -80,10 +82,14 @@ impl FormArgs {
     /// # Errors
     /// The diagnostic, in words.
     pub fn writer(&self, lang: Lang) -> Result<Writer, String> {
-        let pdf = pdf_pages(self.names(PDF), self.pages, lang)?;
+        let pdf = pdf_pages(self.names(PDF_FORM), self.pages, lang)?;
         let writer =
             Writer::new(renderer(self.templates.as_deref(), lang)?, pdf, lang)?.of_forms(&self.forms);
-        Ok(if self.names(CERTIFICATE_FORM) { writer.with_certificate(Dcc { laboratory: None }) } else { writer })
+        Ok(if self.names(CERTIFICATE_FORM) {
+            writer.with_certificate(Dcc { laboratory: None })
+        } else {
+            writer
+        })
     }
 }
 
@@ -113,10 +119,10 @@ impl OutputArgs {
     }
 }
 
-/// The pages of a PDF, where one is asked for.
+/// The pages of a PDF_FORM, where one is asked for.
 ///
 /// # Errors
-/// The diagnostic, in words, where pages are named and no PDF is asked for.
+/// The diagnostic, in words, where pages are named and no PDF_FORM is asked for.
 pub fn pdf_pages(asked: bool, pages: Option<Pages>, lang: Lang) -> Result<Option<PdfPages>, String> {
     match (asked, pages) {
         (false, Some(_)) => Err(place::error(&"pdf.pages_without".into(), lang)),
@@ -126,7 +132,7 @@ pub fn pdf_pages(asked: bool, pages: Option<Pages>, lang: Lang) -> Result<Option
     }
 }
 
-/// Pages of a PDF.
+/// Pages of a PDF_FORM.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Pages {
     All,

@@ -7,16 +7,16 @@ use std::io;
 use std::path::{Path, PathBuf};
 
 /// The folder of the generated files, in that of the package.
-const FOLDER: &str = "schemas";
+const SCHEMA_FOLDER: &str = "schemas";
 
-/// The list of hashes in [`FOLDER`].
+/// The list of hashes in [`SCHEMA_FOLDER`].
 const SOURCES: &str = "SOURCES";
 
 /// Folders whose types have derived schemas.
 const SOURCE_FOLDERS: [&str; 2] = ["src", "crates/sagnac-core/src"];
 
 /// How a line begins that gives a type its schema.
-const DECLARES: [&str; 2] =
+const SCHEMA_DERIVES: [&str; 2] =
     ["#[cfg_attr(feature = \"schema\", derive(schemars::JsonSchema", "impl schemars::JsonSchema for "];
 
 /// Writes every schema that types derive, and the hashes; with `check` writes nothing. Gives the names of the files that were not up to date.
@@ -25,7 +25,7 @@ const DECLARES: [&str; 2] =
 /// What the operating system says of a file.
 #[cfg(feature = "schema")]
 pub fn generate(package: &Path, check: bool) -> io::Result<Vec<&'static str>> {
-    let folder = package.join(FOLDER);
+    let folder = package.join(SCHEMA_FOLDER);
     let mut stale = vec![];
     let mut put = |name: &'static str, text: String| {
         let path = folder.join(name);
@@ -81,7 +81,7 @@ fn hashes(package: &Path) -> io::Result<String> {
     let schemars = locked.split("\n\n").filter(|part| part.contains("name = \"schemars"));
     lines.push(line(package, &lock, &schemars.collect::<Vec<_>>().join("\n")));
     let mut generated = vec![];
-    files_below(&package.join(FOLDER), "json", &mut generated)?;
+    files_below(&package.join(SCHEMA_FOLDER), "json", &mut generated)?;
     for file in &generated {
         lines.push(line(package, file, &fs::read_to_string(file)?.replace("\r\n", "\n")));
     }
@@ -98,7 +98,7 @@ fn line(package: &Path, file: &Path, text: &str) -> String {
 /// far to the left as its beginning.
 fn declarations(source: &str) -> String {
     let text = source.replace("\r\n", "\n");
-    let names = |line: &str| DECLARES.iter().any(|d| line.trim_start().starts_with(d));
+    let names = |line: &str| SCHEMA_DERIVES.iter().any(|d| line.trim_start().starts_with(d));
     if text.contains("macro_rules!") && text.lines().any(names) {
         return text;
     }
@@ -142,7 +142,7 @@ mod tests {
     #[test]
     fn schemas_are_up_to_date() {
         let package = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let stored = fs::read_to_string(package.join(FOLDER).join(SOURCES)).unwrap();
+        let stored = fs::read_to_string(package.join(SCHEMA_FOLDER).join(SOURCES)).unwrap();
         let now = hashes(package).unwrap();
         let [stored, now] = [&stored, &now].map(|text| text.lines().collect::<BTreeSet<_>>());
         assert!(now.len() > 30, "the search found only {} files", now.len());

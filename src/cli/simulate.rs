@@ -16,7 +16,7 @@ use clap::Args;
 use std::path::{Path, PathBuf};
 
 /// Seed where neither the command line nor the model says one.
-const SEED: u64 = 1;
+const DEFAULT_SEED: u64 = 1;
 
 #[derive(Debug, Args)]
 pub struct SimulateArgs {
@@ -91,7 +91,7 @@ fn attempt(args: &SimulateArgs, lang: Lang) -> Result<String, String> {
         });
         series = Some(read.map_err(|e| e.say(lang))?);
     }
-    let seed = args.seed.or(model.simulation.seed).unwrap_or(SEED);
+    let seed = args.seed.or(model.simulation.seed).unwrap_or(DEFAULT_SEED);
     let over = match (&series, asked_s.or(model.simulation.duration_s)) {
         (Some(series), _) => Over::Like(series),
         (None, Some(duration_s)) => {

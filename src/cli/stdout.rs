@@ -6,7 +6,7 @@ use std::io::{self, ErrorKind, Write};
 use std::sync::{Mutex, PoisonError};
 
 /// The first failure of this process.
-static FAILED: Mutex<Option<io::Error>> = Mutex::new(None);
+static FIRST_FAILURE: Mutex<Option<io::Error>> = Mutex::new(None);
 
 /// Writes bytes as they are.
 pub fn write(bytes: &[u8]) {
@@ -25,14 +25,14 @@ pub fn check(written: io::Result<()>) {
     if let Err(error) = written
         && error.kind() != ErrorKind::BrokenPipe
     {
-        FAILED.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
+        FIRST_FAILURE.lock().unwrap_or_else(PoisonError::into_inner).get_or_insert(error);
     }
 }
 
 /// The first failure of this process, everything that waits written out; `None` where all was written.
 pub fn failure() -> Option<io::Error> {
     check(io::stdout().lock().flush());
-    FAILED.lock().unwrap_or_else(PoisonError::into_inner).take()
+    FIRST_FAILURE.lock().unwrap_or_else(PoisonError::into_inner).take()
 }
 
 /// The choice of colours: `NO_COLOR`, `CLICOLOR`, `CLICOLOR_FORCE`, `TERM`, and whether standard output is a terminal.

@@ -11,7 +11,7 @@ use std::ops::Range;
 pub type Span = Range<usize>;
 
 /// Longest piece of a line that is shown, in characters.
-const SHOWN: usize = 120;
+const MAX_SHOWN_CHARACTERS: usize = 120;
 
 /// Most problems that are written out; more are counted.
 const MAX_SHOWN: usize = 100;
@@ -233,16 +233,20 @@ impl SourceText {
 /// Cuts a long line around the offending text. Control characters are shown as `·`, so that a file cannot steer a
 /// terminal and one character stays one column.
 fn excerpt(line: &str, start: usize, width: usize) -> Excerpt {
-    let from = if start > SHOWN / 2 && line.chars().count() > SHOWN { start - SHOWN / 2 } else { 0 };
+    let from = if start > MAX_SHOWN_CHARACTERS / 2 && line.chars().count() > MAX_SHOWN_CHARACTERS {
+        start - MAX_SHOWN_CHARACTERS / 2
+    } else {
+        0
+    };
     let visible = |c: char| match c {
         '\t' => ' ',
         '\r' => ' ',
         c if steers(c) => '·',
         c => c,
     };
-    let text: String = line.chars().skip(from).take(SHOWN).map(visible).collect();
+    let text: String = line.chars().skip(from).take(MAX_SHOWN_CHARACTERS).map(visible).collect();
     let start = start - from;
-    Excerpt { text, start, width: width.clamp(1, SHOWN.saturating_sub(start).max(1)) }
+    Excerpt { text, start, width: width.clamp(1, MAX_SHOWN_CHARACTERS.saturating_sub(start).max(1)) }
 }
 
 #[cfg(test)]

@@ -29,7 +29,7 @@ pub(super) struct Repair {
 }
 
 /// Longest line that is repaired, bytes.
-const LONGEST: usize = 300;
+const MAX_REPAIRED_BYTES: usize = 300;
 
 /// The repair of the line in which a span begins, with the place of its value. `None` where none makes it TOML.
 pub(super) fn repaired(source: &SourceText, span: &Span) -> Option<(Span, Repair)> {
@@ -42,7 +42,7 @@ pub(super) fn repaired(source: &SourceText, span: &Span) -> Option<(Span, Repair
 
 /// The place of the value in a line, and the repair.
 fn of_line(line: &str) -> Option<(Span, Repair)> {
-    if line.len() > LONGEST || is_toml(line) {
+    if line.len() > MAX_REPAIRED_BYTES || is_toml(line) {
         return None;
     }
     let sign = line.find(['=', ':'])?;

@@ -3,7 +3,7 @@
 use crate::recording::Role;
 
 /// Words in lower case and the role that each stands for. Beginnings such as `temp` need no word here.
-const WORDS: &[(&str, Role)] = &[
+const ROLE_WORDS: &[(&str, Role)] = &[
     ("acc", Role::Vibration),
     ("acceleration", Role::Vibration),
     ("accelerometer", Role::Vibration),
@@ -34,7 +34,7 @@ const WORDS: &[(&str, Role)] = &[
 /// The role that a word means which is none: whole, without what follows it (`temp_c`), or by meaning.
 pub(crate) fn meant(word: &str) -> Option<&'static str> {
     let plain = word.trim().to_lowercase().replace(['-', ' '], "_");
-    let by_meaning = |w: &str| WORDS.iter().find(|(known, _)| *known == w).map(|(_, role)| role.id());
+    let by_meaning = |w: &str| ROLE_WORDS.iter().find(|(known, _)| *known == w).map(|(_, role)| role.id());
     by_meaning(&plain).or_else(|| {
         let first = plain.split('_').next().unwrap_or_default();
         let begun = |role: &Role| first.len() >= 3 && role.id().starts_with(first);

@@ -5,7 +5,7 @@ use super::line_repair::{Fault, repaired};
 use crate::i18n::{Arg, Note, note};
 
 /// What the parser says, and the key of the locale tables for it.
-const FAULTS: &[(&str, &str)] = &[
+const PARSER_FAULTS: &[(&str, &str)] = &[
     ("duplicate key", "keyed.syntax.duplicate_key"),
     ("string values must be quoted", "keyed.syntax.unquoted"),
     ("key with no value", "keyed.syntax.no_value"),
@@ -80,7 +80,7 @@ pub(super) fn problem(source: &SourceText, span: &Span, said: &str) -> Problem {
 /// What the parser said as a note: its own words in English, those of the tables in another language.
 fn reason(said: &str) -> Arg {
     let what = said.split(", expected ").next().unwrap_or(said);
-    let known = FAULTS.iter().find(|(text, _)| *text == what);
+    let known = PARSER_FAULTS.iter().find(|(text, _)| *text == what);
     Note::new(known.map_or("keyed.syntax.other", |(_, key)| key)).with("said", said).into()
 }
 
@@ -92,7 +92,7 @@ mod tests {
 
     #[test]
     fn english_keeps_what_the_parser_says() {
-        for (said, _) in FAULTS {
+        for (said, _) in PARSER_FAULTS {
             for text in [(*said).to_owned(), format!("{said}, expected newline, `#`")] {
                 let note = reason(&text);
                 assert_eq!(note.say(Lang::En), text);

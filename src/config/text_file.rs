@@ -12,13 +12,13 @@ use std::path::Path;
 const MAX_BYTES: usize = 1 << 20;
 
 /// The byte order mark of UTF-8; it is no part of the text.
-const MARK: &[u8] = b"\xef\xbb\xbf";
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// Most names of a folder among which a similar one is looked for.
 const MAX_NAMES: usize = 1000;
 
 /// Most bytes that are read: enough to know that a file is too large.
-const MAX_READ_BYTES: u64 = (MAX_BYTES + MARK.len() + 1) as u64;
+const MAX_READ_BYTES: u64 = (MAX_BYTES + BYTE_ORDER_MARK.len() + 1) as u64;
 
 /// The sentences about a file of one kind that cannot be read at all, by their keys.
 pub(crate) struct Wording {
@@ -93,7 +93,7 @@ pub(crate) fn read(path: &Path) -> std::io::Result<Vec<u8>> {
 /// # Errors
 /// Too many bytes, or bytes that are no UTF-8, at their place.
 pub(crate) fn source(name: &str, bytes: &[u8]) -> Result<SourceText, Problems> {
-    let body = bytes.strip_prefix(MARK).unwrap_or(bytes);
+    let body = bytes.strip_prefix(BYTE_ORDER_MARK).unwrap_or(bytes);
     if body.len() > MAX_BYTES {
         let message = note!("keyed.too_large", bytes = MAX_BYTES);
         return Err(Problem::of_file(name, message, None).into());
@@ -119,7 +119,7 @@ mod tests {
     fn a_file_of_the_largest_size_is_text_with_or_without_its_mark() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("a.toml");
-        for mark in [&b""[..], MARK] {
+        for mark in [&b""[..], BYTE_ORDER_MARK] {
             for (length, fits) in [(MAX_BYTES, true), (MAX_BYTES + 1, false), (3 * MAX_BYTES, false)] {
                 std::fs::write(&path, [mark, &vec![b'#'; length]].concat()).unwrap();
                 let read = bytes(&path, &WORDING).unwrap();

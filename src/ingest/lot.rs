@@ -9,11 +9,11 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// Most recordings that a message names.
-const NAMED: usize = 4;
+const MAX_NAMED_RECORDINGS: usize = 4;
 /// Longest name of a folder, in characters.
-const LONGEST: usize = 80;
+const MAX_FOLDER_CHARACTERS: usize = 80;
 /// Names that the folder of a lot has for other things, in lower case.
-const RESERVED: [&str; 7] =
+const RESERVED_NAMES: [&str; 7] =
     ["index.html", "index.md", "index.pdf", "index.csv", "index.json", "junit.xml", "sha256sums"];
 
 /// A recording that is a unit of its own.
@@ -137,8 +137,8 @@ fn repeated(members: &[Member]) -> Vec<Note> {
         .map(|m| {
             let written: BTreeSet<&str> = m.iter().map(|m| m.serial.as_str()).collect();
             let named: Vec<String> =
-                m.iter().take(NAMED).map(|m| m.recording.display().to_string()).collect();
-            let key = if m.len() > NAMED { "lot.duplicate_more" } else { "lot.duplicate" };
+                m.iter().take(MAX_NAMED_RECORDINGS).map(|m| m.recording.display().to_string()).collect();
+            let key = if m.len() > MAX_NAMED_RECORDINGS { "lot.duplicate_more" } else { "lot.duplicate" };
             Note::new(key)
                 .with("serial", written.into_iter().collect::<Vec<_>>().join(", "))
                 .with("n", m.len())
@@ -149,10 +149,10 @@ fn repeated(members: &[Member]) -> Vec<Note> {
 
 /// Gives each unit a folder of its own.
 fn name_folders(members: &mut [Member]) {
-    let mut taken: BTreeSet<String> = RESERVED.iter().map(|name| (*name).to_owned()).collect();
+    let mut taken: BTreeSet<String> = RESERVED_NAMES.iter().map(|name| (*name).to_owned()).collect();
     for member in members {
         let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-        let name: String = member.serial.chars().map(safe).take(LONGEST).collect();
+        let name: String = member.serial.chars().map(safe).take(MAX_FOLDER_CHARACTERS).collect();
         let name = name.trim_matches('.');
         let name = if name.is_empty() { "unit" } else { name };
         // Some file systems do not tell upper from lower case.

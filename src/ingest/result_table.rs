@@ -9,13 +9,13 @@ use sagnac_ingest::open_file;
 use std::path::{Path, PathBuf};
 
 /// Column with the record, as the text of `result.json`; null where a recording gave none.
-const RECORD: &str = "result_json";
+const RECORD_COLUMN: &str = "result_json";
 
 /// Column with the place of the recording.
-const URI: &str = "uri";
+const URI_COLUMN: &str = "uri";
 
 /// Folders in folders that are looked into.
-const DEEPEST: usize = 12;
+const MAX_FOLDER_DEPTH: usize = 12;
 
 /// A result of a table.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -40,7 +40,7 @@ pub fn tables_at(path: &Path) -> Vec<PathBuf> {
             let path = entry.path();
             // A link could lead round in a circle.
             let Ok(kind) = entry.file_type() else { continue };
-            if kind.is_dir() && depth < DEEPEST {
+            if kind.is_dir() && depth < MAX_FOLDER_DEPTH {
                 open.push((path, depth + 1));
             } else if kind.is_file() && is_table(&path) {
                 found.push(path);
@@ -66,11 +66,14 @@ pub fn results_in(path: &Path) -> Result<impl Iterator<Item = Result<TableResult
     let root = reader.metadata().file_metadata().schema();
     let (name, fields) = (root.name().to_owned(), root.get_fields().to_vec());
     let has = |name: &str| fields.iter().any(|f| f.name() == name && f.is_primitive());
-    if !has(RECORD) {
-        return Err(note!("result_table.no_records", path = shown, column = RECORD));
+    if !has(RECORD_COLUMN) {
+        return Err(note!("result_table.no_records", path = shown, column = RECORD_COLUMN));
     }
-    let named = has(URI);
-    let wanted = fields.into_iter().filter(|f| f.name() == RECORD || (named && f.name() == URI)).collect();
+    let named = has(URI_COLUMN);
+    let wanted = fields
+        .into_iter()
+        .filter(|f| f.name() == RECORD_COLUMN || (named && f.name() == URI_COLUMN))
+        .collect();
     let schema = Type::group_type_builder(&name).with_fields(wanted).build();
     let schema = schema.map_err(|e| unreadable(e.to_string().into()))?;
     let rows = reader.into_iter().project(Some(schema)).map_err(|e| unreadable(e.to_string().into()))?;
@@ -80,7 +83,7 @@ pub fn results_in(path: &Path) -> Result<impl Iterator<Item = Result<TableResult
             let at = row.get_column_iter().position(|(name, _)| name == column)?;
             row.get_string(at).ok().cloned()
         };
-        let name = text(URI).unwrap_or_else(|| format!("{shown}:{}", i + 1));
-        Ok(TableResult { name, record: text(RECORD) })
+        let name = text(URI_COLUMN).unwrap_or_else(|| format!("{shown}:{}", i + 1));
+        Ok(TableResult { name, record: text(RECORD_COLUMN) })
     }))
 }

@@ -49,9 +49,9 @@ enum Token {
 }
 
 /// Place of the serial number in a pattern.
-const SERIAL: &str = "{serial}";
+const SERIAL_PLACE: &str = "{serial}";
 /// The whole name without its endings.
-const STEM: &str = "{stem}";
+const STEM_PLACE: &str = "{stem}";
 
 impl SerialPattern {
     /// Reads a pattern.
@@ -60,10 +60,10 @@ impl SerialPattern {
     /// A note that says what is wrong with it.
     pub fn parse(text: &str) -> Result<SerialPattern, Note> {
         let wrong = || note!("lot.pattern", given = text);
-        let whole = text.replace(STEM, SERIAL);
-        let (before, after) = whole.split_once(SERIAL).ok_or_else(wrong)?;
+        let whole = text.replace(STEM_PLACE, SERIAL_PLACE);
+        let (before, after) = whole.split_once(SERIAL_PLACE).ok_or_else(wrong)?;
         let braces = |part: &str| part.contains(['{', '}']);
-        if braces(before) || braces(after) || (text.contains(STEM) && text != STEM) {
+        if braces(before) || braces(after) || (text.contains(STEM_PLACE) && text != STEM_PLACE) {
             return Err(wrong());
         }
         let tokens = |part: &str| part.chars().map(token).collect();

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::path::Path;
 
 /// Probabilities that a promise may state: beyond, neither the sample nor the arithmetic tells anything.
-const PROBABILITIES: std::ops::RangeInclusive<f64> = 0.5..=0.9999;
+const PROMISE_PROBABILITIES: std::ops::RangeInclusive<f64> = 0.5..=0.9999;
 
 /// A result that a data sheet is made of.
 pub enum SheetSource<'a> {
@@ -29,7 +29,7 @@ pub enum SheetSource<'a> {
 /// procedures, or for a probability outside 0.5 to 0.9999.
 pub fn data_sheet(results: &[SheetSource<'_>], promise: Promise) -> Result<Results, Error> {
     for (option, given) in [("proportion", promise.proportion), ("confidence", promise.confidence)] {
-        if !PROBABILITIES.contains(&given) {
+        if !PROMISE_PROBABILITIES.contains(&given) {
             let note = note!("datasheet.refused.probability", option);
             return Err(Error::argument(note.with("given", given.to_string())));
         }

@@ -19,7 +19,7 @@ use crate::noise::ruling::RulingNoise;
 use crate::noise::tau_grid::TauGrid;
 
 /// Samples that are handed on at a time: they stay in the cache of the processor.
-const BLOCK: usize = 8192;
+const BLOCK_SAMPLES: usize = 8192;
 
 /// The noise that a recording shows: its terms with their intervals, its Allan deviation, its spectral lines.
 pub struct Noise {
@@ -187,9 +187,9 @@ fn in_blocks(
     mut take: impl FnMut(&mut [f64], u64),
 ) {
     let rows = values.rows();
-    let mut block = Vec::with_capacity(BLOCK);
-    for start in (0..rows).step_by(BLOCK) {
-        let end = (start + BLOCK).min(rows);
+    let mut block = Vec::with_capacity(BLOCK_SAMPLES);
+    for start in (0..rows).step_by(BLOCK_SAMPLES) {
+        let end = (start + BLOCK_SAMPLES).min(rows);
         block.clear();
         values.append(start..end, &mut block);
         take(&mut block, start as u64);

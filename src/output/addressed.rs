@@ -9,7 +9,7 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Beginning of the names of such folders in the making.
-const NAME: &str = "result";
+const STAGING_NAME: &str = "result";
 
 /// A result folder in the making. Dropped without [`AddressedFolder::publish`], it leaves nothing behind.
 #[derive(Debug)]
@@ -26,7 +26,7 @@ impl AddressedFolder {
         fs::create_dir_all(within).map_err(io("output_error.create_folder", within))?;
         partial::remove_abandoned(within);
         let mut builder = tempfile::Builder::new();
-        let prefix = partial::prefix(NAME);
+        let prefix = partial::prefix(STAGING_NAME);
         builder.prefix(&prefix);
         #[cfg(unix)]
         builder.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o777));

@@ -10,7 +10,7 @@ use std::io::Write;
 use std::sync::Arc;
 
 /// Rows of a group: what is held in memory at once.
-const GROUP: usize = 65_536;
+const GROUP_ROWS: usize = 65_536;
 
 /// How a column gets its values.
 pub enum Column<R> {
@@ -41,7 +41,7 @@ pub fn write_table<R, W: Write + Send>(
     let properties =
         WriterProperties::builder().set_compression(Compression::ZSTD(ZstdLevel::default())).build();
     let mut writer = SerializedFileWriter::new(out, schema, Arc::new(properties))?;
-    for group in rows.chunks(GROUP) {
+    for group in rows.chunks(GROUP_ROWS) {
         let mut groups = writer.next_row_group()?;
         for (_, column) in columns {
             write_column(&mut groups, column, group)?;

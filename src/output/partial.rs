@@ -16,12 +16,12 @@ use std::time::{Duration, SystemTime};
 const ABANDONED_AFTER: Duration = Duration::from_secs(24 * 3600);
 
 /// Attempts to make something that no other run takes for abandoned before it is locked.
-const ATTEMPTS: usize = 10;
+const MAX_ATTEMPTS: usize = 10;
 
 /// Files that this process is making.
-static LIVE: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+static LIVE_PATHS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-static BOOT: LazyLock<String> = LazyLock::new(|| {
+static BOOT_ID: LazyLock<String> = LazyLock::new(|| {
     let id = fs::read_to_string("/proc/sys/kernel/random/boot_id").unwrap_or_default();
     let id: String = id.chars().filter(char::is_ascii_hexdigit).take(8).collect();
     if id.len() == 8 { id.to_lowercase() } else { "00000000".to_owned() }
@@ -29,12 +29,12 @@ static BOOT: LazyLock<String> = LazyLock::new(|| {
 
 /// The beginning of the name of what will be `name`.
 pub(super) fn prefix(name: &str) -> String {
-    format!(".{name}.partial-{}-", *BOOT)
+    format!(".{name}.partial-{}-", *BOOT_ID)
 }
 
 /// While this lives, [`abandon_all`] waits.
 pub(super) fn quiet() -> MutexGuard<'static, Vec<PathBuf>> {
-    LIVE.lock().unwrap_or_else(PoisonError::into_inner)
+    LIVE_PATHS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Removes everything that this process is making. For the end of the process by a signal: nothing can be made
@@ -88,7 +88,7 @@ impl<T: AsRef<Path>> Partial<T> {
             let held = open_file(&path).map(|file| file.try_lock().map(|()| file));
             let doomed = matches!(held, Ok(Err(TryLockError::WouldBlock)));
             let lock = held.ok().and_then(Result::ok);
-            if path.exists() && !doomed || attempt == ATTEMPTS {
+            if path.exists() && !doomed || attempt == MAX_ATTEMPTS {
                 live.push(path.clone());
                 return Ok(Partial { thing, entry: Entry { path, _lock: lock } });
             }
@@ -125,7 +125,7 @@ fn made_here(name: &str) -> Option<bool> {
         && of(random, 6)
         && boot.is_none_or(|b| of(b, 8))
         && rest.matches('-').count() <= 1;
-    ours.then(|| boot == Some(BOOT.as_str()))
+    ours.then(|| boot == Some(BOOT_ID.as_str()))
 }
 
 /// True for the name of something in the making, or of what a killed run left of it.

@@ -9,7 +9,7 @@ use std::path::{Component, Path, PathBuf};
 pub const STORE_MARKER: &str = "store.json";
 
 /// How that file begins, without spaces.
-const START: &str = "{\"format\":\"store/";
+const MARKER_START: &str = "{\"format\":\"store/";
 
 /// Refuses a place inside a store, also one that is reached through links.
 ///
@@ -17,7 +17,7 @@ const START: &str = "{\"format\":\"store/";
 /// [`OutputError::InTheWay`].
 pub fn outside_stores(target: &Path) -> Result<(), OutputError> {
     let place = resolved(parent(target));
-    match place.ancestors().find(|folder| starts_with_format(&folder.join(STORE_MARKER), START)) {
+    match place.ancestors().find(|folder| starts_with_format(&folder.join(STORE_MARKER), MARKER_START)) {
         Some(store) => Err(OutputError::InTheWay {
             path: target.to_owned(),
             why: note!("output_error.why.store", store = store.display().to_string()),

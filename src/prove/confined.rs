@@ -6,7 +6,7 @@ use std::process::{Command, Output, Stdio};
 
 /// Where programs, libraries and their settings are that any program needs in order to start.
 #[cfg(target_os = "linux")]
-const SYSTEM: [&str; 7] =
+const SYSTEM_FOLDERS: [&str; 7] =
     ["/bin", "/usr/bin", "/lib", "/lib64", "/usr/lib", "/usr/lib64", "/etc/ld.so.cache"];
 
 /// Runs a program in a folder, without the environment of the caller. True beside its output where the kernel kept it from
@@ -39,7 +39,7 @@ fn confine(folder: &Path, program: &Path) -> bool {
         let status = Ruleset::default()
             .handle_access(AccessFs::from_all(abi))?
             .create()?
-            .add_rules(path_beneath_rules(SYSTEM, AccessFs::from_read(abi)))?
+            .add_rules(path_beneath_rules(SYSTEM_FOLDERS, AccessFs::from_read(abi)))?
             .add_rules(path_beneath_rules([program], AccessFs::from_read(abi)))?
             .add_rules(path_beneath_rules(["/dev/null"], AccessFs::from_file(abi)))?
             .add_rules(path_beneath_rules([folder], AccessFs::from_all(abi)))?

@@ -15,7 +15,7 @@ pub const CLAIM_FILE: &str = "model.toml";
 pub(super) const RECORDING_FILE: &str = "recording.csv";
 
 /// Folder of the explanation.
-const SAID: &str = "said";
+const EXPLANATION_FOLDER: &str = "said";
 
 /// An empty folder for the engine.
 pub(super) struct Room {
@@ -92,9 +92,9 @@ impl Room {
     /// # Errors
     /// A note with what the engine said.
     pub fn explain(&self, program: &Path) -> Result<(Said, bool), Note> {
-        let args = ["explain", RECORDING_FILE, "--model", CLAIM_FILE, "--out", SAID, "--quiet"];
+        let args = ["explain", RECORDING_FILE, "--model", CLAIM_FILE, "--out", EXPLANATION_FOLDER, "--quiet"];
         let kept = self.run(program, &args)?;
-        let folder = self.at(SAID);
+        let folder = self.at(EXPLANATION_FOLDER);
         let bytes = std::fs::read(folder.join(Kind::Explanation.record_file())).unwrap_or_default();
         match StoredResults::open(&folder)?.results {
             Results::Explanation(results) => Ok((Said { results: *results, sha256: sha256(&bytes) }, kept)),

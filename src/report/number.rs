@@ -89,7 +89,7 @@ fn directed(value: f64, count: i32, upwards: bool, lang: Lang) -> String {
 }
 
 /// Least side of a lopsided interval that sets the rounding, as a share of the value.
-const FINEST: f64 = 0.01;
+const MIN_SIDE_SHARE: f64 = 0.01;
 
 /// How the numbers of one row are rounded: all to the same place, set by the uncertainty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -110,7 +110,7 @@ impl Rounding {
     pub fn of(value: f64, interval: Option<(f64, f64)>) -> Rounding {
         let half = interval.map(|(low, high)| 0.5 * (high - low)).filter(|h| h.is_finite() && *h > 0.0);
         let shorter = interval.map(|(low, high)| (value - low).min(high - value));
-        let half = half.map(|h| match shorter.map(|s| s.max(FINEST * value.abs())) {
+        let half = half.map(|h| match shorter.map(|s| s.max(MIN_SIDE_SHARE * value.abs())) {
             Some(s) if s > 0.0 && s < 0.5 * h => s,
             _ => h,
         });

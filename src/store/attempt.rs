@@ -12,7 +12,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Earlier attempts that a sentence names.
-const NAMED: usize = 5;
+const MAX_NAMED_ATTEMPTS: usize = 5;
 
 /// Which attempt the test in a record is, and its number, which no other takes meanwhile. `None` where nothing tells the unit, or the
 /// record is no test.
@@ -70,7 +70,7 @@ fn summary(earlier: &[Attempt], number: u64, test: &EntryTest) -> Vec<Note> {
     if earlier.is_empty() {
         return vec![];
     }
-    let shown = earlier.get(earlier.len().saturating_sub(NAMED)..).unwrap_or_default();
+    let shown = earlier.get(earlier.len().saturating_sub(MAX_NAMED_ATTEMPTS)..).unwrap_or_default();
     let list = shown.iter().map(|a| said(a).into()).collect();
     let mut notes = vec![note!("attempt.again", number, earlier = Arg::Several(list, "; ".into()))];
     let missing: BTreeSet<&String> = earlier.iter().flat_map(|a| &a.missing).collect();

@@ -10,7 +10,7 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// Folders in folders that are looked into.
-const DEEPEST: usize = 12;
+const MAX_FOLDER_DEPTH: usize = 12;
 
 /// The result folders at and below a path, in the order of their names. What lies inside of a result, such as its phases, is a
 /// part of it.
@@ -35,7 +35,7 @@ pub fn result_folders(path: &Path) -> Result<Vec<PathBuf>, StoreError> {
             let path = folder.join(name);
             // A link could lead round in a circle.
             let is_folder = path.symlink_metadata().is_ok_and(|m| m.is_dir());
-            (is_folder && depth < DEEPEST).then_some((path, depth + 1))
+            (is_folder && depth < MAX_FOLDER_DEPTH).then_some((path, depth + 1))
         };
         open.extend(names(&folder)?.iter().filter_map(below));
     }
@@ -111,7 +111,7 @@ fn files_below(path: &Path) -> Result<Vec<PathBuf>, StoreError> {
             let Ok(meta) = path.symlink_metadata() else { continue };
             if meta.is_file() {
                 found.push(path);
-            } else if meta.is_dir() && depth < DEEPEST {
+            } else if meta.is_dir() && depth < MAX_FOLDER_DEPTH {
                 open.push((path, depth + 1));
             }
         }

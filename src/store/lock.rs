@@ -15,7 +15,7 @@ pub(super) const PATIENCE: Duration = Duration::from_secs(60);
 /// What a process listed and did not finish is forgotten after this time, where no lock tells: none takes as long.
 pub(super) const FORGOTTEN_AFTER: Duration = Duration::from_secs(24 * 3600);
 /// Pause between two attempts.
-const PAUSE: Duration = Duration::from_millis(5);
+const RETRY_PAUSE: Duration = Duration::from_millis(5);
 
 /// With whom the lock is held.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -52,7 +52,7 @@ pub(super) fn take(path: &Path, sharing: Sharing) -> Result<Lock, StoreError> {
         };
         match tried {
             Ok(()) => return Ok(Lock { _file: file }),
-            Err(TryLockError::WouldBlock) if began.elapsed() < PATIENCE => std::thread::sleep(PAUSE),
+            Err(TryLockError::WouldBlock) if began.elapsed() < PATIENCE => std::thread::sleep(RETRY_PAUSE),
             Err(TryLockError::WouldBlock) => return Err(StoreError::Busy(path.to_owned())),
             // A file system without locks: its transactions are all there is.
             Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => {

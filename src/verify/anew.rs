@@ -32,7 +32,7 @@ pub struct Anew<'a> {
 
 /// What a record holds that does not follow from recording and procedure, or is compared apart: who tested and when, what a store knew,
 /// where files lay.
-const ASIDE: [&str; 10] = [
+const UNCOMPARED_MEMBERS: [&str; 10] = [
     "format",
     "program",
     "session",
@@ -46,7 +46,7 @@ const ASIDE: [&str; 10] = [
 ];
 
 /// Members that no option changes unless it changes the procedure.
-const DECISIVE: [&str; 2] = ["verdict", "measurands"];
+const DECISIVE_MEMBERS: [&str; 2] = ["verdict", "measurands"];
 
 /// Computes a result, or every unit of a lot, from its recording anew and compares what was measured, with tables and figures.
 pub fn anew(folder: &Folder, how: Anew<'_>) -> Vec<Finding> {
@@ -167,7 +167,7 @@ fn compare(stated: &Value, made: &Value, files: impl FnOnce() -> Vec<String>) ->
     let mut differing = fields(stated, made);
     differing.extend(files());
     // Other options give other tables and figures; what was measured and decided is another matter.
-    if !findings.is_empty() && !differing.iter().any(|name| DECISIVE.contains(&name.as_str())) {
+    if !findings.is_empty() && !differing.iter().any(|name| DECISIVE_MEMBERS.contains(&name.as_str())) {
         return findings;
     }
     findings.push(match (differing.is_empty(), written == this) {
@@ -204,7 +204,8 @@ fn fields(stated: &Value, made: &Value) -> Vec<String> {
     rename(&mut made, &moved);
     let keys: BTreeSet<&String> =
         [&stated, &made].into_iter().filter_map(Value::as_object).flat_map(|o| o.keys()).collect();
-    let differ = |key: &&String| !ASIDE.contains(&key.as_str()) && stated.get(*key) != made.get(*key);
+    let differ =
+        |key: &&String| !UNCOMPARED_MEMBERS.contains(&key.as_str()) && stated.get(*key) != made.get(*key);
     let mut names: Vec<String> = keys.into_iter().filter(differ).cloned().collect();
     names.extend(other_serial.then(|| "unit_under_test".to_owned()));
     names

@@ -6,7 +6,7 @@ use crate::measurand;
 use crate::output::csv_line;
 
 /// Columns of a comparison of units.
-const COLUMNS: &str = "unit,channel,path,length_s,n_100s,detrend,sigma100_deg_h,sigma100_low,sigma100_high,\
+const UNIT_COLUMNS: &str = "unit,channel,path,length_s,n_100s,detrend,sigma100_deg_h,sigma100_low,sigma100_high,\
 sigma100_3sigma_deg_h,minimum_deg_h,minimum_low,minimum_high,minimum_tau_s,largest_tau_s,minimum_scaled_deg_h,\
 b_deg_h,b_low,b_high,b_upper_limit,floor_deg_h,ratio_minimum,ratio_minimum_low,ratio_minimum_high,\
 ratio_minimum_inverse,ratio_b,null_05,null_50,null_95,sigma10_deg_h,n_10s,arw10_deg_rt_h,arw10_low,arw10_high,\
@@ -28,7 +28,7 @@ pub fn of(comparison: &Comparison) -> String {
 
 /// The table of units.
 fn units(units: &[Unit]) -> String {
-    let mut out = COLUMNS.to_owned();
+    let mut out = UNIT_COLUMNS.to_owned();
     for unit in units {
         let value = |id: &str| number(unit.value(id));
         let low = |id: &str| number(unit.quantity(id).and_then(|q| Some(q.interval?.low)));

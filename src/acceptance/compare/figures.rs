@@ -6,7 +6,7 @@ use crate::i18n::note;
 use crate::measurand;
 
 /// Units that are named in the figure of ratios.
-const NAMED: usize = 14;
+const MAX_NAMED_UNITS: usize = 14;
 
 fn axis(label: &'static str, unit: &str, scale: Scale) -> Axis {
     Axis { label: label.into(), unit: unit.to_owned(), scale, range: None }
@@ -63,7 +63,7 @@ pub fn ratios(units: &[Unit]) -> Option<Figure> {
             });
         }
         points.push((hours, ratio));
-        if labels.len() < NAMED {
+        if labels.len() < MAX_NAMED_UNITS {
             let text = note!("compare.label", name = unit.label());
             labels.push(Layer::Label { at: (hours, ratio), text });
         }
@@ -99,7 +99,7 @@ pub fn ratios(units: &[Unit]) -> Option<Figure> {
 }
 
 /// Units whose σ(τ) one figure holds: as many as can be told apart.
-const OVERLAID: usize = 8;
+const MAX_OVERLAID_UNITS: usize = 8;
 
 /// Share of the record up to which σ(τ) is drawn.
 const MAX_RECORD_SHARE: f64 = 1.0 / 3.0;
@@ -111,7 +111,7 @@ pub fn sigma_tau(units: &[Unit]) -> Option<Figure> {
         return None;
     }
     let mut layers = vec![];
-    for (i, unit) in with_curve.iter().take(OVERLAID).enumerate() {
+    for (i, unit) in with_curve.iter().take(MAX_OVERLAID_UNITS).enumerate() {
         let style = Style::Unit(i as u8);
         let longest_s = unit.length_s.map_or(f64::INFINITY, |t| t * MAX_RECORD_SHARE);
         let points: Vec<(f64, f64)> = unit
@@ -126,7 +126,8 @@ pub fn sigma_tau(units: &[Unit]) -> Option<Figure> {
         layers.push(Layer::Line { points: points.clone(), style, legend: unit.label() });
         layers.push(Layer::Points { points, style, legend: unit.label() });
     }
-    let russian = with_curve.iter().take(OVERLAID).filter_map(|u| u.value(measurand::RUSSIAN_DRIFT_100S.id));
+    let russian =
+        with_curve.iter().take(MAX_OVERLAID_UNITS).filter_map(|u| u.value(measurand::RUSSIAN_DRIFT_100S.id));
     let russian: Vec<(f64, f64)> = russian.map(|v| (100.0, v)).collect();
     layers.push(Layer::Points {
         points: russian,
@@ -134,9 +135,9 @@ pub fn sigma_tau(units: &[Unit]) -> Option<Figure> {
         legend: "figure.legend.russian".into(),
     });
     let mut remarks = vec![];
-    if with_curve.len() > OVERLAID {
+    if with_curve.len() > MAX_OVERLAID_UNITS {
         let shown = note!("compare.figure.sigma_tau_remark");
-        remarks.push(shown.with("shown", OVERLAID).with("all", with_curve.len()));
+        remarks.push(shown.with("shown", MAX_OVERLAID_UNITS).with("all", with_curve.len()));
     }
     Some(Figure {
         id: "sigma_tau".into(),

@@ -11,7 +11,7 @@ use crate::noise::model::{TERMS, unit_allan_variance};
 use crate::noise::russian::{angle_random_walk_from_10s, null_minimum};
 
 /// σ10/σ100 of white noise.
-const WHITE: f64 = 3.162_277_660_168_379_5;
+const WHITE_NOISE_RATIO: f64 = 3.162_277_660_168_379_5;
 
 /// A row in numbers.
 struct Row {
@@ -54,11 +54,11 @@ fn sampling(windows: f64) -> Range {
 }
 
 /// The tables as data.
-const TABLES: &str = include_str!("published.toml");
+const PUBLISHED_TABLES: &str = include_str!("published.toml");
 
 /// Checks the published tables; `None` only if the tables in the program cannot be read, which a test excludes.
 pub fn checked() -> Option<Checked> {
-    let tables: Tables = toml::from_str(TABLES).ok()?;
+    let tables: Tables = toml::from_str(PUBLISHED_TABLES).ok()?;
     check(&tables)
 }
 
@@ -191,9 +191,9 @@ fn against_white_noise(r: &Row, tables: &Tables, remarks: &mut Remarks) -> f64 {
     let per_arw = 1.0 / angle_random_walk_from_10s(1.0);
     let steep = per_arw * r.arw.value / r.sigma100.value;
     let sigma10 = Printed { value: per_arw * r.arw.value, half: per_arw * r.arw.half };
-    if quotients(sigma10, r.sigma100).low > WHITE / sampling.low {
+    if quotients(sigma10, r.sigma100).low > WHITE_NOISE_RATIO / sampling.low {
         let note = note!("compare.published.excess_at_10_s");
-        remarks.flag(note.with("ratio", factor(steep)).with("white", factor(WHITE)));
+        remarks.flag(note.with("ratio", factor(steep)).with("white", factor(WHITE_NOISE_RATIO)));
     }
     steep
 }

@@ -8,14 +8,14 @@ use crate::noise::data::NoiseType;
 use crate::record::{Agreement, ComparisonRecord, WindowRecord};
 
 /// Smallest share that is named.
-const NAMED: f64 = 0.005;
+const MIN_NAMED_SHARE: f64 = 0.005;
 
 /// Probability of a misfit below which a prediction is called indicative.
-const UNBELIEVABLE: f64 = 1e-3;
+const MIN_BELIEVABLE_P: f64 = 1e-3;
 
 /// How many half-widths of a 95 % interval off a verdict may still be chance: 3.3 standard deviations, one in a
 /// thousand.
-const NEAR: f64 = 1.7;
+const MAX_CHANCE_HALF_WIDTHS: f64 = 1.7;
 
 /// Id of the note that a Markov process does as well as flicker.
 const MARKOV_ALIKE: &str = "slow_alike.markov";
@@ -54,7 +54,7 @@ fn made_of(w: &WindowRecord) -> Option<Note> {
     let (first, rest) = kinds.split_first()?;
     let others: Vec<Arg> = rest
         .iter()
-        .filter(|(_, share)| *share >= NAMED)
+        .filter(|(_, share)| *share >= MIN_NAMED_SHARE)
         .map(|(key, share)| {
             let part = Arg::Key((*key).into());
             Arg::from(note!("compare.summary.share", part, share = percent(*share)))
@@ -92,7 +92,7 @@ fn agreement(w: &WindowRecord, window: &'static str) -> Option<Note> {
 /// Said when the model is no description of the record.
 pub(super) fn misfit(detail: &ComparisonRecord) -> Option<Note> {
     let (misfit, p) = (detail.model.misfit?, detail.model.misfit_probability?);
-    (p < UNBELIEVABLE).then(|| note!("compare.summary.misfit", misfit = Arg::rounded(misfit, 2)))
+    (p < MIN_BELIEVABLE_P).then(|| note!("compare.summary.misfit", misfit = Arg::rounded(misfit, 2)))
 }
 
 /// Said when a verdict is so near that it may be chance.
@@ -101,7 +101,7 @@ fn by_chance(detail: &ComparisonRecord) -> Option<Note> {
         let (ratio, i) = (w.ratio?, w.ratio_interval?);
         let to_one = if ratio > 1.0 { (ratio / i.low).ln() } else { (i.high / ratio).ln() };
         let off = ratio.ln().abs() / to_one;
-        Some(off > 1.0 && off < NEAR)
+        Some(off > 1.0 && off < MAX_CHANCE_HALF_WIDTHS)
     };
     detail.windows.iter().any(|w| near(w) == Some(true)).then(|| note!("compare.more.by_chance"))
 }

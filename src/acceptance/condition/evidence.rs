@@ -3,7 +3,7 @@
 use crate::record::{ConditionRecord, Evidence};
 
 /// Judged by what the output does.
-const INFERRED: &[&str] = &[
+const INFERRED_CONDITIONS: &[&str] = &[
     "earth_rate",
     "known_earth",
     "noise_level",
@@ -16,7 +16,7 @@ const INFERRED: &[&str] = &[
 ];
 
 /// Stated by the procedure or by who ran the test.
-const DECLARED: &[&str] = &["calibration", "known_stretches", "warm_up"];
+const DECLARED_CONDITIONS: &[&str] = &["calibration", "known_stretches", "warm_up"];
 
 /// Taken from the stamps of the recording, and without stamps from the declared rate.
 const BY_STAMPS: &[&str] = &[
@@ -32,7 +32,7 @@ const BY_STAMPS: &[&str] = &[
 ];
 
 /// Read from a channel or from the fields of the recording.
-const RECORDED: &[&str] = &[
+const RECORDED_CONDITIONS: &[&str] = &[
     "backward_timestamps",
     "cut_off",
     "duplicate_timestamps",
@@ -67,11 +67,11 @@ pub fn complete(conditions: &mut [ConditionRecord], has_stamps: bool) {
 
 fn usual(kind: &str, has_stamps: bool) -> Option<Evidence> {
     let among = |list: &[&str]| list.contains(&kind);
-    if among(INFERRED) {
+    if among(INFERRED_CONDITIONS) {
         Some(Evidence::Inferred)
-    } else if among(DECLARED) || among(BY_STAMPS) && !has_stamps {
+    } else if among(DECLARED_CONDITIONS) || among(BY_STAMPS) && !has_stamps {
         Some(Evidence::Declared)
-    } else if among(RECORDED) || among(BY_STAMPS) {
+    } else if among(RECORDED_CONDITIONS) || among(BY_STAMPS) {
         Some(Evidence::Recorded)
     } else {
         None

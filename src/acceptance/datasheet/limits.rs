@@ -5,7 +5,7 @@ use crate::record::{DataSheet, SheetOf, SheetQuantity, SheetSide};
 use std::fmt::Write;
 
 /// Digits of a limit.
-const DIGITS: i32 = 3;
+const LIMIT_DIGITS: i32 = 3;
 
 /// The text of a limits file: of every quantity that limits files know, the bounds for measured values, rounded outwards.
 /// `comment` stands at its head.
@@ -56,7 +56,7 @@ fn outwards(value: f64, up: bool) -> f64 {
     if value == 0.0 || !value.is_finite() {
         return value;
     }
-    let places = DIGITS - 1 - value.abs().log10().floor() as i32;
+    let places = LIMIT_DIGITS - 1 - value.abs().log10().floor() as i32;
     let scaled = value * 10f64.powi(places);
     let whole = if up { (scaled - 1e-9).ceil() } else { (scaled + 1e-9).floor() };
     // Through text, so that no dust of the division is left.

@@ -6,9 +6,9 @@ use crate::lot::tolerance::{Promise, normal_factor};
 use crate::record::{SheetOutlook, SheetRisk, SheetSide};
 
 /// Times as many units as were tested, for the outlook.
-const MORE: usize = 2;
+const OUTLOOK_LOT_FACTOR: usize = 2;
 /// Lengths of a test that are compared, in parts of the present one.
-const LENGTHS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
+const LENGTH_FACTORS: [f64; 4] = [1.0, 0.5, 0.25, 0.1];
 
 /// The bound for measured values that more units would promise, if median and spread stayed as they are estimated: the distance of
 /// the bound from the median shrinks with the factor of a normal sample. Everything on the scale of the quantity.
@@ -20,7 +20,7 @@ pub(super) fn outlook(
     promise: Promise,
 ) -> Option<SheetOutlook> {
     let factor = |n: usize| normal_factor(n as f64, n as f64 - 1.0, promise);
-    let more = MORE * units;
+    let more = OUTLOOK_LOT_FACTOR * units;
     let median = population.typical(0.5).value;
     let ratio = factor(more)? / factor(units)?;
     let side = if side == Side::Upper { SheetSide::Upper } else { SheetSide::Lower };
@@ -38,7 +38,7 @@ pub(super) fn risks(population: &Population, limit: f64) -> Vec<SheetRisk> {
         let risk = Judged { measurement: judged.measurement / length.sqrt(), ..judged }.upper(limit)?;
         Some(SheetRisk { length, consumer: risk.consumer, producer: risk.producer })
     };
-    LENGTHS.into_iter().filter_map(at).collect()
+    LENGTH_FACTORS.into_iter().filter_map(at).collect()
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use crate::numeric::order::quantile;
 use crate::record::{SheetTemperatureCurve, SheetTemperaturePoint, SheetUnitCurve};
 
 /// Number of temperatures at which the lot is evaluated.
-const POINTS: usize = 25;
+const TEMPERATURE_POINTS: usize = 25;
 
 /// The curves of every channel that at least two units have over a common range.
 pub(super) fn curves(units: &[TestedUnit], promise: Promise) -> Vec<SheetTemperatureCurve> {
@@ -34,7 +34,9 @@ fn curve(channel: &str, tables: &[(String, Table)], promise: Promise) -> Option<
     if tables.len() < 2 || low.partial_cmp(&high) != Some(std::cmp::Ordering::Less) {
         return None;
     }
-    let grid: Vec<f64> = (0..POINTS).map(|i| low + (high - low) * i as f64 / (POINTS - 1) as f64).collect();
+    let grid: Vec<f64> = (0..TEMPERATURE_POINTS)
+        .map(|i| low + (high - low) * i as f64 / (TEMPERATURE_POINTS - 1) as f64)
+        .collect();
     let of_unit = |(serial, table): &(String, Table)| {
         let values: Vec<f64> = grid.iter().map(|t| table.at(*t)).collect();
         let mean = values.iter().sum::<f64>() / values.len() as f64;
@@ -42,7 +44,7 @@ fn curve(channel: &str, tables: &[(String, Table)], promise: Promise) -> Option<
         SheetUnitCurve { serial: serial.clone(), points }
     };
     let units: Vec<SheetUnitCurve> = tables.iter().map(of_unit).collect();
-    let points = (0..POINTS).filter_map(|i| point(&units, i, promise)).collect();
+    let points = (0..TEMPERATURE_POINTS).filter_map(|i| point(&units, i, promise)).collect();
     Some(SheetTemperatureCurve { channel: channel.to_owned(), points, units })
 }
 
@@ -91,7 +93,8 @@ mod tests {
             ("B".to_owned(), table(0.0, 60.0, |t| -7.0 + 0.3 * t)),
         ];
         let curve = curve("rate", &tables, Promise { proportion: 0.95, confidence: 0.95 }).unwrap();
-        let ends = (curve.points[0].temperature_deg_c, curve.points[POINTS - 1].temperature_deg_c);
+        let ends =
+            (curve.points[0].temperature_deg_c, curve.points[TEMPERATURE_POINTS - 1].temperature_deg_c);
         assert_eq!(ends, (0.0, 50.0));
         for (unit, slope) in curve.units.iter().zip([0.1, 0.3]) {
             assert!(unit.points.iter().all(|[t, v]| (v - slope * (t - 25.0)).abs() < 1e-9), "{unit:?}");

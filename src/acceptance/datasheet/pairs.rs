@@ -8,7 +8,7 @@ use crate::numeric::order::quantile;
 use crate::record::{SheetPair, SheetQuantity};
 
 /// Quantities set side by side.
-static PAIRS: [(&Measurand, &Measurand); 5] = [
+static MEASURAND_PAIRS: [(&Measurand, &Measurand); 5] = [
     (&RUSSIAN_DRIFT_100S, &BIAS_INSTABILITY_MINIMUM),
     (&RUSSIAN_DRIFT_100S, &BIAS_INSTABILITY),
     (&RUSSIAN_DRIFT_100S_3SIGMA, &BIAS_INSTABILITY_MINIMUM),
@@ -19,7 +19,7 @@ static PAIRS: [(&Measurand, &Measurand); 5] = [
 /// The pairs of each channel of which units have both values.
 pub(super) fn pairs(quantities: &[SheetQuantity]) -> Vec<SheetPair> {
     let russian = |id: &str| quantities.iter().filter(|q| q.id == id).collect::<Vec<_>>();
-    PAIRS
+    MEASURAND_PAIRS
         .iter()
         .flat_map(|(r, a)| {
             let sides = russian(r.id).into_iter().filter_map(|q| {

@@ -6,15 +6,15 @@ use crate::figure::{Figure, Style};
 use crate::rate_table::dead_zone::DeadZone;
 
 /// Points of the curve.
-const CURVE: usize = 201;
+const CURVE_POINTS: usize = 201;
 
 /// Draws the response of a channel to small rates.
 pub fn figure(zone: &DeadZone, several: bool) -> Figure {
     let k = normal_quantile(0.975);
     let low = zone.points.iter().map(|p| p.0).fold(f64::INFINITY, f64::min);
     let high = zone.points.iter().map(|p| p.0).fold(f64::NEG_INFINITY, f64::max);
-    let at = |i: usize| low + (high - low) * i as f64 / (CURVE - 1) as f64;
-    let curve = (0..CURVE).map(|i| (at(i), zone.at(at(i)))).collect();
+    let at = |i: usize| low + (high - low) * i as f64 / (CURVE_POINTS - 1) as f64;
+    let curve = (0..CURVE_POINTS).map(|i| (at(i), zone.at(at(i)))).collect();
     let straight = [low, high].map(|x| (x, zone.offset + zone.slope * (x - zone.centre))).to_vec();
     let band = zone.points.iter().map(|(x, y, u)| (*x, y - k * u, y + k * u)).collect();
     let points = zone.points.iter().map(|(x, y, _)| (*x, *y)).collect();

@@ -7,7 +7,7 @@ use crate::influence::comparison::{Comparison, IntervalMean};
 use crate::influence::setup::Influence;
 
 /// Points of a curve over the level.
-const CURVE: usize = 61;
+const CURVE_POINTS: usize = 61;
 
 /// Draws the intervals of a channel, and a panel over the level for every axis.
 pub fn figure(found: &Comparison, several: bool) -> Figure {
@@ -50,9 +50,9 @@ fn over_level(found: &Comparison, k: usize, name: &str) -> Panel {
     let reference = found.test.reference;
     let low = own().fold(reference, |m, s| m.min(s.level));
     let high = own().fold(reference, |m, s| m.max(s.level));
-    let at = |i: usize| low + (high - low) * i as f64 / (CURVE - 1) as f64;
+    let at = |i: usize| low + (high - low) * i as f64 / (CURVE_POINTS - 1) as f64;
     let drive = |l: f64| influence.drive(l) - influence.drive(reference);
-    let curve = (0..CURVE).map(|i| (at(i), found.per_unit[k].value * drive(at(i)))).collect();
+    let curve = (0..CURVE_POINTS).map(|i| (at(i), found.per_unit[k].value * drive(at(i)))).collect();
     let label = match influence {
         Influence::MagneticField => "figure_influence.axis_field",
         Influence::Supply => "axis.supply",

@@ -7,16 +7,16 @@ use crate::noise::identification::Identification;
 use crate::noise::model::TERMS;
 
 /// Number of the style of lines; N, B, K, Q and R come first.
-const LINE: u8 = 5;
-const MARKOV: u8 = 6;
+const LINE_STYLE: u8 = 5;
+const MARKOV_STYLE: u8 = 6;
 const QUASI_PERIODIC: u8 = 7;
 
 /// Style of a part. Processes of one kind share it.
 pub fn style(part: Part) -> Style {
     Style::Term(match part {
         Part::Term(term) => TERMS.iter().position(|t| *t == term).unwrap_or(0) as u8,
-        Part::Line(_) => LINE,
-        Part::Markov(_) => MARKOV,
+        Part::Line(_) => LINE_STYLE,
+        Part::Markov(_) => MARKOV_STYLE,
         Part::QuasiPeriodic(_) => QUASI_PERIODIC,
     })
 }

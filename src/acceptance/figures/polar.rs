@@ -10,10 +10,10 @@ use crate::rate_table::scale_factor::ScaleFactor;
 use std::f64::consts::TAU;
 
 /// Sectors of a turn.
-const SECTORS: usize = 36;
+const SECTORS_PER_TURN: usize = 36;
 
 /// Radius of the zero in units of the largest residual.
-const ZERO: f64 = 2.0;
+const ZERO_RADIUS: f64 = 2.0;
 
 /// Mean and the square of its standard uncertainty of every sector: samples, sum, sum of squares, blocks.
 #[derive(Default, Clone, Copy)]
@@ -27,7 +27,7 @@ struct Sector {
 /// The means over the angle with their standard uncertainties, deg/h; `None` where too few whole turns tell them.
 fn sectors(run: &TableRun, channel: &ScaleFactor) -> Option<Vec<(f64, f64)>> {
     let gyro = run.blocks.gyros.iter().position(|g| *g == channel.channel)?;
-    let mut all = vec![Sector::default(); SECTORS];
+    let mut all = vec![Sector::default(); SECTORS_PER_TURN];
     let dt = run.blocks.interval_s;
     for step in run.steps.list.iter().filter(|s| s.turns.abs() >= 1.0) {
         let inside = run.blocks.list.iter().filter(|b| {
@@ -37,11 +37,11 @@ fn sectors(run: &TableRun, channel: &ScaleFactor) -> Option<Vec<(f64, f64)>> {
         for b in inside {
             let turned = step.rate * f64::from(b.samples) * dt;
             // A block that passes several sectors tells none of them.
-            if turned.abs() > 2.0 * TURN_ARCSEC / SECTORS as f64 || !b.angle_first.is_finite() {
+            if turned.abs() > 2.0 * TURN_ARCSEC / SECTORS_PER_TURN as f64 || !b.angle_first.is_finite() {
                 continue;
             }
             let turn = ((b.angle_first + 0.5 * turned) / TURN_ARCSEC).rem_euclid(1.0);
-            let at = ((turn * SECTORS as f64) as usize).min(SECTORS - 1);
+            let at = ((turn * SECTORS_PER_TURN as f64) as usize).min(SECTORS_PER_TURN - 1);
             let (w, r) = (f64::from(b.samples), b.gyro[gyro] - mean);
             let s = &mut all[at];
             s.weight += w;
@@ -66,8 +66,8 @@ pub fn figure(run: &TableRun, channel: &ScaleFactor, several: bool) -> Option<Fi
     let means = sectors(run, channel)?;
     let k = normal_quantile(0.975);
     let largest = means.iter().fold(0.0, |m: f64, (r, u)| m.max(r.abs() + k * u)).max(f64::MIN_POSITIVE);
-    let zero = ZERO * largest;
-    let angle = |i: f64| TAU * (i + 0.5) / SECTORS as f64;
+    let zero = ZERO_RADIUS * largest;
+    let angle = |i: f64| TAU * (i + 0.5) / SECTORS_PER_TURN as f64;
     let place = |theta: f64, value: f64| ((zero + value) * theta.cos(), (zero + value) * theta.sin());
     let ring = |value: f64| (0..=180).map(|i| place(TAU * f64::from(i) / 180.0, value)).collect();
     let mut spokes = Vec::new();

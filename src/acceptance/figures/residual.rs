@@ -6,9 +6,9 @@ use crate::i18n::{Arg, note};
 use crate::measurand::GyroEvidence;
 
 /// Width of a bar in standard deviations.
-const WIDTH: f64 = 0.25;
+const BAR_WIDTH_SIGMAS: f64 = 0.25;
 /// Bars on each side of zero; what lies beyond is in the last one.
-const SIDE: usize = 32;
+const BARS_PER_SIDE: usize = 32;
 
 /// Draws the distribution; `None` where the record is too short for a residual.
 pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
@@ -19,22 +19,22 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
     if !(sigma > 0.0 && sigma.is_finite()) {
         return None;
     }
-    let mut counts = vec![0u64; 2 * SIDE];
+    let mut counts = vec![0u64; 2 * BARS_PER_SIDE];
     for v in &whitened.values {
-        let at = (v / sigma / WIDTH).floor() + SIDE as f64;
-        let at = at.clamp(0.0, (2 * SIDE - 1) as f64) as usize;
+        let at = (v / sigma / BAR_WIDTH_SIGMAS).floor() + BARS_PER_SIDE as f64;
+        let at = at.clamp(0.0, (2 * BARS_PER_SIDE - 1) as f64) as usize;
         if let Some(count) = counts.get_mut(at) {
             *count += 1;
         }
     }
-    let edge = |i: usize| (i as f64 - SIDE as f64) * WIDTH;
+    let edge = |i: usize| (i as f64 - BARS_PER_SIDE as f64) * BAR_WIDTH_SIGMAS;
     let bars = counts
         .iter()
         .enumerate()
         .filter(|(_, c)| **c > 0)
         .map(|(i, c)| (edge(i), edge(i + 1), *c as f64))
         .collect();
-    let peak = n * WIDTH / (2.0 * std::f64::consts::PI).sqrt();
+    let peak = n * BAR_WIDTH_SIGMAS / (2.0 * std::f64::consts::PI).sqrt();
     // The curve ends where less than half a value is expected.
     let normal = (-160..=160)
         .map(|i| f64::from(i) / 20.0)

@@ -18,7 +18,7 @@ pub struct Span {
 }
 
 /// Least length of a line, as a ratio of its averaging times.
-const LEAST: f64 = 3.0;
+const MIN_LINE_TAU_RATIO: f64 = 3.0;
 
 /// One limit as a line: σ(τ) of a gyro that has the term at its limit and nothing else.
 struct Line {
@@ -35,17 +35,20 @@ struct Line {
 /// Angle random walk acts at the short averaging times, σ = N/√τ: N is its value at 1 h. The line ends where the limit on
 /// the bias instability takes over.
 fn short(s: Span, corner_s: f64) -> (f64, f64) {
-    (s.first_s, corner_s.max(LEAST * s.first_s).min(s.last_s))
+    (s.first_s, corner_s.max(MIN_LINE_TAU_RATIO * s.first_s).min(s.last_s))
 }
 
 /// Bias instability acts from there, and about the lowest point.
 fn flat(s: Span, corner_s: f64) -> (f64, f64) {
-    (corner_s.min(s.lowest_s / LEAST).max(s.first_s), (s.lowest_s * LEAST).min(s.last_s))
+    (
+        corner_s.min(s.lowest_s / MIN_LINE_TAU_RATIO).max(s.first_s),
+        (s.lowest_s * MIN_LINE_TAU_RATIO).min(s.last_s),
+    )
 }
 
 /// Rate random walk acts at the long averaging times, σ = K·√(τ/3): K is its value at 3 h.
 fn long(s: Span, _: f64) -> (f64, f64) {
-    (s.lowest_s.min(s.last_s / LEAST).max(s.first_s), s.last_s)
+    (s.lowest_s.min(s.last_s / MIN_LINE_TAU_RATIO).max(s.first_s), s.last_s)
 }
 
 /// Averaging time at which a gyro at both limits passes from angle random walk to bias instability; where σ(τ) is lowest
@@ -54,7 +57,7 @@ fn corner_s(span: Span, highest: &dyn Fn(&str) -> Option<f64>) -> f64 {
     let at = |line: &Line, tau_s: f64| {
         line.ids.iter().find_map(|id| highest(id)).map(|limit| (line.sigma)(limit, tau_s))
     };
-    let [n, b, minimum, _] = &LINES;
+    let [n, b, minimum, _] = &LIMIT_LINES;
     let floor = at(b, 3600.0).or_else(|| at(minimum, 3600.0));
     match (at(n, 3600.0), floor) {
         (Some(n), Some(floor)) if n > 0.0 && floor > 0.0 => (3600.0 * (n / floor).powi(2)).min(span.lowest_s),
@@ -62,7 +65,7 @@ fn corner_s(span: Span, highest: &dyn Fn(&str) -> Option<f64>) -> f64 {
     }
 }
 
-const LINES: [Line; 4] = [
+const LIMIT_LINES: [Line; 4] = [
     Line {
         ids: &[measurand::ANGLE_RANDOM_WALK.id, measurand::ANGLE_RANDOM_WALK_READOUT.id],
         label: "figure_label.limit_n",
@@ -98,7 +101,7 @@ pub fn layers(span: Span, highest: &dyn Fn(&str) -> Option<f64>) -> Vec<Layer> {
     let label = |at: (f64, f64), key: &'static str, limit: f64| {
         draw::label(at, Note::new(key).with("value", Arg::Stated(limit)))
     };
-    for line in &LINES {
+    for line in &LIMIT_LINES {
         let Some(limit) = line.ids.iter().find_map(|id| highest(id)).filter(|l| *l > 0.0) else { continue };
         let (from, to) = (line.acts)(span, corner_s);
         if !(from > 0.0 && to > from) {

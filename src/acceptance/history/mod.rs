@@ -15,7 +15,7 @@ use crate::store::Attempt;
 use selection::Selection;
 
 /// Benches that a note names.
-const NAMED: usize = 5;
+const MAX_NAMED_BENCHES: usize = 5;
 
 /// The history of results that are in the order of time. `common` is the standard uncertainty that all tests of a unit share, in
 /// the unit of the measurand that was asked for.
@@ -58,7 +58,7 @@ fn notes(selection: &Selection<'_>, charts: &[HistoryChart]) -> Vec<Note> {
         .collect();
     if !wander.is_empty() {
         let n = wander.len();
-        let shown = wander.into_iter().take(NAMED).collect();
+        let shown = wander.into_iter().take(MAX_NAMED_BENCHES).collect();
         notes.push(note!("history.note.wander", n, benches = Arg::Several(shown, "; ".into())));
     }
     let counts = counts::counts(selection);

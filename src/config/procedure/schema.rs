@@ -19,7 +19,7 @@ use crate::measurand::MEASURANDS;
 use serde_json::{Map, Value, json};
 
 /// The draft that schemas are written in.
-const DRAFT: &str = "https://json-schema.org/draft/2020-12/schema";
+const SCHEMA_DRAFT: &str = "https://json-schema.org/draft/2020-12/schema";
 
 /// Pattern of a number with its unit.
 const QUANTITY_PATTERN: &str = r"^\s*[+\-−]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?\s*\S.*$";
@@ -27,7 +27,7 @@ const QUANTITY_PATTERN: &str = r"^\s*[+\-−]?(\d+(\.\d*)?|\.\d+)([eE][+-]?\d+)?
 /// The schema of a procedure file: of one recording, or of several phases.
 pub fn procedure() -> Value {
     json!({
-        "$schema": DRAFT,
+        "$schema": SCHEMA_DRAFT,
         "title": "Sagnac procedure",
         "oneOf": [table(&PROCEDURE_FILE), table(&PHASES_FILE)],
     })
@@ -93,7 +93,7 @@ pub fn layout() -> Value {
 fn document(root: &'static TableSpec, title: &str) -> Value {
     let mut schema = table(root);
     if let Some(object) = schema.as_object_mut() {
-        object.insert("$schema".into(), json!(DRAFT));
+        object.insert("$schema".into(), json!(SCHEMA_DRAFT));
         object.insert("title".into(), json!(title));
     }
     schema

@@ -9,13 +9,13 @@ use crate::i18n::{Note, note};
 use crate::units::Unit;
 
 /// Unit of rates in results.
-const RATE: &str = "deg/h";
+const RATE_UNIT: &str = "deg/h";
 
 /// A unit of rate from this size on, deg/h, is one of units that turn fast: deg/s, rad/s, mrad/s.
 const FAST_DEG_H: f64 = 100.0;
 
 /// A limit this many times its typical value, or this small a part of it, is in another unit.
-const FAR: f64 = 500.0;
+const UNIT_SLIP_FACTOR: f64 = 500.0;
 
 /// No drift of a working gyro is as large, deg/h.
 const IMPLAUSIBLE_DEG_H: f64 = 1000.0;
@@ -35,12 +35,13 @@ pub(super) fn fast_unit(section: &Section, reader: &Reader<'_>) -> Option<FastUn
 
 /// Size of a unit of rate, deg/h.
 fn size(unit: &str) -> Option<f64> {
-    Unit::parse(unit).ok()?.factor_to(&Unit::parse(RATE).ok()?).ok()
+    Unit::parse(unit).ok()?.factor_to(&Unit::parse(RATE_UNIT).ok()?).ok()
 }
 
 /// The slips of a set that show without a procedure.
 pub(super) fn of_set(set: &LimitSet, source: &SourceText) -> Vec<Problem> {
-    let slow = |l: &LimitSpec| l.measurand.unit == RATE && set.fast_units.iter().all(|f| f.limit != l.span);
+    let slow =
+        |l: &LimitSpec| l.measurand.unit == RATE_UNIT && set.fast_units.iter().all(|f| f.limit != l.span);
     let mut found = vec![];
     for limit in &set.limits {
         let bound = largest(limit);
@@ -57,7 +58,7 @@ pub(super) fn of_set(set: &LimitSet, source: &SourceText) -> Vec<Problem> {
         }
         if let Some(typical) = typical(set, limit)
             && limit.span != typical.1
-            && !(1.0 / FAR..=FAR).contains(&(bound / typical.0.abs()))
+            && !(1.0 / UNIT_SLIP_FACTOR..=UNIT_SLIP_FACTOR).contains(&(bound / typical.0.abs()))
         {
             let message = note!(
                 "check.slip.ratio",

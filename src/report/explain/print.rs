@@ -7,11 +7,11 @@ use crate::report::number::{Rounding, digits, limit_digits, typographic};
 use crate::report::translator::Translator;
 
 /// Ratio of the sides of an interval from which it is printed by its ends.
-const LOPSIDED: f64 = 1.5;
+const MAX_SIDE_RATIO: f64 = 1.5;
 /// Log-likelihoods beyond are printed with a power of ten.
-const LARGE: f64 = 1e9;
+const MAX_PLAIN_LOG_LIKELIHOOD: f64 = 1e9;
 /// Share of the recording that counts as the whole of it.
-const WHOLE: f64 = 0.97;
+const WHOLE_RECORD_SHARE: f64 = 0.97;
 
 /// Title of a kind.
 pub fn title(kind: &str, words: Translator) -> String {
@@ -88,7 +88,7 @@ pub fn value(name: &str, p: &ParameterValue, words: Translator) -> Printed {
         return Printed { whole: words.quantity(&shown, &p.unit), value: shown, interval: String::new() };
     }
     let (below, above) = (p.value - low, high - p.value);
-    let even = below > 0.0 && above > 0.0 && below.max(above) < LOPSIDED * below.min(above);
+    let even = below > 0.0 && above > 0.0 && below.max(above) < MAX_SIDE_RATIO * below.min(above);
     let interval = between(&rounding.show(low, lang), &rounding.show(high, lang), words);
     let whole = if even {
         let half = rounding.show(0.5 * (high - low), lang);
@@ -130,7 +130,10 @@ pub fn ends(place: &PlaceRecord, words: Translator) -> String {
 
 /// Where a mismatch shows, as a phrase.
 pub fn place(place: &PlaceRecord, length_s: f64, words: Translator) -> String {
-    if place.domain == Domain::Time && place.to - place.from >= WHOLE * length_s && length_s > 0.0 {
+    if place.domain == Domain::Time
+        && place.to - place.from >= WHOLE_RECORD_SHARE * length_s
+        && length_s > 0.0
+    {
         return words.t("explain.where.whole");
     }
     words.with(&format!("explain.where.{}", place.domain.id()), &[("place", &ends(place, words))])
@@ -152,7 +155,7 @@ pub fn difference(v: f64, words: Translator) -> String {
     if !v.is_finite() {
         return crate::report::number::NOTHING.to_owned();
     }
-    if v.abs() >= LARGE {
+    if v.abs() >= MAX_PLAIN_LOG_LIKELIHOOD {
         return digits(v, 3, words.lang);
     }
     let decimals = usize::from(v.abs() < 1000.0);
@@ -163,7 +166,11 @@ pub fn difference(v: f64, words: Translator) -> String {
 
 /// A log-likelihood or BIC: one decimal.
 pub fn plain(v: f64, words: Translator) -> String {
-    if v.abs() < LARGE { typographic(&format!("{v:.1}"), words.lang) } else { digits(v, 3, words.lang) }
+    if v.abs() < MAX_PLAIN_LOG_LIKELIHOOD {
+        typographic(&format!("{v:.1}"), words.lang)
+    } else {
+        digits(v, 3, words.lang)
+    }
 }
 
 #[cfg(test)]

@@ -179,7 +179,7 @@ fn relative(before: f64, after: f64, words: Translator) -> String {
 }
 
 /// Change of log-likelihood that is worth calling one.
-const NOTICEABLE: f64 = 0.5;
+const MIN_LOG_LIKELIHOOD_CHANGE: f64 = 0.5;
 
 /// What adding the effects does to the fit, in a sentence.
 pub(super) fn fit_summary(all: &Explanation, words: Translator) -> String {
@@ -190,7 +190,7 @@ pub(super) fn fit_summary(all: &Explanation, words: Translator) -> String {
     let shown = difference(gain, words);
     if !gain.is_finite() {
         String::new()
-    } else if gain.abs() < NOTICEABLE {
+    } else if gain.abs() < MIN_LOG_LIKELIHOOD_CHANGE {
         words.with("explain.fit.heldout_same", &[("gain", &shown)])
     } else if gain > 0.0 {
         words.with("explain.fit.heldout_gains", &[("gain", &shown)])

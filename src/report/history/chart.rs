@@ -8,7 +8,7 @@ use crate::report::view::FigureView;
 use serde::Serialize;
 
 /// Points that are named one by one.
-const NAMED: usize = 10;
+const MAX_NAMED_POINTS: usize = 10;
 
 /// A chart, printed.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -135,9 +135,9 @@ fn beyond(chart: &HistoryChart, control: &HistoryControl, words: Translator) -> 
             ));
         }
     }
-    if out.len() > NAMED {
-        let more = out.len() - NAMED;
-        out.truncate(NAMED);
+    if out.len() > MAX_NAMED_POINTS {
+        let more = out.len() - MAX_NAMED_POINTS;
+        out.truncate(MAX_NAMED_POINTS);
         out.push(words.with("history.more_points", &[("n", &count(more as u64, words.lang))]));
     }
     out

@@ -8,11 +8,11 @@ use crate::report::translator::Translator;
 use crate::schedule::Step;
 
 /// Digits of temperatures, rates and lengths.
-const DIGITS: usize = 4;
+const QUANTITY_DIGITS: usize = 4;
 
 /// What a step asks for.
 pub(super) fn step(step: &Step, words: Translator) -> String {
-    let number = |value: f64| limit_digits(value, DIGITS, words.lang);
+    let number = |value: f64| limit_digits(value, QUANTITY_DIGITS, words.lang);
     let list =
         |values: &[f64]| values.iter().map(|v| number(*v)).collect::<Vec<_>>().join(&words.t("number.list"));
     match step {

@@ -10,7 +10,7 @@ const MIN_SIGNIFICANCE: f64 = 10.0;
 /// Share of the step that a quarter of the reach must show: a slow change shows a quarter.
 const MIN_SUDDEN_SHARE: f64 = 0.6;
 /// Parts whose noise is compared.
-const PARTS: usize = 16;
+const COMPARED_PARTS: usize = 16;
 /// Ratio of the noise of two parts that is worth saying.
 const MIN_NOISE_RATIO: f64 = 1.4;
 
@@ -57,12 +57,12 @@ pub fn bias_step(blocks: &BlockSeries, tau0_s: f64) -> Option<BiasStep> {
 /// A change of the noise between sixteenths of the record, timed from the start of the grid.
 pub fn noise_change(blocks: &BlockSeries, tau0_s: f64) -> Option<NoiseChange> {
     let block_s = blocks.block_len.max(1) as f64 * tau0_s;
-    let length = blocks.mean.len() / PARTS;
+    let length = blocks.mean.len() / COMPARED_PARTS;
     if length < 500 {
         return None;
     }
     let mut levels: Vec<(f64, f64, usize)> = Vec::new();
-    for (part, means) in blocks.mean.chunks(length).take(PARTS).enumerate() {
+    for (part, means) in blocks.mean.chunks(length).take(COMPARED_PARTS).enumerate() {
         let steps = means.iter().zip(means.get(1..).unwrap_or_default());
         let (sum, n) = steps
             .map(|(a, b)| (b - a).abs())

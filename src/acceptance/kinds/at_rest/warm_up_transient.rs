@@ -9,21 +9,21 @@ use crate::measurand::GyroEvidence;
 use nalgebra::{DMatrix, DVector};
 
 /// Means that the record is cut into.
-const MEANS: usize = 48;
+const RECORD_MEANS: usize = 48;
 /// Time constants tried, evenly spaced in the logarithm.
-const TRIALS: usize = 12;
+const TRIED_TIME_CONSTANTS: usize = 12;
 
 /// The most significant transient of a channel; `None` when the record is too short to say.
 pub fn fact(gyro: &GyroEvidence, bias_uncertainty_deg_h: f64) -> Option<WarmUpFact> {
     let blocks = gyro.blocks();
-    let merge = blocks.mean.len() / MEANS;
+    let merge = blocks.mean.len() / RECORD_MEANS;
     if merge == 0 {
         return None;
     }
     let means: Vec<f64> = blocks
         .mean
         .chunks_exact(merge)
-        .take(MEANS)
+        .take(RECORD_MEANS)
         .map(|c| {
             let present = c.iter().filter(|v| v.is_finite());
             present.clone().sum::<f64>() / present.count() as f64
@@ -37,10 +37,11 @@ pub fn fact(gyro: &GyroEvidence, bias_uncertainty_deg_h: f64) -> Option<WarmUpFa
     let factor = covariance.cholesky()?;
     let y = DVector::from_vec(means);
     let mut best: Option<WarmUpFact> = None;
-    for trial in 0..TRIALS {
-        let time_constant_s = step_s * 2.0 * (MEANS as f64 / 6.0).powf(trial as f64 / (TRIALS - 1) as f64);
+    for trial in 0..TRIED_TIME_CONSTANTS {
+        let time_constant_s =
+            step_s * 2.0 * (RECORD_MEANS as f64 / 6.0).powf(trial as f64 / (TRIED_TIME_CONSTANTS - 1) as f64);
         let decay = |i: usize| (-(i as f64 + 0.5) * step_s / time_constant_s).exp();
-        let design = DMatrix::from_fn(MEANS, 2, |i, j| if j == 0 { 1.0 } else { decay(i) });
+        let design = DMatrix::from_fn(RECORD_MEANS, 2, |i, j| if j == 0 { 1.0 } else { decay(i) });
         let weighted = factor.solve(&design);
         let normal = (design.transpose() * &weighted).try_inverse()?;
         let solution = &normal * (weighted.transpose() * &y);
@@ -66,11 +67,11 @@ fn covariance(gyro: &GyroEvidence, step_s: f64) -> DMatrix<f64> {
         if k == 0 { 0.0 } else { (k as f64).powi(2) * model.mean_variance(k as f64 * step_s, gyro.tau0_s) }
     };
     let lag: Vec<f64> =
-        (0..MEANS).map(|k| 0.5 * (angle(k + 1) - 2.0 * angle(k) + angle(k.abs_diff(1)))).collect();
+        (0..RECORD_MEANS).map(|k| 0.5 * (angle(k + 1) - 2.0 * angle(k) + angle(k.abs_diff(1)))).collect();
     // Flicker and random walk have a variance only up to a constant; one large enough makes the matrix definite and
     // changes nothing once a mean is fitted.
-    let lift = lag.iter().fold(0.0f64, |m, v| m.max(v.abs())) * MEANS as f64;
-    DMatrix::from_fn(MEANS, MEANS, |i, j| {
+    let lift = lag.iter().fold(0.0f64, |m, v| m.max(v.abs())) * RECORD_MEANS as f64;
+    DMatrix::from_fn(RECORD_MEANS, RECORD_MEANS, |i, j| {
         lag[i.abs_diff(j)] + lift + if i == j { 1e-9 * lag[0].abs() } else { 0.0 }
     })
 }
