@@ -49,7 +49,7 @@ pub struct FormArgs {
     /// Forms to write, separated by commas; the record is always written, and json alone prints it [default: html, md, csv, json, svg, junit]
     #[arg(long = "format", value_name = "FORM", value_delimiter = ',', value_parser = form_ids())]
     forms: Vec<String>,
-    /// Pages of the PDF_FORM
+    /// Pages of the PDF
     #[arg(long, value_name = "PAGES")]
     pages: Option<Pages>,
     /// Folder of templates that override built-in ones of the same name
@@ -119,10 +119,10 @@ impl OutputArgs {
     }
 }
 
-/// The pages of a PDF_FORM, where one is asked for.
+/// The pages of a PDF, where one is asked for.
 ///
 /// # Errors
-/// The diagnostic, in words, where pages are named and no PDF_FORM is asked for.
+/// The diagnostic, in words, where pages are named and no PDF is asked for.
 pub fn pdf_pages(asked: bool, pages: Option<Pages>, lang: Lang) -> Result<Option<PdfPages>, String> {
     match (asked, pages) {
         (false, Some(_)) => Err(place::error(&"pdf.pages_without".into(), lang)),
@@ -132,7 +132,7 @@ pub fn pdf_pages(asked: bool, pages: Option<Pages>, lang: Lang) -> Result<Option
     }
 }
 
-/// Pages of a PDF_FORM.
+/// Pages of a PDF.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub enum Pages {
     All,
