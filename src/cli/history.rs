@@ -4,15 +4,17 @@ use super::keep::StoreArgs;
 use super::options::{Pages, pdf_pages, renderer};
 use super::printer::standard_output;
 use super::{exit, place, stdout, store};
-use crate::acceptance::history::history;
+use crate::acceptance::history::{figures, history};
 use crate::i18n::{Lang, Note, note};
 use crate::ingest::serial;
 use crate::measurand;
 use crate::output::StagedFile;
 use crate::record::{HistoryAsked, HistoryRecord};
-use crate::report::history::{HistoryView, csv};
+use crate::report::PageForm;
+use crate::report::history::{csv, on_terminal, page};
+use crate::report::page::terminal;
 use crate::report::pdf::of_history;
-use crate::report::terminal::{self, Terminal};
+use crate::report::terminal::Terminal;
 use crate::store::{Attempt, Filter};
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
@@ -158,11 +160,13 @@ fn rendered(
         HistoryFormat::Table => {
             let plain = Terminal { width: FILE_WIDTH, colour: false };
             let target = if args.out.is_some() { plain } else { standard_output() };
-            terminal::history(&HistoryView::new(record, lang), lang, target)
+            terminal(&on_terminal(record, lang), target)
         }
-        HistoryFormat::Html => renderer(args.templates.as_deref(), lang)?
-            .render_view("history.html", &HistoryView::new(record, lang), lang)
-            .map_err(|e| say(e.note()))?,
+        HistoryFormat::Html => {
+            let renderer = renderer(args.templates.as_deref(), lang)?;
+            let page = page(record, &figures::all(record), lang);
+            PageForm::Html.page(&page, &renderer, lang).map_err(|e| say(e.note()))?
+        }
     })
 }
 

@@ -107,6 +107,30 @@ impl PageForm {
             PageForm::Markdown | PageForm::Paper => "md",
         }
     }
+
+    /// The text of a page of blocks.
+    ///
+    /// # Errors
+    /// [`ReportError`] when a template is wrong.
+    pub fn page(self, page: &Page, renderer: &Renderer, lang: Lang) -> Result<String, ReportError> {
+        let seen = match self {
+            PageForm::Html => page::seen(page, &page::Html),
+            PageForm::Markdown | PageForm::Paper => page::seen(page, &page::Markdown),
+        };
+        self.rendered("page", page_context(seen, lang), renderer, lang)
+    }
+
+    /// The text of a template, named without the ending of its file.
+    fn rendered(
+        self,
+        template: &str,
+        context: Value,
+        renderer: &Renderer,
+        lang: Lang,
+    ) -> Result<String, ReportError> {
+        let context = if self == PageForm::Paper { paper_context(context) } else { context };
+        renderer.render(&format!("{template}.{}", self.ending()), &context, lang)
+    }
 }
 
 /// What every exporter is given.
@@ -185,18 +209,12 @@ impl<'a> Document<'a> {
     /// # Errors
     /// [`ReportError`] when a template is wrong.
     pub fn text(&self, form: PageForm, renderer: &Renderer) -> Result<String, ReportError> {
-        let (template, context) = match &self.contents {
-            Contents::View { template, context } => (*template, context.clone()),
-            Contents::Page(page) => {
-                let seen = match form {
-                    PageForm::Html => page::seen(page, &page::Html),
-                    PageForm::Markdown | PageForm::Paper => page::seen(page, &page::Markdown),
-                };
-                ("page", page_context(seen, self.lang))
+        match &self.contents {
+            Contents::View { template, context } => {
+                form.rendered(template, context.clone(), renderer, self.lang)
             }
-        };
-        let context = if form == PageForm::Paper { paper_context(context) } else { context };
-        renderer.render(&format!("{template}.{}", form.ending()), &context, self.lang)
+            Contents::Page(page) => form.page(page, renderer, self.lang),
+        }
     }
 
     /// What the document is of, for the head of a page: the unit, the case, the procedure or the model.

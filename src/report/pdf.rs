@@ -1,8 +1,7 @@
 //! A document as PDF, with the record that it shows and what the record was made from attached.
 
 use super::figure_file::{self, FIGURES_FILE};
-use super::history::HistoryView;
-use super::render::{paper_context, view_context};
+use super::history;
 use super::signatures::SIGNATURES_SHOWN;
 #[cfg(feature = "pdf")]
 use super::translator::Translator;
@@ -87,13 +86,13 @@ impl Document<'_> {
     }
 }
 
-/// The PDF of a history. `record` is the text that `--format json` prints.
+/// The PDF of a history. `json` is the text that `--format json` prints.
 ///
 /// # Errors
 /// As [`Document::pdf`].
 pub fn of_history(
-    history: &HistoryRecord,
-    record: &str,
+    record: &HistoryRecord,
+    json: &str,
     renderer: &Renderer,
     pages: PdfPages,
     lang: Lang,
@@ -101,16 +100,15 @@ pub fn of_history(
     if !MAKES_PDF {
         return Err(ReportError::NoPdf);
     }
-    let view = HistoryView::new(history, lang);
-    let context = paper_context(view_context(&view, lang));
-    let figures = figures::all(history);
+    let figures = figures::all(record);
+    let shown = history::page(record, &figures, lang);
     let page = Page {
         subject: "",
         // What is told depends on the store alone: the page is as old as the latest result in it.
-        made_at: history.results.iter().map(|r| r.evaluated_at.as_str()).max().unwrap_or_default(),
-        markdown: &renderer.render("history.md", &context, lang)?,
+        made_at: record.results.iter().map(|r| r.evaluated_at.as_str()).max().unwrap_or_default(),
+        markdown: &PageForm::Paper.page(&shown, renderer, lang)?,
         drawings: figures.iter().map(|f| drawing(f, lang)).collect(),
-        record: ("history.json", record.as_bytes()),
+        record: ("history.json", json.as_bytes()),
         sources: vec![],
         data: vec![],
         pages,

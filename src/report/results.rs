@@ -4,9 +4,9 @@ use super::document::{Document, Documented};
 use super::explain::{Context, ExplainFile};
 use super::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
 use super::files::{JointFile, PlanFile};
-use super::lot;
+use super::{compare, lot};
 use crate::acceptance::Outcome;
-use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, csv, figures};
+use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, figures};
 use crate::acceptance::datasheet;
 use crate::config::{alternatives, model, schedule};
 use crate::figure::Figure;
@@ -140,7 +140,7 @@ impl Results {
     /// The results of a comparison.
     pub fn of_comparison(comparison: Comparison) -> Results {
         let figures = figures::all(&comparison.units);
-        let rows = csv::of(&comparison);
+        let rows = compare::csv(&comparison);
         Results::of(comparison, figures, vec![("comparison.csv".into(), rows)])
     }
 

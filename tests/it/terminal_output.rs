@@ -1,8 +1,8 @@
-//! What `run`, `analyze` and `explain` print: tables by the width of the terminal, colour where it is wanted, JSON alone
+//! What verbs print: tables by the width of the terminal, colour where it is wanted, JSON alone
 //! where it is asked for; shipped files by their names.
 
 use crate::support::synthetic::white;
-use crate::support::{program, root, sample};
+use crate::support::{program, root, sample, shipped};
 use std::path::Path;
 use std::process::Output;
 use tempfile::tempdir;
@@ -40,6 +40,23 @@ fn a_run_prints_its_table_by_width_and_language() {
     assert!(text(&narrow, folder.path()).lines().all(|l| l.chars().count() <= 60));
     let russian = printed(folder.path(), "140", &[("LANG", "ru_RU.UTF-8")], &run(&faults, "ru"));
     insta::assert_snapshot!("russian", text(&russian, folder.path()));
+}
+
+#[test]
+fn a_comparison_and_a_data_sheet_keep_their_table_at_80_columns() {
+    let folder = tempdir().unwrap();
+    let units: Vec<String> =
+        (1..=6).map(|i| shipped(&format!("samples/lot/SN-300{i}/result.json"))).collect();
+    let units: Vec<&str> = units.iter().map(String::as_str).collect();
+    for (verb, head) in [("compare", "Unit"), ("datasheet", "Quantity")] {
+        let args = [&[verb], units.as_slice(), &["--out", verb]].concat();
+        let done = printed(folder.path(), "80", &[], &args);
+        assert_eq!(done.status.code(), Some(0), "{done:?}");
+        let text = text(&done, folder.path());
+        let is_head = |l: &str| l.starts_with(&format!("  {head} ")) && l.split_whitespace().count() > 3;
+        assert!(text.lines().any(is_head), "{text}");
+        assert!(text.lines().all(|l| l.chars().count() <= 80), "{text}");
+    }
 }
 
 #[test]

@@ -3,7 +3,6 @@
 //! A unit comes from a fresh analysis or from a `result.json`; both go through the same reading of the result, so that
 //! a figure cannot depend on where it came from. Nothing is measured here.
 
-pub mod csv;
 mod faults;
 pub mod figures;
 mod of_result;

@@ -1,41 +1,17 @@
-//! The view of a comparison: words and printed numbers, ready for a template and for the terminal.
+//! The document of a comparison: Russian beside Allan figures of units, with what explains each ratio, or the published tables.
 
+mod columns;
 mod published;
-mod terminal;
 mod unit;
-
-pub use published::PublishedView;
-pub use terminal::table;
-pub use unit::{Cell, LimitView, RuleCell, ShareView, UnitView};
 
 use super::document::{Contents, Documented, Record};
 use super::number::date_time;
+use super::page::{self, Block, Head, Page};
 use super::translator::Translator;
-use super::view::FigureView;
 use crate::acceptance::compare::Comparison;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::output::Kind;
-use serde::Serialize;
-
-/// Everything that a comparison shows.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct CompareView {
-    /// The units.
-    pub units: Vec<UnitView>,
-    /// Limits with the figure each names.
-    pub limits: Vec<LimitView>,
-    /// σ(τ) of the units on common axes, where several have it.
-    pub sigma_tau: Option<FigureView>,
-    /// The figure of the ratios, where there is one.
-    pub ratios: Option<FigureView>,
-    /// The published tables.
-    pub published: Option<PublishedView>,
-    /// Line at the foot of every page.
-    pub footer: String,
-    /// The program with its version.
-    pub generator: String,
-}
 
 impl Documented for Comparison {
     fn record(&self) -> Record<'_> {
@@ -59,32 +35,40 @@ impl Documented for Comparison {
     }
 
     fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
-        Contents::view("compare", &CompareView::new(self, figures, lang), lang)
+        Contents::Page(pages(self, figures, Translator { lang }))
+    }
+
+    /// The figures of each unit in a row, what is said of each, and the limits.
+    fn on_terminal(&self, lang: Lang) -> Vec<Block> {
+        let words = Translator { lang };
+        match &self.published {
+            Some(checked) => published::on_terminal(checked, words),
+            None => unit::on_terminal(&self.units, words),
+        }
     }
 }
 
-impl CompareView {
-    /// Builds the view.
-    pub fn new(comparison: &Comparison, figures: &[Figure], lang: Lang) -> CompareView {
-        let words = Translator { lang };
-        let drawn = |id: &str| {
-            let at = figures.iter().position(|f| f.id == id)?;
-            figures.get(at).map(|f| FigureView::of(f, at + 1, words))
-        };
-        let generator = format!("{} {}", comparison.program.name, comparison.program.version);
-        CompareView {
-            units: comparison
-                .units
-                .iter()
-                .enumerate()
-                .map(|(i, u)| UnitView::new(u, drawn(&format!("octaves_{}", i + 1)), words))
-                .collect(),
-            limits: comparison.units.iter().flat_map(|u| unit::limits(u, words)).collect(),
-            sigma_tau: drawn("sigma_tau"),
-            ratios: drawn("ratios"),
-            published: comparison.published.as_ref().map(|p| PublishedView::new(p, words)),
-            footer: format!("{} · {generator}", date_time(&comparison.compared_at)),
-            generator,
-        }
+/// `comparison.csv`: one row a unit or a published device, plain numbers, empty where there is none; the same in every language.
+pub fn csv(comparison: &Comparison) -> String {
+    let words = Translator { lang: Lang::En };
+    page::csv(&match &comparison.published {
+        Some(checked) => published::table(checked, words),
+        None => columns::table(&comparison.units, words),
+    })
+}
+
+fn pages(comparison: &Comparison, figures: &[Figure], words: Translator) -> Page {
+    let generator = format!("{} {}", comparison.program.name, comparison.program.version);
+    let title = words.t("compare.title");
+    let head = Head { kind: words.t("compare.kind"), title: title.clone(), ..Head::default() };
+    let units = Some(&comparison.units).filter(|units| !units.is_empty());
+    let units = units.map_or_else(Vec::new, |units| unit::blocks(units, figures, words));
+    let published = comparison.published.as_ref();
+    let published = published.map_or_else(Vec::new, |checked| published::blocks(checked, words));
+    Page {
+        title,
+        footer: format!("{} · {generator}", date_time(&comparison.compared_at)),
+        blocks: std::iter::once(Block::Head(head)).chain(units).chain(published).collect(),
+        generator,
     }
 }

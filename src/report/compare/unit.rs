@@ -1,295 +1,169 @@
-//! One unit of a comparison, printed.
+//! The units of a comparison on pages and on a terminal: their figures, their limits, and what is said of each.
 
-use crate::acceptance::compare::{Origin, RuleRow, Unit, part_name};
-use crate::estimate::{Interval, UpperLimit, Verdict};
-use crate::measurand;
-use crate::record::{Agreement, MeasurandRecord, ModelRecord, ShareRecord, WindowRecord};
-use crate::report::number::{Rounding, bound, digits, duration, limit, limit_digits, percent};
+use super::columns::{Row, of_record, table};
+use crate::acceptance::compare::{Unit, part_name};
+use crate::figure::Figure;
+use crate::i18n::Note;
+use crate::record::{MeasurandRecord, ModelRecord, ShareRecord, WindowRecord};
+use crate::report::number::{digits, limit_digits, percent};
+use crate::report::page::{Block, Table, Value};
 use crate::report::translator::Translator;
-use crate::report::view::FigureView;
-use serde::Serialize;
+use crate::report::view::{FigureView, limit_text};
 
-/// A value and its interval, printed; empty where there is none.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
-pub struct Cell {
-    /// Value, or the bound.
-    pub value: String,
-    /// 95 % interval.
-    pub interval: String,
-}
+/// Smallest share of a variance that has a row of its own.
+const MIN_SHARE_SHOWN: f64 = 0.001;
 
-/// Bias instability by one rule with the ratio to it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct RuleCell {
-    /// The rule in words.
-    pub name: String,
-    /// The figure.
-    pub figure: Cell,
-    /// σ of 100-s means over it.
-    pub ratio: Cell,
-    /// The ratio the other way.
-    pub inverse: String,
-}
+/// The columns of a terminal.
+const ON_TERMINAL: [&str; 12] = [
+    "label",
+    "length_s",
+    "n",
+    "sigma100_deg_h",
+    "minimum_deg_h",
+    "ratio_minimum",
+    "null",
+    "arw10_deg_rt_h",
+    "n_deg_rt_h",
+    "ratio_arw",
+    "observed_over_predicted",
+    "verdict",
+];
 
-/// One part of the predicted variance.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ShareView {
-    /// Part, in words.
-    pub part: String,
-    /// Share, %.
-    pub share: String,
-    /// What it alone would give.
-    pub alone: String,
-}
+/// The columns of the bias.
+const BIAS: [&str; 9] = [
+    "label_and_origin",
+    "length_s",
+    "n",
+    "sigma100_deg_h",
+    "sigma100_3sigma_deg_h",
+    "minimum_deg_h",
+    "minimum_scaled_deg_h",
+    "b_deg_h",
+    "floor_deg_h",
+];
 
-/// A limit and the figure it names.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct LimitView {
-    /// Unit.
-    pub unit: String,
-    /// The quantity that the limit names.
-    pub quantity: String,
-    /// Its value with unit.
-    pub value: String,
-    /// The limit.
-    pub limit: String,
-    /// Id of the verdict.
-    pub verdict: Verdict,
-    /// The verdict in words.
-    pub verdict_word: String,
-    /// File the limit stands in.
-    pub source: String,
-}
+/// The columns of angle random walk.
+const WALK: [&str; 7] =
+    ["label", "n10", "sigma10_deg_h", "arw10_deg_rt_h", "n_deg_rt_h", "ratio_arw", "arw_inverse"];
 
-/// One unit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct UnitView {
-    /// Name with channel.
-    pub label: String,
-    /// Where it comes from.
-    pub path: String,
-    /// Analysed now or read from a result.
-    pub origin: String,
-    /// Record length.
-    pub length: String,
-    /// 100-s windows.
-    pub n: String,
-    /// 10-s windows.
-    pub n10: String,
-    /// σ over 100 s, 1σ.
-    pub sigma100: Cell,
-    /// The same, 3σ.
-    pub sigma3: Cell,
-    /// σ over 10 s.
-    pub sigma10: Cell,
-    /// Bias instability by each rule, a to d.
-    pub rules: Vec<RuleCell>,
-    /// Where the minimum stands, and the longest averaging time read.
-    pub minimum_at: String,
-    /// Angle random walk from 10-s means.
-    pub arw: Cell,
-    /// N.
-    pub n_allan: Cell,
-    /// Ratio of the two.
-    pub arw_ratio: Cell,
-    /// The ratio the other way.
-    pub arw_inverse: String,
-    /// Predicted σ over 100 s.
-    pub predicted: Cell,
-    /// Observed over predicted.
-    pub over: Cell,
-    /// The verdict on it, in words.
-    pub agreement: String,
-    /// Its class for colours.
-    pub agreement_class: &'static str,
-    /// What angle random walk alone would give: 5 to 95 %.
-    pub null: String,
-    /// Its median.
-    pub null_median: String,
-    /// Parts of the prediction.
-    pub shares: Vec<ShareView>,
-    /// The findings in sentences.
-    pub summary: Vec<String>,
-    /// What could not be compared.
-    pub missing: Vec<String>,
-    /// The octave identity.
-    pub figure: Option<FigureView>,
-}
+/// The columns of what explains drift and ratio.
+const EXPLAINED: [&str; 7] =
+    ["label", "predicted_deg_h", "observed_over_predicted", "verdict", "ratio_minimum", "null", "null_50"];
 
-fn between(i: Interval, rounding: Rounding, words: Translator) -> String {
-    let show = |v: f64| rounding.show(v, words.lang);
-    words.with("report.interval", &[("low", &show(i.low)), ("high", &show(i.high))])
-}
-
-fn cell(
-    value: Option<f64>,
-    interval: Option<Interval>,
-    upper: Option<UpperLimit>,
-    words: Translator,
-) -> Cell {
-    match (value, upper) {
-        (Some(v), _) => {
-            let rounding = Rounding::of(v, interval.map(|i| (i.low, i.high)));
-            Cell {
-                value: rounding.show(v, words.lang),
-                interval: interval.map(|i| between(i, rounding, words)).unwrap_or_default(),
-            }
-        }
-        (None, Some(u)) => {
-            let coverage = limit_digits(100.0 * u.coverage, 3, words.lang);
-            let value = bound(u.value, true, words.lang);
-            Cell {
-                value: words.with("report.at_most", &[("value", &value), ("coverage", &coverage)]),
-                interval: String::new(),
-            }
-        }
-        (None, None) => Cell::default(),
-    }
-}
-
-fn quantity(q: Option<&MeasurandRecord>, words: Translator) -> Cell {
-    q.map_or_else(Cell::default, |q| cell(q.value, q.interval, q.upper_limit, words))
-}
-
-/// Smallest share that has a row of its own.
-const LEAST_SHOWN: f64 = 0.001;
-
-/// Bias instability by one rule, printed.
-fn rule_cell(row: &RuleRow, words: Translator) -> RuleCell {
-    let mut ratio = cell(row.ratio, row.ratio_interval, None, words);
-    if row.ratio_interval.is_none() {
-        ratio.value = row.ratio.map(|r| digits(r, 3, words.lang)).unwrap_or_default();
-    }
-    if row.value.is_none() && !ratio.value.is_empty() {
-        ratio.value = format!("≥\u{202f}{}", ratio.value);
-    }
-    RuleCell {
-        name: words.t(&format!("compare.rule.{}", row.rule.id())),
-        figure: cell(row.value, row.interval, row.upper_limit, words),
-        ratio,
-        inverse: row.inverse.map(|v| digits(v, 3, words.lang)).unwrap_or_default(),
-    }
-}
-
-/// The verdict on the prediction in words, with its class for colours.
-fn agreement(unit: &Unit, window: Option<&WindowRecord>, words: Translator) -> (String, &'static str) {
-    let (verdict, class) = match window.and_then(|w| w.agreement) {
-        Some(Agreement::Consistent) => (words.t("compare.agreement.consistent"), "ok"),
-        Some(Agreement::Above) => (words.t("compare.agreement.above"), "remark"),
-        Some(Agreement::Below) => (words.t("compare.agreement.below"), "remark"),
-        None => return (String::new(), "none"),
+/// Units, limits and figures on pages.
+pub(super) fn blocks(units: &[Unit], figures: &[Figure], words: Translator) -> Vec<Block> {
+    let all = table(units, words);
+    let below = |key: &str, columns: &[&str], hint: Option<&str>| {
+        let hint = hint.map(|key| Block::Hint(words.t(key)));
+        let table = Block::Table(all.only(columns));
+        Block::section("", words.t(key), std::iter::once(table).chain(hint).collect())
     };
-    if unit.indicative {
-        (words.with("compare.more.indicative", &[("verdict", &verdict)]), "remark")
-    } else {
-        (verdict, class)
-    }
+    let limits = limits(units, words);
+    let limits = (!limits.rows.is_empty()).then(|| {
+        let below = vec![Block::Hint(words.t("compare.limits_hint")), Block::Table(limits)];
+        [Block::SummaryEnd, Block::section("", words.t("compare.limits"), below)]
+    });
+    let drawn = |id: &str| {
+        let figure = FigureView::find(figures, id, words)?;
+        let caption = if figure.caption.is_empty() { figure.title.clone() } else { figure.caption.clone() };
+        Some(Block::Section("figures", vec![Block::Figure(Box::new(FigureView { caption, ..figure }))]))
+    };
+    let each = units.iter().enumerate();
+    let each =
+        each.map(|(i, u)| section(u, FigureView::find(figures, &format!("octaves_{}", i + 1), words), words));
+    [
+        Block::Hint(words.t("compare.hint")),
+        below("compare.bias", &BIAS, Some("compare.bias_hint")),
+        below("compare.walk", &WALK, None),
+        below("compare.explained", &EXPLAINED, Some("compare.explained_hint")),
+    ]
+    .into_iter()
+    .chain(limits.into_iter().flatten())
+    .chain(drawn("sigma_tau"))
+    .chain(drawn("ratios"))
+    .chain(each)
+    .collect()
 }
 
-impl UnitView {
-    /// Prints a unit.
-    pub(super) fn new(unit: &Unit, figure: Option<FigureView>, words: Translator) -> UnitView {
-        let lang = words.lang;
-        let of = |id: &str| quantity(unit.quantity(id), words);
-        let detail = unit.detail.as_ref();
-        let window = |s: f64| detail.and_then(|d| d.windows.iter().find(|w| w.window_s == s));
-        let (w100, w10) = (window(100.0), window(10.0));
-        let minimum = detail.and_then(|d| d.minimum.as_ref());
-        let count = |n: Option<u64>| n.map(|n| crate::report::number::count(n, lang)).unwrap_or_default();
-        let null = minimum.and_then(|m| m.null_ratio);
-        let three = |v: f64| limit_digits(v, 3, lang);
-        let (agreement, agreement_class) = agreement(unit, w100, words);
-        let arw_ratio = unit.quantity(measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id);
-        UnitView {
-            label: unit.label(),
-            path: unit.path.clone(),
-            origin: words.t(match unit.origin {
-                Origin::Recording => "compare.origin.recording",
-                Origin::Result => "compare.origin.result",
-            }),
-            length: unit.length_s.map(|t| duration(t, lang)).unwrap_or_default(),
-            n: count(w100.map(|w| w.n)),
-            n10: count(w10.map(|w| w.n)),
-            sigma100: of(measurand::RUSSIAN_DRIFT_100S.id),
-            sigma3: of(measurand::RUSSIAN_DRIFT_100S_3SIGMA.id),
-            sigma10: of(measurand::RUSSIAN_SIGMA_10S.id),
-            rules: unit.rules.iter().map(|row| rule_cell(row, words)).collect(),
-            minimum_at: minimum
-                .map(|m| {
-                    let (tau, largest) = (three(m.tau_s), three(m.largest_tau_s));
-                    words.with("compare.minimum_at", &[("tau", &tau), ("largest", &largest)])
-                })
-                .unwrap_or_default(),
-            arw: of(measurand::RUSSIAN_ARW_10S.id),
-            n_allan: of(measurand::ANGLE_RANDOM_WALK.id),
-            arw_ratio: quantity(arw_ratio, words),
-            arw_inverse: arw_ratio
-                .and_then(|q| q.value)
-                .map(|v| digits(1.0 / v, 3, lang))
-                .unwrap_or_default(),
-            predicted: w100.map(|w| cell(w.predicted, w.predicted_interval, None, words)).unwrap_or_default(),
-            over: w100.map(|w| cell(w.ratio, w.ratio_interval, None, words)).unwrap_or_default(),
-            agreement,
-            agreement_class,
-            null: null
-                .map(|[low, _, high]| {
-                    let (low, high) = (digits(low, 2, lang), digits(high, 2, lang));
-                    words.with("report.interval", &[("low", &low), ("high", &high)])
-                })
-                .unwrap_or_default(),
-            null_median: null.map(|n| digits(n[1], 2, lang)).unwrap_or_default(),
-            shares: detail.zip(w100).map(|(d, w)| shares(w, &d.model, words)).unwrap_or_default(),
-            summary: unit.summary.iter().map(|n| words.say(n)).collect(),
-            missing: unit.missing.iter().map(|n| words.say(n)).collect(),
-            figure,
-        }
-    }
+/// The figures of each unit, what is said of it, and its limits.
+pub(super) fn on_terminal(units: &[Unit], words: Translator) -> Vec<Block> {
+    let said = |unit: &Unit| {
+        let notes = unit.summary.iter().chain(&unit.missing);
+        notes.map(|n| format!("{}: {}", unit.label(), words.say(n))).collect::<Vec<_>>()
+    };
+    let limits = limits(units, words);
+    let limits = (!limits.rows.is_empty()).then(|| {
+        let columns = ["unit", "quantity", "value", "limit", "verdict"];
+        [Block::heading(words.t("compare.limits")), Block::Table(limits.only(&columns))]
+    });
+    [Block::Table(table(units, words).only(&ON_TERMINAL)), Block::Paragraph(words.t("compare.more.units"))]
+        .into_iter()
+        .chain(Block::remarks(units.iter().flat_map(said)))
+        .chain(limits.into_iter().flatten())
+        .collect()
+}
+
+/// What is said of a unit, what its drift is made of, and the octaves.
+fn section(unit: &Unit, figure: Option<FigureView>, words: Translator) -> Block {
+    let lang = words.lang;
+    let row = Row { unit, words };
+    let minimum = row.minimum().map(|m| {
+        let (tau, largest) = (limit_digits(m.tau_s, 3, lang), limit_digits(m.largest_tau_s, 3, lang));
+        words.with("compare.minimum_at", &[("tau", &tau), ("largest", &largest)])
+    });
+    let place: Vec<String> = std::iter::once(unit.path.clone()).chain(minimum).collect();
+    let say = |notes: &[Note]| Block::remarks(notes.iter().map(|n| words.say(n)));
+    let shares = unit.detail.as_ref().zip(row.window(100.0)).map(|(d, w)| shares(w, &d.model, words));
+    let shares = shares.filter(|table| !table.rows.is_empty()).map(Block::Table);
+    let below = std::iter::once(Block::Hint(place.join(" · ")))
+        .chain(say(&unit.summary))
+        .chain(say(&unit.missing))
+        .chain(shares)
+        .chain(figure.map(|f| Block::Figure(Box::new(f))));
+    Block::section("figures", unit.label(), below.collect())
 }
 
 /// The parts of a prediction that are worth a row; the small ones stand together in the last.
-fn shares(window: &WindowRecord, model: &ModelRecord, words: Translator) -> Vec<ShareView> {
+fn shares(window: &WindowRecord, model: &ModelRecord, words: Translator) -> Table {
     let (shown, small): (Vec<&ShareRecord>, Vec<&ShareRecord>) =
-        window.shares.iter().partition(|s| s.share >= LEAST_SHOWN);
-    let row = |part: String, share: f64, alone: f64| ShareView {
-        part,
-        share: percent(share, words.lang),
-        alone: digits(alone, 3, words.lang),
+        window.shares.iter().partition(|s| s.share >= MIN_SHARE_SHOWN);
+    let rest = ShareRecord {
+        part: words.t("compare.more.rest"),
+        index: 0,
+        share: small.iter().map(|s| s.share).sum(),
+        deviation_deg_h: small.iter().map(|s| s.deviation_deg_h.powi(2)).sum::<f64>().sqrt(),
     };
-    let mut rows: Vec<ShareView> =
-        shown.iter().map(|s| row(words.say(&part_name(s, model)), s.share, s.deviation_deg_h)).collect();
-    if !small.is_empty() {
-        let share = small.iter().map(|s| s.share).sum();
-        let alone = small.iter().map(|s| s.deviation_deg_h.powi(2)).sum::<f64>().sqrt();
-        rows.push(row(words.t("compare.more.rest"), share, alone));
-    }
-    rows
+    let rest = (!small.is_empty()).then_some(&rest);
+    let names = shown.iter().map(|s| words.say(&part_name(s, model)));
+    let names = names.chain(rest.map(|r| r.part.clone())).collect::<Vec<_>>();
+    let rows: Vec<&ShareRecord> = shown.iter().copied().chain(rest).collect();
+    Table::new("budget", rows.len())
+        .column(words.column("compare.part_of"), names)
+        .column(words.number_column("compare.share"), rows.iter().map(|s| percent(s.share, words.lang)))
+        .column(
+            words.number_column("compare.alone"),
+            rows.iter().map(|s| digits(s.deviation_deg_h, 3, words.lang)),
+        )
 }
 
-/// The limits of a unit, each with the figure that it names.
-pub(super) fn limits(unit: &Unit, words: Translator) -> Vec<LimitView> {
-    unit.quantities
-        .iter()
-        .filter_map(|q| {
-            let l = q.limit.as_ref()?;
-            let shown = |v: f64| limit(v, words.lang);
-            let text = match (l.min, l.max) {
-                (Some(a), Some(b)) => {
-                    words.with("report.interval", &[("low", &shown(a)), ("high", &shown(b))])
-                }
-                (Some(a), None) => format!("≥\u{202f}{}", shown(a)),
-                (None, Some(b)) => format!("≤\u{202f}{}", shown(b)),
-                (None, None) => String::new(),
-            };
-            let value = cell(q.value, q.interval, q.upper_limit, words).value;
-            Some(LimitView {
-                unit: unit.label(),
-                quantity: words.name("measurand", &q.id),
-                value: words.quantity(&value, &q.unit),
-                limit: words.quantity(&text, &l.unit),
-                verdict: q.verdict,
-                verdict_word: words.name("verdict", q.verdict.id()),
-                source: l.source.clone(),
-            })
-        })
-        .collect()
+/// The limits of all units, each with the figure that it names.
+fn limits(units: &[Unit], words: Translator) -> Table {
+    let limited = units.iter().flat_map(|u| u.quantities.iter().map(move |q| (u, q)));
+    let limited: Vec<(&Unit, &MeasurandRecord)> = limited.filter(|(_, q)| q.limit.is_some()).collect();
+    let all =
+        |of: &dyn Fn(&MeasurandRecord) -> String| limited.iter().map(|(_, q)| of(q)).collect::<Vec<_>>();
+    let verdict = |(_, q): &(&Unit, &MeasurandRecord)| {
+        Value::state(q.verdict.id(), words.name("verdict", q.verdict.id()))
+    };
+    let source = |q: &MeasurandRecord| q.limit.as_ref().map(|l| l.source.clone()).unwrap_or_default();
+    Table::new("cards", limited.len())
+        .column(words.column("compare.column.unit").class("whole"), limited.iter().map(|(u, _)| u.label()))
+        .column(words.column("report.quantity"), all(&|q| words.name("measurand", &q.id)))
+        .column(
+            words.number_column("report.value"),
+            all(&|q| words.quantity(&of_record(q, words).printed, &q.unit)),
+        )
+        .column(words.number_column("report.limit"), all(&|q| limit_text(q, words)))
+        .column(words.column("report.verdict"), limited.iter().map(verdict))
+        .column(words.column("report.file").class("file"), all(&source))
 }

@@ -1,86 +1,18 @@
-//! The view of a data sheet: words and printed numbers, ready for a template and for the terminal.
+//! The document of a data sheet: the quantities of a lot with their bounds, and where every value comes from.
 
 mod quantity;
 
-pub use quantity::{BoundView, QuantityView};
-
 use super::document::{Contents, Documented, Record};
 use super::number::{count, date_time, duration, limit_digits};
-use super::translator::{Field, Translator};
+use super::page::{Block, Head, Joined, Page, Table, Value};
+use super::translator::Translator;
 use super::view::FigureView;
 use crate::acceptance::datasheet::figures::figure_id;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize};
 use crate::output::Kind;
-use crate::record::{DataSheet, SheetCondition, SheetPair};
-use serde::Serialize;
-
-/// Everything that a data sheet shows.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct SheetView {
-    /// Model, or the procedure where none is named.
-    pub title: String,
-    /// Units and lots, in words.
-    pub size: String,
-    /// What the bounds promise, in a sentence.
-    pub promise: String,
-    /// Procedure, program.
-    pub identity: Vec<Field>,
-    /// Conditions of the tests.
-    pub conditions: Vec<Field>,
-    /// What must be known of the whole.
-    pub notes: Vec<String>,
-    /// The quantities.
-    pub quantities: Vec<QuantityView>,
-    /// Russian beside Allan values.
-    pub pairs: Vec<PairView>,
-    /// σ(τ) of the channels.
-    pub curves: Vec<FigureView>,
-    /// Where every value comes from.
-    pub results: Vec<ResultView>,
-    /// Line at the foot of every page.
-    pub footer: String,
-    /// The program with its version.
-    pub generator: String,
-}
-
-/// A Russian value beside an Allan one, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct PairView {
-    /// Channel; empty where there is one only.
-    pub channel: String,
-    /// Name of the Russian value.
-    pub russian: String,
-    /// Its median with unit.
-    pub russian_value: String,
-    /// Name of the Allan value.
-    pub allan: String,
-    /// Its median with unit.
-    pub allan_value: String,
-    /// Median ratio of single units.
-    pub ratio: String,
-    /// Smallest to largest ratio.
-    pub range: String,
-    /// Units that have both.
-    pub units: String,
-}
-
-/// A result that counts, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ResultView {
-    /// Serial number.
-    pub serial: String,
-    /// Lot.
-    pub lot: String,
-    /// Id of the verdict, for colours.
-    pub verdict: &'static str,
-    /// The verdict in words.
-    pub verdict_word: String,
-    /// File as named.
-    pub path: String,
-    /// Its digest.
-    pub sha256: String,
-}
+use crate::record::{DataSheet, SheetCondition, SheetPair, SheetResult};
+use quantity::Printed;
 
 impl Documented for DataSheet {
     fn record(&self) -> Record<'_> {
@@ -104,91 +36,121 @@ impl Documented for DataSheet {
     }
 
     fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
-        Contents::view("datasheet", &SheetView::new(self, figures, lang), lang)
+        Contents::Page(pages(self, figures, Translator { lang }))
     }
-}
 
-impl SheetView {
-    /// Builds the view.
-    pub fn new(sheet: &DataSheet, figures: &[Figure], lang: Lang) -> SheetView {
+    /// The quantities with their medians and bounds, and what must be known.
+    fn on_terminal(&self, lang: Lang) -> Vec<Block> {
         let words = Translator { lang };
-        let drawn = |id: &str| {
-            let at = figures.iter().position(|f| f.id == id)?;
-            figures.get(at).map(|f| FigureView::of(f, at + 1, words))
-        };
-        let several =
-            sheet.quantities.iter().any(|q| Some(&q.channel) != sheet.quantities.first().map(|f| &f.channel));
-        let generator = format!("{} {}", sheet.program.name, sheet.program.version);
-        let quantities = sheet.quantities.iter().enumerate();
-        SheetView {
-            title: match (&sheet.title, &sheet.model) {
-                (Some(title), _) => words.local(title),
-                (None, Some(model)) => model.clone(),
-                (None, None) => sheet.procedure.id.clone(),
-            },
-            size: words.with(
-                "datasheet.size",
-                &[("units", &count(sheet.units as u64, lang)), ("lots", &count(sheet.lots as u64, lang))],
-            ),
-            promise: promise(sheet, words),
-            identity: identity(sheet, words, &generator),
-            conditions: sheet.conditions.iter().map(|c| condition(c, words)).collect(),
-            notes: sheet.notes.iter().map(|n| n.say(lang)).collect(),
-            quantities: quantities
-                .map(|(i, q)| QuantityView::new(q, several, drawn(&figure_id(i)), words))
-                .collect(),
-            pairs: sheet.pairs.iter().map(|p| pair(p, several, words)).collect(),
-            curves: sheet
-                .curves
-                .iter()
-                .map(|c| format!("sigma_tau_{}", c.channel))
-                .chain(sheet.temperature_curves.iter().map(|c| format!("over_temperature_{}", c.channel)))
-                .filter_map(|id| drawn(&id))
-                .collect(),
-            results: sheet
-                .results
-                .iter()
-                .map(|r| ResultView {
-                    serial: r.serial.clone(),
-                    lot: r.lot.clone().unwrap_or_default(),
-                    verdict: r.verdict.id(),
-                    verdict_word: words.verdict(r.verdict),
-                    path: r.path.clone(),
-                    sha256: r.sha256.clone(),
-                })
-                .collect(),
-            footer: format!("{} · {generator}", date_time(&sheet.made_at)),
-            generator,
-        }
+        let columns = ["quantity", "units", "typical", "bound_true", "bound_measured", "largest"];
+        let heading = format!("{} · {}", title(self, words), size(self, words));
+        let table = quantity::table(&Printed::all(self, words), words).only(&columns);
+        [Block::heading(heading), Block::Table(table)]
+            .into_iter()
+            .chain(promise(self, words).map(Block::Hint))
+            .chain(self.notes.iter().map(|n| Block::Paragraph(n.say(lang))))
+            .collect()
     }
 }
 
-/// What the bounds promise; empty where there is none.
-fn promise(sheet: &DataSheet, words: Translator) -> String {
-    let Some(bound) = sheet.quantities.iter().find_map(|q| q.bounds.first()) else { return String::new() };
+fn pages(sheet: &DataSheet, figures: &[Figure], words: Translator) -> Page {
+    let generator = format!("{} {}", sheet.program.name, sheet.program.version);
+    let head = Head {
+        kind: words.t("datasheet.kind"),
+        title: title(sheet, words),
+        size: size(sheet, words),
+        ..Head::default()
+    };
+    let all = Printed::all(sheet, words);
+    let notes = Block::remarks(sheet.notes.iter().map(|n| n.say(words.lang)));
+    let quantities = [Block::Table(quantity::table(&all, words)), Block::Hint(words.t("datasheet.reading"))];
+    let pairs = || {
+        let below = vec![
+            Block::Table(pairs(&sheet.pairs, several_channels(sheet), words)),
+            Block::Hint(words.t("datasheet.pairs_hint")),
+        ];
+        Block::section("", words.t("datasheet.pairs"), below)
+    };
+    let curves = sheet.curves.iter().map(|c| format!("sigma_tau_{}", c.channel));
+    let curves = curves
+        .chain(sheet.temperature_curves.iter().map(|c| format!("over_temperature_{}", c.channel)))
+        .filter_map(|id| FigureView::find(figures, &id, words))
+        .map(|f| {
+            Block::Section("figures", vec![Block::Figure(Box::new(FigureView { is_titled: true, ..f }))])
+        });
+    let each = all.iter().enumerate();
+    let each = each.map(|(i, q)| q.section(FigureView::find(figures, &figure_id(i), words)));
+    let facts = identity(sheet, words, &generator).into_iter();
+    let facts = facts.chain(sheet.conditions.iter().map(|c| condition(c, words)));
+    Page {
+        title: format!("{} · {}", head.title, head.kind),
+        footer: format!("{} · {generator}", date_time(&sheet.made_at)),
+        blocks: std::iter::once(Block::Head(head))
+            .chain(promise(sheet, words).map(Block::Hint))
+            .chain([
+                Block::section(
+                    "",
+                    words.t("datasheet.quantities"),
+                    quantities.into_iter().chain(notes).collect(),
+                ),
+                Block::section("identity", words.t("datasheet.conditions"), vec![Block::identity(facts)]),
+            ])
+            .chain((!sheet.pairs.is_empty()).then(pairs))
+            .chain(curves)
+            .chain((!all.is_empty()).then_some(Block::SummaryEnd))
+            .chain(each)
+            .chain([Block::section(
+                "",
+                words.t("datasheet.results"),
+                vec![Block::Table(results(&sheet.results, words))],
+            )])
+            .collect(),
+        generator,
+    }
+}
+
+/// True where rows must name their channel.
+fn several_channels(sheet: &DataSheet) -> bool {
+    sheet.quantities.iter().any(|q| Some(&q.channel) != sheet.quantities.first().map(|f| &f.channel))
+}
+
+/// The title that a sheet file gives, or the model, or the procedure where none is named.
+fn title(sheet: &DataSheet, words: Translator) -> String {
+    match (&sheet.title, &sheet.model) {
+        (Some(title), _) => words.local(title),
+        (None, Some(model)) => model.clone(),
+        (None, None) => sheet.procedure.id.clone(),
+    }
+}
+
+/// Units and lots, in words.
+fn size(sheet: &DataSheet, words: Translator) -> String {
+    let count = |n: usize| count(n as u64, words.lang);
+    words.with("datasheet.size", &[("units", &count(sheet.units)), ("lots", &count(sheet.lots))])
+}
+
+/// A sentence on what the bounds promise; `None` where there is none.
+fn promise(sheet: &DataSheet, words: Translator) -> Option<String> {
+    let bound = sheet.quantities.iter().find_map(|q| q.bounds.first())?;
     let percent = |p: f64| limit_digits(100.0 * p, 4, words.lang);
-    words.with(
+    Some(words.with(
         "datasheet.promise",
         &[("proportion", &percent(bound.proportion)), ("confidence", &percent(bound.confidence))],
-    )
+    ))
 }
 
-fn identity(sheet: &DataSheet, words: Translator, generator: &str) -> Vec<Field> {
+fn identity(sheet: &DataSheet, words: Translator, generator: &str) -> Vec<(String, String)> {
     let p = &sheet.procedure;
-    let mut fields = vec![];
-    let mut put = |key: &str, value: String| fields.push(Field { label: words.t(key), value });
-    if !p.id.is_empty() {
-        put(
-            "report.procedure",
-            words.with("report.id_revision", &[("id", &p.id), ("revision", &p.revision)]),
-        );
-    }
-    put("datasheet.made_at", date_time(&sheet.made_at));
-    put("report.program", generator.to_owned());
-    fields
+    let revision = words.with("report.id_revision", &[("id", &p.id), ("revision", &p.revision)]);
+    let rows = [
+        ("report.procedure", if p.id.is_empty() { String::new() } else { revision }),
+        ("datasheet.made_at", date_time(&sheet.made_at)),
+        ("report.program", generator.to_owned()),
+    ];
+    rows.map(|(key, value)| (words.t(key), value)).into()
 }
 
-fn condition(c: &SheetCondition, words: Translator) -> Field {
+fn condition(c: &SheetCondition, words: Translator) -> (String, String) {
     let printed = |v: f64| match c.id.as_str() {
         "temperature_degC" => words.quantity(&limit_digits(v, 4, words.lang), "degC"),
         "sample_rate_hz" => words.quantity(&limit_digits(v, 4, words.lang), "Hz"),
@@ -196,21 +158,44 @@ fn condition(c: &SheetCondition, words: Translator) -> Field {
     };
     let (from, to) = (printed(c.from), printed(c.to));
     let span = if from == to { from } else { words.with("datasheet.span", &[("from", &from), ("to", &to)]) };
-    Field { label: words.name("datasheet.condition", &c.id), value: span }
+    (words.name("datasheet.condition", &c.id), span)
 }
 
-fn pair(p: &SheetPair, several: bool, words: Translator) -> PairView {
+/// Russian beside Allan values, a pair a row.
+fn pairs(pairs: &[SheetPair], several: bool, words: Translator) -> Table {
     let digits = |v: f64| limit_digits(v, 3, words.lang);
-    let value = |v: f64| words.quantity(&digits(v), &p.unit);
-    let [low, high] = p.range;
-    PairView {
-        channel: if several { p.channel.clone() } else { String::new() },
-        russian: words.name("measurand", &p.russian),
-        russian_value: value(p.russian_value),
-        allan: words.name("measurand", &p.allan),
-        allan_value: value(p.allan_value),
-        ratio: digits(p.ratio),
-        range: words.with("report.interval", &[("low", &digits(low)), ("high", &digits(high))]),
-        units: count(p.units as u64, words.lang),
-    }
+    let russian = |p: &SheetPair| {
+        let name = words.name("measurand", &p.russian);
+        Value::Sentence(if several { format!("{name} · {}", p.channel) } else { name })
+    };
+    let ratio = |p: &SheetPair| {
+        let [low, high] = p.range.map(digits);
+        let range = words.with("report.interval", &[("low", &low), ("high", &high)]);
+        Value::Text(digits(p.ratio)).strong().detail(Joined::Interval, range)
+    };
+    let value = |v: f64, p: &SheetPair| words.quantity(&digits(v), &p.unit);
+    let allan = |p: &SheetPair| Value::Sentence(words.name("measurand", &p.allan));
+    let column = |key: &str| words.column(&format!("datasheet.column.{key}"));
+    let number = |key: &str| words.number_column(&format!("datasheet.column.{key}"));
+    Table::new("sheet cards", pairs.len())
+        .column(column("russian"), pairs.iter().map(russian))
+        .column(number("median"), pairs.iter().map(|p| value(p.russian_value, p)))
+        .column(column("allan"), pairs.iter().map(allan))
+        .column(number("median"), pairs.iter().map(|p| value(p.allan_value, p)))
+        .column(number("ratio"), pairs.iter().map(ratio))
+        .column(number("units"), pairs.iter().map(|p| count(p.units as u64, words.lang)))
+}
+
+/// The results that count, each with its file.
+fn results(results: &[SheetResult], words: Translator) -> Table {
+    let verdict = |r: &SheetResult| Value::state(r.verdict.id(), words.verdict(r.verdict));
+    let file = |r: &SheetResult| format!("{} · SHA-256 {}", r.path, r.sha256);
+    Table::new("sources cards", results.len())
+        .column(words.column("report.serial"), results.iter().map(|r| r.serial.clone()))
+        .column(
+            words.column("datasheet.column.lot").class("whole"),
+            results.iter().map(|r| r.lot.clone().unwrap_or_default()),
+        )
+        .column(words.column("report.verdict"), results.iter().map(verdict))
+        .column(words.column("report.file").class("hash"), results.iter().map(file))
 }

@@ -1,121 +1,158 @@
-//! A quantity of a data sheet, printed.
+//! A quantity of a data sheet: its row, and what the row means.
 
+use super::several_channels;
 use crate::i18n::Localize;
-use crate::record::{SheetBound, SheetOf, SheetQuantity, SheetRisk, SheetScale, SheetShare, SheetSide};
-use crate::report::number::{Rounding, bound, count, limit_digits};
+use crate::record::{
+    DataSheet, SheetBound, SheetOf, SheetQuantity, SheetRisk, SheetScale, SheetShare, SheetSide,
+};
+use crate::report::number::{NOTHING, Rounding, bound, count, limit_digits};
+use crate::report::page::{Block, Joined, OnTerminal, Quantity, Table, Value};
 use crate::report::translator::Translator;
 use crate::report::view::FigureView;
-use serde::Serialize;
 
-/// A quantity over the lot.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct QuantityView {
-    /// Name, with its phase and channel where there are several.
-    pub name: String,
-    /// Unit of every number that states none.
-    pub unit: String,
-    /// Units that count.
-    pub units: String,
-    /// How many of them are only bounded, in words; empty where none is.
-    pub bounded: String,
-    /// Median; empty where it cannot be told.
-    pub typical: String,
-    /// Its interval.
-    pub interval: String,
-    /// Spread between units; in percent where it is one of logarithms.
-    pub between_units: String,
-    /// Spread between lots.
-    pub between_lots: String,
-    /// Spread of the measurement.
-    pub measurement: String,
-    /// Bounds for true values.
-    pub bound_true: String,
-    /// Bounds for measured values.
-    pub bound_measured: String,
-    /// Each bound with what it means.
-    pub bounds: Vec<BoundView>,
-    /// How all bounds were obtained, in words; empty where they were obtained in several ways.
-    pub method: String,
-    /// How the quantity was read, in words; empty where results differ or do not say.
-    pub reading: String,
-    /// Largest value.
-    pub largest: String,
-    /// Serial number of the unit that has it.
-    pub largest_of: String,
-    /// Limit of the results; empty where there is none.
-    pub limit: String,
-    /// What the number of the quantity means, in sentences.
-    pub meaning: Vec<String>,
-    /// What must be known with it.
-    pub notes: Vec<String>,
-    /// The units with their intervals.
-    pub figure: Option<FigureView>,
+/// A quantity over the lot, with how its numbers are printed.
+pub(super) struct Printed<'a> {
+    quantity: &'a SheetQuantity,
+    /// Name, with its phase, and its channel where there are several.
+    name: String,
+    /// Rounding by the interval of the median; absent without a median.
+    rounding: Option<Rounding>,
+    words: Translator,
 }
 
-/// A bound, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct BoundView {
-    /// The bound.
-    pub value: String,
-    /// How it was obtained, in words.
-    pub method: String,
-    /// What it promises, in a sentence.
-    pub meaning: String,
+/// The quantities, a row each.
+pub(super) fn table(all: &[Printed<'_>], words: Translator) -> Table {
+    let column = |key: &str| words.number_column(&format!("datasheet.column.{key}"));
+    let optional = |key: &str| column(key).on_terminal(OnTerminal::Optional);
+    Table::new("sheet cards", all.len())
+        .units_in_names()
+        .column(words.column("datasheet.column.quantity"), all.iter().map(Printed::named))
+        .column(optional("units"), all.iter().map(Printed::units))
+        .column(column("typical"), all.iter().map(Printed::typical))
+        .column(column("spread"), all.iter().map(Printed::spread))
+        .column(column("bound_true"), all.iter().map(|p| p.bounds(SheetOf::True).strong()))
+        .column(optional("bound_measured"), all.iter().map(|p| p.bounds(SheetOf::Measured)))
+        .column(optional("largest"), all.iter().map(Printed::largest))
+        .column(words.number_column("report.limit"), all.iter().map(Printed::limit))
 }
 
-impl QuantityView {
-    /// Builds the view; `several` where the channel must be named.
-    pub(super) fn new(
-        q: &SheetQuantity,
-        several: bool,
-        figure: Option<FigureView>,
-        words: Translator,
-    ) -> QuantityView {
-        let title = title(q, words);
-        let name = [Some(title.clone()), q.phase.clone()];
-        let name = name.into_iter().flatten().chain(several.then(|| words.channel(&q.channel, &q.id)));
-        let rounding =
-            q.typical.as_ref().map(|t| Rounding::of(t.value, Some((t.interval.low, t.interval.high))));
-        let show =
-            |v: f64| rounding.map_or_else(|| limit_digits(v, 4, words.lang), |r| r.show(v, words.lang));
-        let spread = |v: f64| match q.scale {
-            SheetScale::Log => spread_text(q, v, words),
-            SheetScale::Linear => limit_digits(v, 2, words.lang),
+impl<'a> Printed<'a> {
+    /// The quantities of a sheet.
+    pub(super) fn all(sheet: &'a DataSheet, words: Translator) -> Vec<Printed<'a>> {
+        let several = several_channels(sheet);
+        let printed = |quantity: &'a SheetQuantity| {
+            let channel = several.then(|| words.channel(&quantity.channel, &quantity.id));
+            let parts = [Some(title(quantity, words)), quantity.phase.clone(), channel];
+            let typical = quantity.typical.as_ref();
+            Printed {
+                quantity,
+                name: parts.into_iter().flatten().collect::<Vec<_>>().join(" · "),
+                rounding: typical.map(|t| Rounding::of(t.value, Some((t.interval.low, t.interval.high)))),
+                words,
+            }
         };
-        let footnote = q.footnote.as_ref().map(|f| words.local(f));
-        QuantityView {
-            name: name.collect::<Vec<_>>().join(" · "),
-            unit: words.unit(&q.unit),
-            units: count(q.units as u64, words.lang),
-            bounded: match q.bounded {
-                0 => String::new(),
-                n => words.with("datasheet.units_bounded", &[("bounded", &count(n as u64, words.lang))]),
-            },
-            typical: q.typical.as_ref().map_or_else(String::new, |t| show(t.value)),
-            interval: q.typical.as_ref().map_or_else(String::new, |t| {
-                let (low, high) = (show(t.interval.low), show(t.interval.high));
-                words.with("report.interval", &[("low", &low), ("high", &high)])
-            }),
-            between_units: q.spread.as_ref().map_or_else(String::new, |s| spread(s.between_units)),
-            between_lots: q.spread.as_ref().and_then(|s| s.between_lots).map_or_else(String::new, spread),
-            measurement: q.spread.as_ref().map_or_else(String::new, |s| spread(s.measurement)),
-            bound_true: bound_text(q, SheetOf::True, words),
-            bound_measured: bound_text(q, SheetOf::Measured, words),
-            bounds: q.bounds.iter().map(|b| bound_view(q, b, words)).collect(),
-            method: match q.bounds.first() {
-                Some(b) if q.bounds.iter().all(|o| o.method == b.method) => {
-                    words.name("datasheet.method", &b.method)
-                }
-                _ => String::new(),
-            },
-            reading: q.reading.as_ref().map_or_else(String::new, |how| words.name("how", how)),
-            largest: q.largest.as_ref().map_or_else(String::new, |l| show(l.value)),
-            largest_of: q.largest.as_ref().map_or_else(String::new, |l| l.serial.clone()),
-            limit: limit_text(q, words),
-            meaning: meaning(q, &show, words),
-            notes: footnote.into_iter().chain(q.notes.iter().map(|n| n.say(words.lang))).collect(),
-            figure: figure.map(|f| FigureView { title, ..f }),
+        sheet.quantities.iter().map(printed).collect()
+    }
+
+    /// A number as the median is rounded.
+    fn show(&self, value: f64) -> String {
+        let lang = self.words.lang;
+        self.rounding.map_or_else(|| limit_digits(value, 4, lang), |r| r.show(value, lang))
+    }
+
+    /// What is printed in the unit of the quantity; a dash where nothing is.
+    fn in_unit(&self, number: Option<f64>, printed: String) -> Value {
+        if printed.is_empty() {
+            return NOTHING.into();
         }
+        Quantity { number, printed, unit: self.words.unit(&self.quantity.unit) }.into()
+    }
+
+    fn named(&self) -> Value {
+        Value::Sentence(self.name.clone()).detail(Joined::Unit, self.words.unit(&self.quantity.unit))
+    }
+
+    fn units(&self) -> Value {
+        let count = |n: usize| count(n as u64, self.words.lang);
+        let bounded = match self.quantity.bounded {
+            0 => String::new(),
+            n => self.words.with("datasheet.units_bounded", &[("bounded", &count(n))]),
+        };
+        Value::Text(count(self.quantity.units)).detail(Joined::Remark, bounded)
+    }
+
+    fn typical(&self) -> Value {
+        let Some(typical) = &self.quantity.typical else { return NOTHING.into() };
+        let (low, high) = (self.show(typical.interval.low), self.show(typical.interval.high));
+        let interval = self.words.with("report.interval", &[("low", &low), ("high", &high)]);
+        let value = self.in_unit(Some(typical.value), self.show(typical.value));
+        value.strong().detail(Joined::Interval, interval)
+    }
+
+    /// Spread between units; of logarithms in percent.
+    fn spread(&self) -> Value {
+        let Some(spread) = &self.quantity.spread else { return NOTHING.into() };
+        let printed = |v: f64| match self.quantity.scale {
+            SheetScale::Log => spread_text(self.quantity, v, self.words),
+            SheetScale::Linear => limit_digits(v, 2, self.words.lang),
+        };
+        let lots = spread.between_lots.map(|v| {
+            let between = self.words.t("datasheet.column.between_lots");
+            format!("{between} {}", printed(v))
+        });
+        Value::Text(printed(spread.between_units)).detail(Joined::Remark, lots.unwrap_or_default())
+    }
+
+    /// The bounds of a kind, lower before upper.
+    fn bounds(&self, of: SheetOf) -> Value {
+        let bounds = &self.quantity.bounds;
+        let on = |side: SheetSide| bounds.iter().find(|b| b.of == of && b.side == side);
+        let both = [on(SheetSide::Lower), on(SheetSide::Upper)].into_iter().flatten();
+        self.in_unit(None, both.map(|b| one(b, self.words)).collect::<Vec<_>>().join("; "))
+    }
+
+    /// The largest value, and the unit that has it.
+    fn largest(&self) -> Value {
+        let Some(largest) = &self.quantity.largest else { return NOTHING.into() };
+        self.in_unit(Some(largest.value), self.show(largest.value))
+            .detail(Joined::Remark, largest.serial.clone())
+    }
+
+    fn limit(&self) -> Value {
+        let limit = limit_text(self.quantity, self.words);
+        if limit.is_empty() { NOTHING.into() } else { limit.into() }
+    }
+
+    /// What the numbers mean and what must be known, with the values of all units.
+    pub(super) fn section(&self, figure: Option<FigureView>) -> Block {
+        let (q, words) = (self.quantity, self.words);
+        let meaning = meaning(q, &|v| self.show(v), words);
+        let details = if meaning.is_empty() { vec![] } else { self.how_obtained() };
+        let footnote = q.footnote.as_ref().map(|f| words.local(f));
+        let notes = footnote.into_iter().chain(q.notes.iter().map(|n| n.say(words.lang)));
+        let drawn = figure.map(|f| {
+            let title = format!("{}. {}", self.name, words.t("datasheet.figure.units"));
+            Block::Figure(Box::new(FigureView { title, caption: String::new(), is_titled: true, ..f }))
+        });
+        let below = Block::remarks(meaning.into_iter().chain(details));
+        let below = below.into_iter().chain(Block::remarks(notes)).chain(drawn);
+        Block::section("figures", Value::Sentence(self.name.clone()), below.collect())
+    }
+
+    /// What each bound promises, and how bounds and quantity were obtained.
+    fn how_obtained(&self) -> Vec<String> {
+        let (q, words) = (self.quantity, self.words);
+        let method = |b: &SheetBound| words.name("datasheet.method", &b.method);
+        let of_all = q.bounds.first().filter(|b| q.bounds.iter().all(|o| o.method == b.method)).map(method);
+        let bound = |b: &SheetBound| match &of_all {
+            Some(_) => promised(q, b, words),
+            None => format!("{} {}.", promised(q, b, words), method(b)),
+        };
+        let bounds: Vec<String> = q.bounds.iter().map(bound).collect();
+        let by = of_all.map(|m| words.with("datasheet.bounds_by", &[("method", &m)]));
+        let reading = q.reading.as_ref().map(|how| words.name("how", how));
+        let read = reading.map(|r| words.with("datasheet.read_by", &[("reading", &r)]));
+        bounds.into_iter().chain(by).chain(read).collect()
     }
 }
 
@@ -138,14 +175,8 @@ fn one(b: &SheetBound, words: Translator) -> String {
     format!("{sign}\u{202f}{}", bound(b.value, upper, words.lang))
 }
 
-/// The bounds of a kind, lower before upper.
-fn bound_text(q: &SheetQuantity, of: SheetOf, words: Translator) -> String {
-    let on = |side: SheetSide| q.bounds.iter().find(|b| b.of == of && b.side == side);
-    let both = [on(SheetSide::Lower), on(SheetSide::Upper)];
-    both.into_iter().flatten().map(|b| one(b, words)).collect::<Vec<_>>().join("; ")
-}
-
-fn bound_view(q: &SheetQuantity, b: &SheetBound, words: Translator) -> BoundView {
+/// A sentence on what a bound promises.
+fn promised(q: &SheetQuantity, b: &SheetBound, words: Translator) -> String {
     let key = match (b.of, b.side) {
         (SheetOf::True, SheetSide::Upper) => "datasheet.meaning.true_upper",
         (SheetOf::True, SheetSide::Lower) => "datasheet.meaning.true_lower",
@@ -154,18 +185,8 @@ fn bound_view(q: &SheetQuantity, b: &SheetBound, words: Translator) -> BoundView
     };
     let percent = |p: f64| limit_digits(100.0 * p, 4, words.lang);
     let value = words.quantity(&bound(b.value, b.side == SheetSide::Upper, words.lang), &q.unit);
-    BoundView {
-        value: one(b, words),
-        method: words.name("datasheet.method", &b.method),
-        meaning: words.with(
-            key,
-            &[
-                ("value", &value),
-                ("proportion", &percent(b.proportion)),
-                ("confidence", &percent(b.confidence)),
-            ],
-        ),
-    }
+    let (proportion, confidence) = (percent(b.proportion), percent(b.confidence));
+    words.with(key, &[("value", &value), ("proportion", &proportion), ("confidence", &confidence)])
 }
 
 fn limit_text(q: &SheetQuantity, words: Translator) -> String {

@@ -1,75 +1,97 @@
-//! A quantity over time, printed.
+//! A quantity over time: its row, what lies beyond its limits, and its drawing.
 
 use crate::i18n::Localize;
 use crate::record::{HistoryCapability, HistoryChart, HistoryChartOf, HistoryControl, HistoryQuantity};
 use crate::report::number::{count, date_time, limit, limit_digits};
+use crate::report::page::{Block, OnTerminal, Table, Value};
 use crate::report::translator::Translator;
 use crate::report::view::FigureView;
-use serde::Serialize;
 
-/// Points that are named one by one.
+/// Most points that are named one by one.
 const MAX_NAMED_POINTS: usize = 10;
 
-/// A chart, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ChartView {
-    /// Quantity, with what the chart is of.
-    pub name: String,
-    /// `remark` where something lies beyond the control limits, `ok` where nothing does, `none` without them.
-    pub status: &'static str,
-    /// The same in words.
-    pub status_word: String,
-    /// Values.
-    pub values: String,
-    /// Mean with the spread of the process.
-    pub center: String,
-    /// Limits; empty where there are none.
-    pub limit: String,
-    /// Cp with its lower bound; empty where it is not stated.
-    pub cp: String,
-    /// Cpk with its lower bound.
-    pub cpk: String,
-    /// What lies beyond, and what must be known, in sentences.
-    pub sentences: Vec<String>,
-    /// The drawing.
-    pub figure: Option<FigureView>,
+/// The charts, a row each.
+pub(super) fn table(charts: &[HistoryChart], several: bool, words: Translator) -> Table {
+    let number = |key: &str| words.number_column(&format!("history.column.{key}"));
+    let optional = |key: &str| number(key).on_terminal(OnTerminal::Optional);
+    let values = |c: &HistoryChart| count(c.points.len() as u64, words.lang);
+    let central = |c: &HistoryChart| {
+        let unit = &c.quantity.unit;
+        c.control.as_ref().map_or_else(String::new, |control| center(control, unit, words))
+    };
+    let cp = |c: &HistoryCapability| c.cp.zip(c.cp_at_least);
+    let cpk = |c: &HistoryCapability| Some((c.cpk, c.cpk_at_least));
+    let status = |c: &HistoryChart| {
+        let id = status(c);
+        Value::state(id, words.name("history.control", id))
+    };
+    Table::new("history cards", charts.len())
+        .column(
+            words.column("history.column.quantity"),
+            charts.iter().map(|c| Value::Sentence(of(c, several, words))),
+        )
+        .column(optional("values"), charts.iter().map(values))
+        .column(words.column("history.column.center"), charts.iter().map(central))
+        .column(
+            words.number_column("report.limit").on_terminal(OnTerminal::Hidden),
+            charts.iter().map(|c| limits(c, words)),
+        )
+        .column(optional("cp"), charts.iter().map(|c| index(c, cp, words)))
+        .column(optional("cpk"), charts.iter().map(|c| index(c, cpk, words)))
+        .column(words.column("history.column.control"), charts.iter().map(status))
 }
 
-impl ChartView {
-    pub(super) fn new(
-        chart: &HistoryChart,
-        several: bool,
-        figure: Option<FigureView>,
-        words: Translator,
-    ) -> ChartView {
-        let name = of(chart, several, words);
-        let status = match &chart.control {
-            None => "none",
-            Some(control) if control.in_control => "ok",
-            Some(_) => "remark",
-        };
-        let unit = &chart.quantity.unit;
-        let mut sentences = chart.control.as_ref().map_or_else(Vec::new, |c| beyond(chart, c, words));
-        sentences.extend(chart.notes.iter().map(|n| n.say(words.lang)));
-        let index = |of: fn(&HistoryCapability) -> Option<(f64, f64)>| {
-            chart.capability.as_ref().and_then(of).map_or_else(String::new, |(value, at_least)| {
-                let digits = |v: f64| limit_digits(v, 3, words.lang);
-                words.with("history.index", &[("value", &digits(value)), ("at_least", &digits(at_least))])
-            })
-        };
-        ChartView {
-            figure: figure.map(|f| FigureView { title: name.clone(), ..f }),
-            status,
-            status_word: words.name("history.control", status),
-            values: count(chart.points.len() as u64, words.lang),
-            center: chart.control.as_ref().map_or_else(String::new, |c| center(c, unit, words)),
-            limit: limits(chart, words),
-            cp: index(|c| c.cp.zip(c.cp_at_least)),
-            cpk: index(|c| Some((c.cpk, c.cpk_at_least))),
-            sentences,
-            name,
-        }
+/// What is said of a chart, and its drawing.
+pub(super) fn section(
+    chart: &HistoryChart,
+    several: bool,
+    figure: Option<FigureView>,
+    words: Translator,
+) -> Block {
+    let name = of(chart, several, words);
+    let drawn = figure.map(|f| {
+        let caption = format!("{name}. {}", words.t("history.chart_caption"));
+        Block::Figure(Box::new(FigureView { title: name.clone(), caption, ..f }))
+    });
+    let below = Block::remarks(sentences(chart, words)).into_iter().chain(drawn).collect();
+    Block::section("figures", Value::Sentence(name), below)
+}
+
+/// The charts in which something lies beyond the control limits, with what it is.
+pub(super) fn out_of_control(charts: &[HistoryChart], several: bool, words: Translator) -> Vec<Block> {
+    let one = |chart: &HistoryChart| {
+        let said = sentences(chart, words).into_iter().map(Block::Paragraph);
+        std::iter::once(Block::heading(of(chart, several, words))).chain(said).collect::<Vec<_>>()
+    };
+    charts.iter().filter(|c| status(c) == "remark").flat_map(one).collect()
+}
+
+/// `remark` where something lies beyond the control limits, `ok` where nothing does, `none` without them.
+fn status(chart: &HistoryChart) -> &'static str {
+    match &chart.control {
+        None => "none",
+        Some(control) if control.in_control => "ok",
+        Some(_) => "remark",
     }
+}
+
+/// What lies beyond, and what must be known.
+fn sentences(chart: &HistoryChart, words: Translator) -> Vec<String> {
+    let beyond = chart.control.as_ref().map_or_else(Vec::new, |c| beyond(chart, c, words));
+    beyond.into_iter().chain(chart.notes.iter().map(|n| n.say(words.lang))).collect()
+}
+
+/// An index of capability with its lower bound; empty where it is not stated.
+fn index(
+    chart: &HistoryChart,
+    of: fn(&HistoryCapability) -> Option<(f64, f64)>,
+    words: Translator,
+) -> String {
+    let digits = |v: f64| limit_digits(v, 3, words.lang);
+    let found = chart.capability.as_ref().and_then(of);
+    found.map_or_else(String::new, |(value, at_least)| {
+        words.with("history.index", &[("value", &digits(value)), ("at_least", &digits(at_least))])
+    })
 }
 
 /// Name of a quantity, with its phase and channel where there are several.

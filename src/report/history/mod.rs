@@ -1,178 +1,131 @@
-//! The history of a store as its page and its words on the terminal show it.
+//! The history of a store: yields, reasons, quantities over time, drift, stations, and the latest results.
 
 mod chart;
 mod csv;
 
-pub use chart::ChartView;
 pub use csv::csv;
 
 use super::number::{count, date_time, limit_digits};
-use super::translator::{Field, Translator};
+use super::page::{Block, Head, OnTerminal, Page, Table, Value};
+use super::translator::Translator;
 use super::view::FigureView;
-use crate::acceptance::history::figures::{self, MONTHS, figure_id};
+use crate::acceptance::history::figures::{MONTHS, figure_id};
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize};
-use crate::record::{HistoryDrift, HistoryRecord, HistoryResult, HistoryShare, HistoryStation};
-use serde::Serialize;
-use std::collections::{BTreeMap, BTreeSet};
+use crate::record::{
+    HistoryDrift, HistoryReason, HistoryRecord, HistoryResult, HistoryShare, HistoryStation, HistoryYield,
+};
+use std::collections::BTreeSet;
 
-/// Results that a page lists; all are in the other forms.
-const LISTED: usize = 200;
+/// Most results that a page lists; all are in the other forms.
+const MAX_ON_PAGE: usize = 200;
+/// Most results that a terminal lists.
+const MAX_ON_TERMINAL: usize = 20;
 /// Digits of an address that are shown.
-const SHOWN: usize = 12;
+const ADDRESS_DIGITS: usize = 12;
 
-/// Everything that the page of a history shows.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct HistoryView {
-    /// The question, in one line.
-    pub title: String,
-    /// How many results and units there are.
-    pub size: String,
-    /// The question.
-    pub asked: Vec<Field>,
-    /// What must be known of the whole.
-    pub notes: Vec<String>,
-    /// Yields.
-    pub yields: Vec<YieldView>,
-    /// What kept units from passing.
-    pub reasons: Vec<ReasonView>,
-    /// Verdicts by month.
-    pub months: Option<FigureView>,
-    /// Quantities over time.
-    pub charts: Vec<ChartView>,
-    /// Drift of the unit.
-    pub drifts: Vec<DriftView>,
-    /// Stations set against each other.
-    pub stations: Vec<StationView>,
-    /// The latest results, the latest first.
-    pub results: Vec<ResultView>,
-    /// That there are more of them; empty otherwise.
-    pub more: String,
-    /// Line at the foot of every page.
-    pub footer: String,
-    /// The program with its version.
-    pub generator: String,
+/// The page of a history with its figures.
+pub fn page(history: &HistoryRecord, figures: &[Figure], lang: Lang) -> Page {
+    let words = Translator { lang };
+    let head = head(history, words);
+    let several = several_channels(history);
+    let generator = format!("{} {}", history.program.name, history.program.version);
+    let latest = history.results.last().map(|r| date_time(&r.evaluated_at)).unwrap_or_default();
+    let months = FigureView::find(figures, MONTHS, words).map(|f| {
+        let caption = f.title.clone();
+        Block::Section("figures", vec![Block::Figure(Box::new(FigureView { caption, ..f }))])
+    });
+    let charts = history
+        .charts
+        .iter()
+        .enumerate()
+        .map(|(i, c)| chart::section(c, several, FigureView::find(figures, &figure_id(i), words), words));
+    let asked = asked(history, words);
+    let asked = (!asked.is_empty()).then(|| Block::Section("identity", vec![Block::identity(asked)]));
+    let tables = Tables::new(history, several, words);
+    let below = |key: &str, table: &Table, hint: Option<&str>| {
+        let hint = hint.map(|key| Block::Hint(words.t(key)));
+        let below = std::iter::once(Block::Table(table.clone())).chain(hint).collect();
+        (!table.rows.is_empty()).then(|| Block::section("", words.t(key), below))
+    };
+    let results = results(&history.results, MAX_ON_PAGE, words);
+    let more = history.results.len().saturating_sub(MAX_ON_PAGE);
+    let more =
+        (more > 0).then(|| Block::Hint(words.with("history.more", &[("n", &count(more as u64, lang))])));
+    let results = std::iter::once(Block::Table(results)).chain(more).collect();
+    Page {
+        title: format!("{} · {}", head.title, head.kind),
+        footer: format!("{latest} · {generator}"),
+        blocks: std::iter::once(Block::Head(head))
+            .chain(Block::remarks(history.notes.iter().map(|n| n.say(lang))))
+            .chain(asked)
+            .chain(below("history.yields", &tables.yields, Some("history.yields_hint")))
+            .chain(below("history.reasons", &tables.reasons, None))
+            .chain([Block::SummaryEnd])
+            .chain(months)
+            .chain(below("history.charts", &tables.charts, Some("history.charts_hint")))
+            .chain(below("history.drifts", &tables.drifts, None))
+            .chain(below("history.stations", &tables.stations, Some("history.stations_hint")))
+            .chain(charts)
+            .chain([Block::section("", words.t("history.results"), results)])
+            .collect(),
+        generator,
+    }
 }
 
-/// A yield, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct YieldView {
-    /// Procedure.
-    pub procedure: String,
-    /// First-pass yield with its interval.
-    pub first_pass: String,
-    /// Last-pass yield with its interval.
-    pub last_pass: String,
-    /// Units.
-    pub units: String,
+/// A history on a terminal: the latest results, yields, reasons, what is out of control, drift, stations.
+pub fn on_terminal(history: &HistoryRecord, lang: Lang) -> Vec<Block> {
+    let words = Translator { lang };
+    let several = several_channels(history);
+    let tables = Tables::new(history, several, words);
+    let columns = ["evaluated_at", "serial", "lot", "station", "attempt", "address", "reasons", "verdict"];
+    let results = results(&history.results, MAX_ON_TERMINAL, words).only(&columns);
+    let below = |key: &str, table: Table| {
+        let is_shown = !table.rows.is_empty();
+        let both = [Block::heading(words.t(key)), Block::Table(table)];
+        both.into_iter().filter(move |_| is_shown)
+    };
+    std::iter::once(Block::Head(head(history, words)))
+        .chain(below("history.results", results))
+        .chain(below("history.yields", tables.yields))
+        .chain(below("history.reasons", tables.reasons))
+        .chain(below("history.charts", tables.charts))
+        .chain(chart::out_of_control(&history.charts, several, words))
+        .chain(below("history.drifts", tables.drifts))
+        .chain(below("history.stations", tables.stations))
+        .chain(Block::remarks(history.notes.iter().map(|n| n.say(lang))))
+        .collect()
 }
 
-/// A reason, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ReasonView {
-    /// Its subject, in words.
-    pub kind: String,
-    /// Its name.
-    pub name: String,
-    /// Results.
-    pub results: String,
-    /// Share of all reasons up to this one.
-    pub cumulative: String,
+fn head(history: &HistoryRecord, words: Translator) -> Head {
+    let count = |n: usize| count(n as u64, words.lang);
+    let counts = &history.counts;
+    let (results, units) = (count(counts.results), count(counts.units));
+    Head {
+        kind: words.t("history.kind_of_page"),
+        title: title(history, words),
+        size: words.with("history.size", &[("results", &results), ("units", &units)]),
+        ..Head::default()
+    }
 }
 
-/// A drift, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct DriftView {
-    /// Quantity.
-    pub name: String,
-    /// From when to when, and how many tests.
-    pub span: String,
-    /// Change with its interval.
-    pub change: String,
-    /// The same per year; empty for few tests.
-    pub per_year: String,
-    /// What it means, in a sentence.
-    pub meaning: String,
+/// The tables that page and terminal have.
+struct Tables {
+    yields: Table,
+    reasons: Table,
+    charts: Table,
+    drifts: Table,
+    stations: Table,
 }
 
-/// A station, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StationView {
-    /// Quantity.
-    pub name: String,
-    /// Station.
-    pub station: String,
-    /// Units.
-    pub units: String,
-    /// Mean.
-    pub mean: String,
-    /// Difference from the others with its interval.
-    pub difference: String,
-    /// `remark` for a station that differs, else `ok`.
-    pub status: &'static str,
-}
-
-/// A result, printed.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ResultView {
-    /// When.
-    pub evaluated_at: String,
-    /// Serial number, marked for a reference unit.
-    pub serial: String,
-    /// Lot.
-    pub lot: String,
-    /// Procedure with its revision.
-    pub procedure: String,
-    /// Station.
-    pub station: String,
-    /// Number of the attempt.
-    pub attempt: String,
-    /// Id of the verdict, for colours.
-    pub verdict: &'static str,
-    /// The verdict in words.
-    pub verdict_word: String,
-    /// What kept the unit from passing, or what counts in place of the result.
-    pub reasons: String,
-    /// Beginning of the address.
-    pub address: String,
-}
-
-impl HistoryView {
-    /// Builds the view.
-    pub fn new(history: &HistoryRecord, lang: Lang) -> HistoryView {
-        let words = Translator { lang };
-        let figures = figures::all(history);
-        let by_id: BTreeMap<&str, (usize, &Figure)> =
-            figures.iter().enumerate().map(|(at, f)| (f.id.as_str(), (at, f))).collect();
-        let drawn = |id: &str| by_id.get(id).map(|(at, f)| FigureView::of(f, at + 1, words));
-        let several = several_channels(history);
-        let generator = format!("{} {}", history.program.name, history.program.version);
-        let latest = history.results.last().map(|r| date_time(&r.evaluated_at)).unwrap_or_default();
-        let charts = history.charts.iter().enumerate();
-        HistoryView {
-            title: title(history, words),
-            size: words.with(
-                "history.size",
-                &[
-                    ("results", &count(history.counts.results as u64, lang)),
-                    ("units", &count(history.counts.units as u64, lang)),
-                ],
-            ),
-            asked: asked(history, words),
-            notes: history.notes.iter().map(|n| n.say(lang)).collect(),
-            yields: yields(history, words),
-            reasons: reasons(history, words),
-            months: drawn(MONTHS),
-            charts: charts.map(|(i, c)| ChartView::new(c, several, drawn(&figure_id(i)), words)).collect(),
-            drifts: history.drifts.iter().map(|d| drift(d, several, words)).collect(),
-            stations: history.stations.iter().map(|s| station(s, several, words)).collect(),
-            results: history.results.iter().rev().take(LISTED).map(|r| result(r, words)).collect(),
-            more: match history.results.len().saturating_sub(LISTED) {
-                0 => String::new(),
-                more => words.with("history.more", &[("n", &count(more as u64, lang))]),
-            },
-            footer: format!("{latest} · {generator}"),
-            generator,
+impl Tables {
+    fn new(history: &HistoryRecord, several: bool, words: Translator) -> Tables {
+        Tables {
+            yields: yields(&history.yields, words),
+            reasons: reasons(&history.reasons, words),
+            charts: chart::table(&history.charts, several, words),
+            drifts: drifts(&history.drifts, several, words),
+            stations: stations(&history.stations, several, words),
         }
     }
 }
@@ -191,7 +144,7 @@ fn title(history: &HistoryRecord, words: Translator) -> String {
     if named.is_empty() { words.t("history.all") } else { named.join(" · ") }
 }
 
-fn asked(history: &HistoryRecord, words: Translator) -> Vec<Field> {
+fn asked(history: &HistoryRecord, words: Translator) -> Vec<(String, String)> {
     let asked = &history.asked;
     let lots = (!asked.lots.is_empty()).then(|| asked.lots.join(", "));
     let measurand = asked.measurand.as_ref().map(|m| words.name("measurand", m));
@@ -204,7 +157,7 @@ fn asked(history: &HistoryRecord, words: Translator) -> Vec<Field> {
         ("report.station", asked.station.clone()),
         ("history.since", asked.since.clone()),
     ];
-    let field = |(key, value): (&str, Option<String>)| Some(Field { label: words.t(key), value: value? });
+    let field = |(key, value): (&str, Option<String>)| Some((words.t(key), value?));
     fields.into_iter().filter_map(field).collect()
 }
 
@@ -225,14 +178,13 @@ fn share(share: &HistoryShare, words: Translator) -> String {
     )
 }
 
-fn yields(history: &HistoryRecord, words: Translator) -> Vec<YieldView> {
-    let each = history.yields.iter().map(|y| YieldView {
-        procedure: y.procedure.clone(),
-        first_pass: share(&y.first_pass, words),
-        last_pass: share(&y.last_pass, words),
-        units: count(y.first_pass.of as u64, words.lang),
-    });
-    each.collect()
+fn yields(yields: &[HistoryYield], words: Translator) -> Table {
+    let number = |key: &str| words.number_column(&format!("history.column.{key}"));
+    Table::new("history cards", yields.len())
+        .column(words.column("history.column.procedure"), yields.iter().map(|y| y.procedure.clone()))
+        .column(number("units"), yields.iter().map(|y| count(y.first_pass.of as u64, words.lang)))
+        .column(number("first_pass"), yields.iter().map(|y| share(&y.first_pass, words)))
+        .column(number("last_pass"), yields.iter().map(|y| share(&y.last_pass, words)))
 }
 
 /// Name of a reason: that of a condition goes on with the name of its channel.
@@ -243,14 +195,19 @@ fn reason_name(kind: &str, name: &str, words: Translator) -> String {
     }
 }
 
-fn reasons(history: &HistoryRecord, words: Translator) -> Vec<ReasonView> {
-    let each = history.reasons.iter().map(|r| ReasonView {
-        kind: words.name("history.kind", &r.kind),
-        name: reason_name(&r.kind, &r.name, words),
-        results: count(r.results as u64, words.lang),
-        cumulative: percent(r.cumulative, words),
-    });
-    each.collect()
+fn reasons(reasons: &[HistoryReason], words: Translator) -> Table {
+    let number = |key: &str| words.number_column(&format!("history.column.{key}"));
+    Table::new("history cards", reasons.len())
+        .column(
+            words.column("history.column.reason"),
+            reasons.iter().map(|r| reason_name(&r.kind, &r.name, words)),
+        )
+        .column(
+            words.column("history.column.kind").on_terminal(OnTerminal::Optional),
+            reasons.iter().map(|r| words.name("history.kind", &r.kind)),
+        )
+        .column(number("results"), reasons.iter().map(|r| count(r.results as u64, words.lang)))
+        .column(number("cumulative"), reasons.iter().map(|r| percent(r.cumulative, words)))
 }
 
 /// A value with the half width of its interval.
@@ -259,68 +216,110 @@ fn plus_minus(value: f64, half_width: f64, unit: &str, words: Translator) -> Str
     words.quantity(&format!("{}\u{202f}±\u{202f}{}", digits(value), digits(half_width)), unit)
 }
 
-fn drift(d: &HistoryDrift, several: bool, words: Translator) -> DriftView {
-    let unit = &d.quantity.unit;
-    let is_shown = d.change.abs() > d.change_half_width;
-    let key = if is_shown { "history.drift.shown" } else { "history.drift.not_shown" };
-    let mut meaning = words.t(key);
-    if d.common > 0.0 {
-        let common = words.quantity(&limit_digits(d.common, 3, words.lang), unit);
-        meaning = format!("{meaning} {}", words.with("history.drift.common", &[("common", &common)]));
-    }
-    let per_year = d.per_year.zip(d.per_year_half_width);
-    DriftView {
-        name: chart::name(&d.quantity, several, words),
-        span: words.with(
-            "history.drift.span",
-            &[
-                ("from", &date_time(&d.from)),
-                ("to", &date_time(&d.to)),
-                ("n", &count(d.tests as u64, words.lang)),
-            ],
-        ),
-        change: plus_minus(d.change, d.change_half_width, unit, words),
-        per_year: per_year.map_or_else(String::new, |(v, half)| plus_minus(v, half, unit, words)),
-        meaning,
-    }
-}
-
-fn station(s: &HistoryStation, several: bool, words: Translator) -> StationView {
-    let unit = &s.quantity.unit;
-    let missing = words.t("report.missing");
-    StationView {
-        name: chart::name(&s.quantity, several, words),
-        station: if s.station.is_empty() { missing } else { s.station.clone() },
-        units: count(s.units as u64, words.lang),
-        mean: words.quantity(&limit_digits(s.mean, 4, words.lang), unit),
-        difference: s
-            .difference
-            .zip(s.half_width)
-            .map_or_else(String::new, |(d, half)| plus_minus(d, half, unit, words)),
-        status: if s.differs { "remark" } else { "ok" },
-    }
-}
-
-fn result(r: &HistoryResult, words: Translator) -> ResultView {
-    let names: Vec<String> = r.reasons.iter().map(|(kind, name)| reason_name(kind, name, words)).collect();
-    let reasons = match (&r.superseded_by, &r.superseded_because) {
-        (Some(by), because) => words.with(
-            "history.superseded",
-            &[("by", by.get(..SHOWN).unwrap_or(by)), ("because", because.as_deref().unwrap_or_default())],
-        ),
-        _ => names.join(", "),
+fn drifts(drifts: &[HistoryDrift], several: bool, words: Translator) -> Table {
+    let span = |d: &HistoryDrift| {
+        let (from, to, n) = (date_time(&d.from), date_time(&d.to), count(d.tests as u64, words.lang));
+        words.with("history.drift.span", &[("from", &from), ("to", &to), ("n", &n)])
     };
-    let serial = if r.serial.is_empty() { words.t("report.missing") } else { r.serial.clone() };
-    ResultView {
-        evaluated_at: date_time(&r.evaluated_at),
-        serial: if r.reference { words.with("history.reference", &[("serial", &serial)]) } else { serial },
-        lot: r.lot.clone(),
-        procedure: words.with("report.id_revision", &[("id", &r.procedure), ("revision", &r.revision)]),
-        station: r.station.clone(),
-        attempt: if r.attempt == 0 { String::new() } else { count(r.attempt, words.lang) },
-        verdict: r.verdict.id(),
-        verdict_word: words.verdict(r.verdict),
-        reasons,
-        address: r.address.get(..SHOWN).unwrap_or(&r.address).to_owned(),
+    let change = |d: &HistoryDrift| {
+        Value::Text(plus_minus(d.change, d.change_half_width, &d.quantity.unit, words)).strong()
+    };
+    let per_year = |d: &HistoryDrift| {
+        let both = d.per_year.zip(d.per_year_half_width);
+        both.map_or_else(String::new, |(v, half)| plus_minus(v, half, &d.quantity.unit, words))
+    };
+    Table::new("history cards", drifts.len())
+        .column(
+            words.column("history.column.quantity"),
+            drifts.iter().map(|d| Value::Sentence(chart::name(&d.quantity, several, words))),
+        )
+        .column(
+            words.column("history.column.span").on_terminal(OnTerminal::Optional),
+            drifts.iter().map(span),
+        )
+        .column(words.number_column("history.column.change"), drifts.iter().map(change))
+        .column(
+            words.number_column("history.column.per_year").on_terminal(OnTerminal::Optional),
+            drifts.iter().map(per_year),
+        )
+        .column(
+            words.column("history.column.meaning").on_terminal(OnTerminal::Hidden),
+            drifts.iter().map(|d| meaning(d, words)),
+        )
+}
+
+/// What a drift means, in a sentence.
+fn meaning(d: &HistoryDrift, words: Translator) -> String {
+    let is_shown = d.change.abs() > d.change_half_width;
+    let meaning = words.t(if is_shown { "history.drift.shown" } else { "history.drift.not_shown" });
+    if d.common <= 0.0 {
+        return meaning;
     }
+    let common = words.quantity(&limit_digits(d.common, 3, words.lang), &d.quantity.unit);
+    format!("{meaning} {}", words.with("history.drift.common", &[("common", &common)]))
+}
+
+fn stations(stations: &[HistoryStation], several: bool, words: Translator) -> Table {
+    let station = |s: &HistoryStation| {
+        let name = if s.station.is_empty() { words.t("report.missing") } else { s.station.clone() };
+        Value::state(if s.differs { "remark" } else { "ok" }, name)
+    };
+    let mean = |s: &HistoryStation| words.quantity(&limit_digits(s.mean, 4, words.lang), &s.quantity.unit);
+    let difference = |s: &HistoryStation| {
+        let both = s.difference.zip(s.half_width);
+        both.map_or_else(String::new, |(d, half)| plus_minus(d, half, &s.quantity.unit, words))
+    };
+    Table::new("history cards", stations.len())
+        .column(
+            words.column("history.column.quantity"),
+            stations.iter().map(|s| Value::Sentence(chart::name(&s.quantity, several, words))),
+        )
+        .column(words.column("history.column.station"), stations.iter().map(station))
+        .column(
+            words.number_column("history.column.units").on_terminal(OnTerminal::Optional),
+            stations.iter().map(|s| count(s.units as u64, words.lang)),
+        )
+        .column(words.number_column("history.column.mean"), stations.iter().map(mean))
+        .column(words.number_column("history.column.difference"), stations.iter().map(difference))
+}
+
+/// The latest results, the latest first, at most so many.
+fn results(results: &[HistoryResult], most: usize, words: Translator) -> Table {
+    let latest: Vec<&HistoryResult> = results.iter().rev().take(most).collect();
+    let all = |of: &dyn Fn(&HistoryResult) -> String| latest.iter().map(|r| of(r)).collect::<Vec<_>>();
+    let column = |key: &str| words.column(&format!("history.column.{key}"));
+    let optional = |key: &str| column(key).on_terminal(OnTerminal::Optional);
+    let revision = |r: &HistoryResult| {
+        words.with("report.id_revision", &[("id", &r.procedure), ("revision", &r.revision)])
+    };
+    let attempt =
+        |r: &HistoryResult| if r.attempt == 0 { String::new() } else { count(r.attempt, words.lang) };
+    let address = |r: &HistoryResult| r.address.get(..ADDRESS_DIGITS).unwrap_or(&r.address).to_owned();
+    let verdict = |r: &&HistoryResult| Value::state(r.verdict.id(), words.verdict(r.verdict));
+    Table::new("results cards", latest.len())
+        .column(column("evaluated_at").class("whole"), all(&|r| date_time(&r.evaluated_at)))
+        .column(column("serial").class("whole"), all(&|r| serial(r, words)))
+        .column(optional("lot").class("whole"), all(&|r| r.lot.clone()))
+        .column(column("procedure").class("procedure"), all(&revision))
+        .column(optional("station"), all(&|r| r.station.clone()))
+        .column(words.number_column("history.column.attempt"), all(&attempt))
+        .column(column("verdict"), latest.iter().map(verdict))
+        .column(optional("reasons"), all(&|r| why(r, words)))
+        .column(column("address").class("address"), all(&address))
+}
+
+/// Serial number, marked for a reference unit.
+fn serial(r: &HistoryResult, words: Translator) -> String {
+    let serial = if r.serial.is_empty() { words.t("report.missing") } else { r.serial.clone() };
+    if r.reference { words.with("history.reference", &[("serial", &serial)]) } else { serial }
+}
+
+/// What kept the unit from passing, or what counts in place of the result.
+fn why(r: &HistoryResult, words: Translator) -> String {
+    if let Some(by) = &r.superseded_by {
+        let because = r.superseded_because.as_deref().unwrap_or_default();
+        let by = by.get(..ADDRESS_DIGITS).unwrap_or(by);
+        return words.with("history.superseded", &[("by", by), ("because", because)]);
+    }
+    r.reasons.iter().map(|(kind, name)| reason_name(kind, name, words)).collect::<Vec<_>>().join(", ")
 }

@@ -30,6 +30,8 @@ pub enum Block {
     Paragraph(String),
     /// A sentence that tells how to read what stands beside it.
     Hint(String),
+    /// Sentences that stand beside each other, such as what must be known.
+    Remarks(Vec<String>),
     /// Labels and their values.
     Facts(Facts),
     /// Steps, in their order.
@@ -55,7 +57,7 @@ pub struct Head {
     pub size: String,
     /// What the verdict is, such as “Outcome”.
     pub label: String,
-    /// The verdict.
+    /// The verdict; empty where the page has none.
     pub verdict: State,
     /// How many have which verdict.
     pub counts: Vec<(State, usize)>,
@@ -119,6 +121,8 @@ pub struct Figure {
     pub title: String,
     /// What is to be seen, in a sentence; empty where nothing is said.
     pub caption: String,
+    /// True where HTML has the title before the caption.
+    pub is_titled: bool,
     /// The drawing.
     pub svg: String,
     /// What a pointer reads off it, as JSON for the script of the page; empty where nothing can be read off.
@@ -143,6 +147,12 @@ impl Block {
         Block::Section(class, std::iter::once(Block::heading(heading)).chain(below).collect())
     }
 
+    /// Remarks; `None` without any.
+    pub fn remarks(items: impl IntoIterator<Item = String>) -> Option<Block> {
+        let items: Vec<String> = items.into_iter().collect();
+        (!items.is_empty()).then_some(Block::Remarks(items))
+    }
+
     /// Facts in two columns; those without a value are left out.
     pub fn identity(rows: impl IntoIterator<Item = (String, String)>) -> Block {
         let rows = rows.into_iter().filter(|(_, value)| !value.trim().is_empty());
@@ -153,5 +163,12 @@ impl Block {
     pub fn files(rows: impl IntoIterator<Item = (String, String)>) -> Block {
         let rows = rows.into_iter().map(|(name, what)| (Value::Code(name), what.into())).collect();
         Block::Facts(Facts { class: "about", rows })
+    }
+}
+
+impl Head {
+    /// True where the page has a verdict.
+    pub fn has_verdict(&self) -> bool {
+        !self.verdict.word.is_empty()
     }
 }

@@ -2,7 +2,7 @@
 
 use super::markup::Markup;
 use super::table::{Layout, Table};
-use super::value::State;
+use super::value::{Detail, Detailed, Joined, State};
 use crate::report::prose;
 use crate::report::svg::escape;
 
@@ -36,6 +36,17 @@ impl Markup for Html {
 
     fn state(&self, state: &State) -> String {
         format!("<span class=\"mark {}\">{}</span>", escape(&state.id), escape(&state.word))
+    }
+
+    fn detailed(&self, value: String, detailed: &Detailed) -> String {
+        let value = if detailed.is_strong { format!("<b>{value}</b>") } else { value };
+        let detail = |detail: &Detail| match detail.joined {
+            Joined::Unit => format!(", <span class=\"unit\">{}</span>", escape(&detail.text)),
+            Joined::Interval | Joined::Remark | Joined::Further => {
+                format!("<small>{}</small>", escape(&detail.text))
+            }
+        };
+        std::iter::once(value).chain(detailed.details.iter().map(detail)).collect()
     }
 
     fn list(&self, items: &[String], ordered: bool) -> String {

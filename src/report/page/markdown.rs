@@ -2,7 +2,7 @@
 
 use super::markup::Markup;
 use super::table::{Layout, Table};
-use super::value::State;
+use super::value::{Detail, Detailed, Joined, State};
 use crate::i18n::visible;
 use crate::report::prose;
 
@@ -43,6 +43,19 @@ impl Markup for Markdown {
 
     fn state(&self, state: &State) -> String {
         self.text(&state.word)
+    }
+
+    fn detailed(&self, value: String, detailed: &Detailed) -> String {
+        let detail = |detail: &Detail| {
+            let text = self.text(&detail.text);
+            match detail.joined {
+                Joined::Interval => format!(" [{text}]"),
+                Joined::Remark => format!(" ({text})"),
+                Joined::Further => format!("; {text}"),
+                Joined::Unit => format!(", {text}"),
+            }
+        };
+        std::iter::once(value).chain(detailed.details.iter().map(detail)).collect()
     }
 
     fn list(&self, items: &[String], ordered: bool) -> String {

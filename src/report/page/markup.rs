@@ -2,7 +2,7 @@
 
 use super::block::{Block, Figure, Head, Page};
 use super::table::{Column, Layout, Listed, Table};
-use super::value::{State, Value};
+use super::value::{Detailed, State, Value};
 use minijinja::context;
 use minijinja::value::{Serde, Value as Seen};
 
@@ -22,6 +22,8 @@ pub trait Markup {
     fn link(&self, text: &str, to: &str) -> String;
     /// A verdict or a state.
     fn state(&self, state: &State) -> String;
+    /// A value that is printed already, with its details.
+    fn detailed(&self, value: String, detailed: &Detailed) -> String;
     /// Sentences in a cell.
     fn list(&self, items: &[String], ordered: bool) -> String;
     /// How it lays a table out.
@@ -40,6 +42,7 @@ pub trait Markup {
             Value::State(state) => self.state(state),
             Value::Quantity(quantity) if with_unit => self.text(&quantity.whole()),
             Value::Quantity(quantity) => self.text(&quantity.printed),
+            Value::Detailed(detailed) => self.detailed(self.value(&detailed.value, with_unit), detailed),
             Value::List { items, ordered } => self.list(items, *ordered),
         }
     }
@@ -81,6 +84,7 @@ fn block(block: &Block, markup: &dyn Markup) -> Seen {
         },
         Block::Paragraph(text) => context! { kind => "paragraph", text => escaped(markup.sentence(text)) },
         Block::Hint(text) => context! { kind => "hint", text => escaped(markup.sentence(text)) },
+        Block::Remarks(all) => context! { kind => "remarks", sentences => sentences(all, markup) },
         Block::Facts(facts) => {
             let row = |(label, v): &(Value, Value)| context! { label => value(label), value => value(v) };
             let rows: Vec<Seen> = facts.rows.iter().map(row).collect();
@@ -115,7 +119,7 @@ fn head(head: &Head) -> Seen {
     let counts: Vec<Seen> = head.counts.iter().map(count).collect();
     context! {
         kind => "head", document => &head.kind, title => &head.title, size => &head.size,
-        label => &head.label, verdict => state(&head.verdict), counts,
+        label => &head.label, verdict => head.has_verdict().then(|| state(&head.verdict)), counts,
     }
 }
 
@@ -127,7 +131,7 @@ fn figure(figure: &Figure) -> Seen {
 fn table(table: &Table, markup: &dyn Markup) -> Seen {
     let is_list = markup.layout(table) == Layout::List;
     let shown = if is_list { table.with(|c| !c.is_unit) } else { table.clone() };
-    let with_unit = !shown.columns.iter().any(|c| c.is_unit);
+    let with_unit = !shown.units_in_names && !shown.columns.iter().any(|c| c.is_unit);
     let row = |row: &super::table::Row| {
         let cells = shown.columns.iter().zip(&row.cells);
         let cell = |(column, value): (&Column, &Value)| {

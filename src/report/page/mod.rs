@@ -19,7 +19,7 @@ pub use markdown::Markdown;
 pub use markup::{Markup, page as seen};
 pub use table::{Align, Column, Layout, Listed, OnTerminal, Row, Table};
 pub use terminal::terminal;
-pub use value::{Quantity, State, Value, joined};
+pub use value::{Detail, Detailed, Joined, Quantity, State, Value, joined};
 
 #[cfg(test)]
 mod tests;

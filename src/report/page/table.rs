@@ -11,6 +11,8 @@ pub struct Table {
     pub in_html: Layout,
     /// How Markdown lays it out.
     pub in_markdown: Layout,
+    /// True where the names of the rows have the units of their quantities: on pages, numbers stand without them.
+    pub units_in_names: bool,
     /// Columns; the first one names the row.
     pub columns: Vec<Column>,
     /// Rows, each with a cell for every column.
@@ -171,6 +173,12 @@ impl Table {
         }
         self.columns.push(Column::unit(head));
         self
+    }
+
+    /// The same with the units of the quantities in the names of the rows.
+    #[must_use]
+    pub fn units_in_names(self) -> Table {
+        Table { units_in_names: true, ..self }
     }
 
     /// The same in other layouts than a grid.

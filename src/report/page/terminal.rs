@@ -26,10 +26,11 @@ fn shown(block: &Block, before: Option<&Block>, on: Terminal) -> String {
         Block::Heading(heading) => format!("\n{}\n", on.heading(&visible(&heading.text.plain()))),
         Block::Paragraph(text) => on.indented([text]),
         Block::Hint(text) => format!("\n{}", on.indented([text])),
+        Block::Remarks(all) => format!("\n{}", on.indented(all)),
         Block::Steps(steps) => {
             on.indented(steps.items.iter().zip(1..).map(|(step, n)| format!("{n}. {}", step.text)))
         }
-        Block::Table(of) if matches!(before, Some(Block::Heading(_))) => grid(of, on),
+        Block::Table(of) if matches!(before, None | Some(Block::Heading(_))) => grid(of, on),
         Block::Table(of) => format!("\n{}", grid(of, on)),
         Block::Section(_, below) => terminal(below, on),
         Block::Facts(_) | Block::Figure(_) | Block::SummaryEnd => String::new(),
@@ -43,8 +44,12 @@ fn head(head: &Head, on: Terminal) -> String {
     let of = if head.size.is_empty() {
         title.into_owned()
     } else {
-        format!("{title} · {} ({counts})", head.size)
+        let counts = if counts.is_empty() { counts } else { format!(" ({counts})") };
+        format!("{title} · {}{counts}", head.size)
     };
+    if !head.has_verdict() {
+        return format!("{}\n", on.heading(&of));
+    }
     let verdict = on.verdict(&head.verdict.word.to_uppercase(), &head.verdict.id);
     on.headed(&verdict, &head.verdict.word, &of)
 }
@@ -84,6 +89,7 @@ fn grid(of: &Table, on: Terminal) -> String {
 
 fn styled(value: &Value) -> Cell {
     match value {
+        Value::Detailed(detailed) => styled(&detailed.value),
         Value::State(state) => Cell { text: state.word.clone(), style: verdict_style(&state.id) },
         other => other.plain().into(),
     }

@@ -73,6 +73,55 @@ fn a_head_names_kind_subject_and_verdict() {
 }
 
 #[test]
+fn a_head_without_a_verdict_has_title_and_size_alone() {
+    let head = |size: &str| {
+        Block::Head(Head { kind: "Sheet".into(), title: "A".into(), size: size.into(), ..Head::default() })
+    };
+    let page = html(vec![head("2 units")]);
+    assert!(page.contains("<p class=\"kind\">Sheet · 2 units</p>") && !page.contains("verdict"), "{page}");
+    assert_eq!(markdown(vec![head("2 units")]), "# A\n\nSheet · 2 units");
+    assert_eq!(markdown(vec![head("")]), "# A");
+    assert_eq!(on_terminal(&[head("2 units")]), "A · 2 units\n");
+}
+
+#[test]
+fn a_value_has_its_details_on_pages_alone() {
+    let quantity = Quantity { number: Some(0.5), printed: "0.50".into(), unit: "°/h".into() };
+    let cell = Value::from(quantity)
+        .strong()
+        .detail(Joined::Interval, "0.4 … 0.6")
+        .detail(Joined::Remark, "")
+        .detail(Joined::Further, "ratio 7");
+    let table = Table::new("", 1)
+        .units_in_names()
+        .column(Column::text("name", "Name"), [Value::from("Bias").detail(Joined::Unit, "°/h")])
+        .column(Column::number("typical", "Typical"), [cell])
+        .column(Column::number("units", "Units"), [Value::from("30").detail(Joined::Remark, "2 bounded")]);
+    let page = html(vec![Block::Table(table.clone())]);
+    for part in [
+        "<th scope=\"row\">Bias, <span class=\"unit\">°/h</span></th>",
+        "<td class=\"n\"><b>0.50</b><small>0.4 … 0.6</small><small>ratio 7</small></td>",
+        "<td class=\"n\">30<small>2 bounded</small></td>",
+    ] {
+        assert!(page.contains(part), "{part}\n{page}");
+    }
+    let row = "| Bias, °/h | 0.50 [0.4 … 0.6]; ratio 7 | 30 (2 bounded) |";
+    assert!(markdown(vec![Block::Table(table.clone())]).ends_with(row));
+    assert_eq!(csv(&table), "name,typical,units\nBias,5e-1,30\n");
+    let shown = on_terminal(&[Block::Table(table)]);
+    assert_eq!(shown, "  Name   Typical  Units\n  Bias  0.50\u{202f}°/h     30\n");
+}
+
+#[test]
+fn remarks_are_a_list() {
+    assert_eq!(Block::remarks([]), None);
+    let remarks = || Block::remarks(["a `b` < c".to_owned(), "d".to_owned()]).into_iter().collect();
+    assert_eq!(html(remarks()), "<ul class=\"remarks\"><li>a <code>b</code> &lt; c</li><li>d</li></ul>");
+    assert_eq!(markdown(remarks()), "- a `b` &lt; c\n- d");
+    assert_eq!(on_terminal(&remarks()), "\n  a `b` < c\n  d\n");
+}
+
+#[test]
 fn sentences_and_headings_are_shown_by_every_form() {
     let sentence = "Column `a_b` < 1.".to_owned();
     let verdict = Heading { level: 3, text: "Run".into(), verdict: Some(pass()) };
@@ -171,7 +220,7 @@ fn a_table_marks_states_lists_and_the_chosen_row() {
          | → a; b | годен | Drift (`rate_ramp`) | SN |\n| c b |  | `x` |  |"
     );
     let shown = on_terminal(&table());
-    assert_eq!(shown, "\n  Steps  State\n  a; b   годен (Drift)\n  c b     (x)\n");
+    assert_eq!(shown, "  Steps  State\n  a; b   годен (Drift)\n  c b     (x)\n");
 }
 
 #[test]
@@ -199,6 +248,7 @@ fn figures_are_drawn_or_linked_and_the_summary_ends_on_paper_alone() {
         number: 1,
         title: "σ <τ>".into(),
         caption: "Falls.".into(),
+        is_titled: false,
         svg: "<svg></svg>".into(),
         readings: "{\"a\":1}".into(),
         href: "figures/s.svg".into(),
@@ -213,6 +263,9 @@ fn figures_are_drawn_or_linked_and_the_summary_ends_on_paper_alone() {
     assert!(!page.contains("summary"), "{page}");
     assert_eq!(markdown(blocks()), "![σ &lt;τ&gt;](figures/s.svg)\n\nFalls.\n\nx");
     assert_eq!(on_terminal(&blocks()), "  x\n");
+    let titled = Block::Figure(Box::new(Figure { is_titled: true, ..figure.clone() }));
+    let page = html(vec![titled]);
+    assert!(page.contains("<figcaption>σ &lt;τ&gt;. Falls.</figcaption>"), "{page}");
     let page = Page { blocks: blocks(), ..Page::default() };
     let context = crate::report::render::paper_context(page_context(seen(&page, &Markdown), Lang::En));
     let paper = Renderer::new().render("page.md", &context, Lang::En).unwrap();
@@ -234,6 +287,9 @@ fn nothing_in_a_text_is_markup() {
             Value::state(text(), text()),
             Value::List { items: vec![text()], ordered: false },
             Value::Quantity(Quantity { number: None, printed: text(), unit: text() }),
+            [Joined::Interval, Joined::Remark, Joined::Further, Joined::Unit]
+                .into_iter()
+                .fold(Value::Text(text()).strong(), |value, joined| value.detail(joined, text())),
         ]
     };
     let blocks = || {
@@ -245,6 +301,7 @@ fn nothing_in_a_text_is_markup() {
             Block::Head(Head { kind: text(), title: text(), size: text(), label: text(), ..Head::default() }),
             Block::Lead(Lead { id: text(), sentences: vec![text()] }),
             Block::heading(named.clone()),
+            Block::Remarks(vec![text()]),
             Block::Facts(Facts { class: "", rows: values().map(|v| (v.clone(), v)).into() }),
             Block::Steps(Steps {
                 class: "",
@@ -264,7 +321,7 @@ fn nothing_in_a_text_is_markup() {
     // Bars end no cell but where the table has them.
     let bars = |line: &str| line.replace("\\|", "").matches('|').count();
     let rows: Vec<&str> = page.lines().filter(|l| l.starts_with('|')).collect();
-    assert_eq!(rows.iter().map(|r| bars(r)).collect::<Vec<_>>(), [10, 10, 10], "{page}");
+    assert_eq!(rows.iter().map(|r| bars(r)).collect::<Vec<_>>(), [11, 11, 11], "{page}");
     let steers = Block::heading(Value::Text("\u{1b}[2Jx".into()));
     assert!(!on_terminal(&[steers]).contains('\u{1b}'));
 }

@@ -32,6 +32,8 @@ pub enum Value {
     State(State),
     /// A number with its unit.
     Quantity(Quantity),
+    /// A value with what belongs to it, such as a number with its interval.
+    Detailed(Box<Detailed>),
     /// Sentences; in their order where they are steps.
     List {
         /// The sentences.
@@ -48,6 +50,39 @@ pub struct State {
     pub id: String,
     /// Word of the language of the page.
     pub word: String,
+}
+
+/// A value with what belongs to it. Pages show all of it, the terminal and tables for programs the value alone.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Detailed {
+    /// The value.
+    pub value: Value,
+    /// True for the one that a reader looks for in its row.
+    pub is_strong: bool,
+    /// Details, in their order.
+    pub details: Vec<Detail>,
+}
+
+/// What belongs to a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Detail {
+    /// How it follows the value.
+    pub joined: Joined,
+    /// Text.
+    pub text: String,
+}
+
+/// How a detail follows its value: HTML sets units behind a comma and all others below the value, in small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Joined {
+    /// Interval, in square brackets in Markdown.
+    Interval,
+    /// Remark, in round brackets in Markdown.
+    Remark,
+    /// Further value, behind a semicolon in Markdown.
+    Further,
+    /// Unit, behind a comma.
+    Unit,
 }
 
 /// A number with its unit: tables for programs have the number, all others what is printed of it.
@@ -74,6 +109,31 @@ impl Value {
         Value::State(State { id: id.into(), word: word.into() })
     }
 
+    /// The same as what a reader looks for in its row.
+    #[must_use]
+    pub fn strong(self) -> Value {
+        Value::Detailed(Box::new(Detailed { is_strong: true, ..self.detailed() }))
+    }
+
+    /// The same with a detail; without it where the text is empty.
+    #[must_use]
+    pub fn detail(self, joined: Joined, text: impl Into<String>) -> Value {
+        let text = text.into();
+        if text.is_empty() {
+            return self;
+        }
+        let mut detailed = self.detailed();
+        detailed.details.push(Detail { joined, text });
+        Value::Detailed(Box::new(detailed))
+    }
+
+    fn detailed(self) -> Detailed {
+        match self {
+            Value::Detailed(detailed) => *detailed,
+            value => Detailed { value, ..Detailed::default() },
+        }
+    }
+
     /// The value as one line of plain text, as a terminal has it.
     pub fn plain(&self) -> String {
         match self {
@@ -84,6 +144,7 @@ impl Value {
             Value::Named { text, .. } | Value::Link { text, .. } => text.clone(),
             Value::State(state) => state.word.clone(),
             Value::Quantity(quantity) => quantity.whole(),
+            Value::Detailed(detailed) => detailed.value.plain(),
             Value::List { items, ordered: true } => items.join("; "),
             Value::List { items, ordered: false } => items.join(" "),
         }
@@ -97,6 +158,7 @@ impl Value {
                 let number = quantity.number.filter(|v| v.is_finite());
                 number.map(|v| format!("{v:e}")).unwrap_or_default()
             }
+            Value::Detailed(detailed) => detailed.value.for_programs(),
             other => other.plain(),
         }
     }

@@ -2,18 +2,14 @@
 //!
 //! Texts from files are made visible before they are styled, so that only this module writes control sequences.
 
-mod datasheet;
 mod explanation;
-mod history;
 mod results;
 mod run;
 mod screen;
 pub(super) mod table;
 mod wrap;
 
-pub use datasheet::datasheet;
 pub use explanation::explanation;
-pub use history::history;
 pub use results::results;
 pub use run::run;
 pub use screen::Terminal;

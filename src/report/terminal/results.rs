@@ -1,9 +1,7 @@
 //! Results of any kind as text.
 
-use super::{Terminal, datasheet, explanation, run};
-use crate::i18n::{Lang, visible_lines};
-use crate::report::compare::{CompareView, table};
-use crate::report::datasheet::SheetView;
+use super::{Terminal, explanation, run};
+use crate::i18n::Lang;
 use crate::report::explain::ExplainView;
 use crate::report::view::{PhasePart, View};
 use crate::report::{Record, Results, RunResults, page};
@@ -18,8 +16,6 @@ pub fn results(results: &Results, lang: Lang, terminal: Terminal) -> String {
             let view = ExplainView::new(&of.explanation, &[], &of.context, lang);
             explanation(&view, lang, terminal)
         }
-        Record::Comparison(of) => visible_lines(&table(&CompareView::new(of, &[], lang), lang)).into_owned(),
-        Record::DataSheet(of) => datasheet(&SheetView::new(of, &[], lang), lang, terminal),
         // The units of a lot were told before, a line each.
         Record::Lot(_) => format!("\n{}", page::terminal(&results.record().on_terminal(lang), terminal)),
         _ => page::terminal(&results.record().on_terminal(lang), terminal),

@@ -17,6 +17,7 @@ impl FigureView {
             number,
             title: if figure.channel.is_empty() { title } else { format!("{title} · {}", figure.channel) },
             caption: caption(figure, words),
+            is_titled: false,
             svg: svg::render(figure, words.lang),
             readings: svg::readings(figure, words.lang),
             href: encode(file),
@@ -26,6 +27,12 @@ impl FigureView {
     /// The same with the usual name of the file.
     pub(crate) fn of(figure: &Figure, number: usize, words: Translator) -> FigureView {
         FigureView::new(figure, number, &format!("figures/{}", file_name(&figure.id)), words)
+    }
+
+    /// The figure of an id, numbered by its place.
+    pub(crate) fn find(figures: &[Figure], id: &str, words: Translator) -> Option<FigureView> {
+        let place = figures.iter().position(|f| f.id == id)?;
+        figures.get(place).map(|f| FigureView::of(f, place + 1, words))
     }
 }
 
