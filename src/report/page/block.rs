@@ -22,6 +22,10 @@ pub struct Page {
 pub enum Block {
     /// What the page is of, and the verdict.
     Head(Head),
+    /// The same of a page whose verdict may be signed: with the rows that signatures waive.
+    Verdict(Head),
+    /// Sentences that say why a verdict is what it is, in its colour.
+    Reasons(Reasons),
     /// The verdict in sentences, in its colour.
     Lead(Lead),
     /// A heading.
@@ -30,18 +34,28 @@ pub enum Block {
     Paragraph(String),
     /// A sentence that tells how to read what stands beside it.
     Hint(String),
-    /// Sentences that stand beside each other, such as what must be known.
-    Remarks(Vec<String>),
     /// Labels and their values.
     Facts(Facts),
     /// Steps, in their order.
     Steps(Steps),
+    /// Sentences without an order, an item each.
+    List(List),
+    /// Footnotes.
+    Footnotes(Footnotes),
+    /// A way to another page.
+    Link(Link),
+    /// A method with its formulas.
+    Method(Method),
+    /// Lines to be signed, and the signatures that there are.
+    SignOff,
     /// A table.
     Table(Table),
     /// A figure.
     Figure(Box<Figure>),
     /// Blocks that belong together, with a class in HTML.
     Section(&'static str, Vec<Block>),
+    /// Blocks under a heading that a reader opens in HTML.
+    Fold(Heading, Vec<Block>),
     /// The end of the summary: what follows it is left out where only the summary is printed.
     SummaryEnd,
 }
@@ -68,6 +82,21 @@ pub struct Head {
 pub struct Lead {
     /// Id of the verdict, for its colour.
     pub id: String,
+    /// The sentences.
+    pub sentences: Vec<String>,
+}
+
+/// Sentences that say why a verdict is what it is.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Reasons {
+    /// Classes in HTML.
+    pub class: &'static str,
+    /// Id of the verdict, for its colour.
+    pub id: String,
+    /// Mark that others refer to; empty without one.
+    pub mark: String,
+    /// Heading.
+    pub heading: String,
     /// The sentences.
     pub sentences: Vec<String>,
 }
@@ -110,6 +139,48 @@ pub struct Step {
     pub hashes: Vec<(String, String)>,
 }
 
+/// Sentences without an order.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct List {
+    /// Class in HTML.
+    pub class: &'static str,
+    /// The sentences, and whether each is a failure.
+    pub items: Vec<(String, bool)>,
+}
+
+/// Footnotes.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Footnotes {
+    /// Beginning of their marks: it differs between the parts of a page that count from 1 each.
+    pub anchor: String,
+    /// Number and sentence.
+    pub notes: Vec<(usize, String)>,
+}
+
+/// A way to another page.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Link {
+    /// Words before it; empty without any.
+    pub words: String,
+    /// Text.
+    pub text: String,
+    /// Address relative to the page, without the ending of the file; empty where there is no page.
+    pub to: String,
+}
+
+/// A method with its formulas.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Method {
+    /// Title.
+    pub title: String,
+    /// Formulas, in which letters behind an underscore stand below the line.
+    pub formulas: Vec<String>,
+    /// Explanation.
+    pub text: String,
+    /// Source; empty without one.
+    pub source: String,
+}
+
 /// A figure with its drawing.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Figure {
@@ -117,6 +188,8 @@ pub struct Figure {
     pub id: String,
     /// Number, counted from 1.
     pub number: usize,
+    /// Mark that others refer to; empty without one.
+    pub mark: String,
     /// Title.
     pub title: String,
     /// What is to be seen, in a sentence; empty where nothing is said.
@@ -147,10 +220,10 @@ impl Block {
         Block::Section(class, std::iter::once(Block::heading(heading)).chain(below).collect())
     }
 
-    /// Remarks; `None` without any.
-    pub fn remarks(items: impl IntoIterator<Item = String>) -> Option<Block> {
-        let items: Vec<String> = items.into_iter().collect();
-        (!items.is_empty()).then_some(Block::Remarks(items))
+    /// Sentences as a list of remarks; `None` without any.
+    pub fn remarks(sentences: impl IntoIterator<Item = String>) -> Option<Block> {
+        let items: Vec<_> = sentences.into_iter().map(|s| (s, false)).collect();
+        (!items.is_empty()).then_some(Block::List(List { class: "remarks", items }))
     }
 
     /// Facts in two columns; those without a value are left out.

@@ -49,6 +49,19 @@ impl Markup for Html {
         std::iter::once(value).chain(detailed.details.iter().map(detail)).collect()
     }
 
+    fn strong(&self, sentence: &str) -> String {
+        format!("<strong>{}</strong>", self.sentence(sentence))
+    }
+
+    fn stacked(&self, value: String, below: &[String]) -> String {
+        below.iter().fold(value, |out, b| format!("{out}<small>{b}</small>"))
+    }
+
+    fn footnote(&self, anchor: &str, number: usize, is_last: bool) -> String {
+        let comma = if is_last { "" } else { "<sup>,</sup>" };
+        format!("<sup><a href=\"#note-{}{number}\">{number}</a></sup>{comma}", escape(anchor))
+    }
+
     fn list(&self, items: &[String], ordered: bool) -> String {
         let tag = if ordered { "ol" } else { "ul" };
         let items: String = items.iter().map(|i| format!("<li>{}</li>", self.sentence(i))).collect();

@@ -58,6 +58,19 @@ impl Markup for Markdown {
         std::iter::once(value).chain(detailed.details.iter().map(detail)).collect()
     }
 
+    fn strong(&self, sentence: &str) -> String {
+        format!("**{}**", self.sentence(sentence))
+    }
+
+    fn stacked(&self, value: String, below: &[String]) -> String {
+        let below = below.join("; ");
+        if value.is_empty() { below } else { format!("{value} ({below})") }
+    }
+
+    fn footnote(&self, _: &str, number: usize, _: bool) -> String {
+        format!(" ({number})")
+    }
+
     fn list(&self, items: &[String], ordered: bool) -> String {
         let items: Vec<String> = items.iter().map(|i| self.sentence(i)).collect();
         items.join(if ordered { "; " } else { " " })

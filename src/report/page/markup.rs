@@ -1,6 +1,6 @@
 //! Blocks as the templates of a markup language see them: every value printed and escaped, ready to be laid out.
 
-use super::block::{Block, Figure, Head, Page};
+use super::block::{Block, Figure, Head, Heading, Page};
 use super::table::{Column, Layout, Listed, Table};
 use super::value::{Detailed, State, Value};
 use minijinja::context;
@@ -24,6 +24,12 @@ pub trait Markup {
     fn state(&self, state: &State) -> String;
     /// A value that is printed already, with its details.
     fn detailed(&self, value: String, detailed: &Detailed) -> String;
+    /// A sentence that stands out.
+    fn strong(&self, sentence: &str) -> String;
+    /// A value, and what stands below it in smaller print.
+    fn stacked(&self, value: String, below: &[String]) -> String;
+    /// The number of a footnote behind the value that it is of.
+    fn footnote(&self, anchor: &str, number: usize, is_last: bool) -> String;
     /// Sentences in a cell.
     fn list(&self, items: &[String], ordered: bool) -> String;
     /// How it lays a table out.
@@ -43,6 +49,20 @@ pub trait Markup {
             Value::Quantity(quantity) if with_unit => self.text(&quantity.whole()),
             Value::Quantity(quantity) => self.text(&quantity.printed),
             Value::Detailed(detailed) => self.detailed(self.value(&detailed.value, with_unit), detailed),
+            Value::Strong(sentence) => self.strong(sentence),
+            Value::Stacked { value, below } => {
+                let below: Vec<String> = below.iter().map(|v| self.value(v, true)).collect();
+                self.stacked(self.value(value, with_unit), &below)
+            }
+            Value::Noted { value, anchor, notes } => {
+                let number = |(i, n): (usize, &usize)| self.footnote(anchor, *n, i + 1 == notes.len());
+                notes.iter().enumerate().map(number).fold(self.value(value, with_unit), |out, n| out + &n)
+            }
+            Value::Wide(value) => self.value(value, with_unit),
+            Value::Several { values, between } => {
+                let each: Vec<String> = values.iter().map(|v| self.value(v, with_unit)).collect();
+                each.join(&self.text(between))
+            }
             Value::List { items, ordered } => self.list(items, *ordered),
         }
     }
@@ -74,17 +94,18 @@ fn sentences(all: &[String], markup: &dyn Markup) -> Vec<Seen> {
 fn block(block: &Block, markup: &dyn Markup) -> Seen {
     let value = |v: &Value| escaped(markup.value(v, true));
     match block {
-        Block::Head(of) => head(of),
+        Block::Head(of) => head("head", of),
+        Block::Verdict(of) => head("verdict", of),
+        Block::Reasons(of) => context! {
+            kind => "reasons", class => of.class, id => &of.id, mark => &of.mark, heading => &of.heading,
+            sentences => sentences(&of.sentences, markup),
+        },
         Block::Lead(lead) => context! {
             kind => "lead", id => &lead.id, sentences => sentences(&lead.sentences, markup),
         },
-        Block::Heading(heading) => context! {
-            kind => "heading", level => heading.level, text => value(&heading.text),
-            verdict => heading.verdict.as_ref().map(state),
-        },
+        Block::Heading(of) => heading(of, markup),
         Block::Paragraph(text) => context! { kind => "paragraph", text => escaped(markup.sentence(text)) },
         Block::Hint(text) => context! { kind => "hint", text => escaped(markup.sentence(text)) },
-        Block::Remarks(all) => context! { kind => "remarks", sentences => sentences(all, markup) },
         Block::Facts(facts) => {
             let row = |(label, v): &(Value, Value)| context! { label => value(label), value => value(v) };
             let rows: Vec<Seen> = facts.rows.iter().map(row).collect();
@@ -101,10 +122,34 @@ fn block(block: &Block, markup: &dyn Markup) -> Seen {
             let items: Vec<Seen> = steps.items.iter().map(item).collect();
             context! { kind => "steps", class => steps.class, items }
         }
+        Block::List(list) => {
+            let item = |(text, is_failure): &(String, bool)| {
+                context! { text => escaped(markup.sentence(text)), is_failure => *is_failure }
+            };
+            let items: Vec<Seen> = list.items.iter().map(item).collect();
+            context! { kind => "list", class => list.class, items }
+        }
+        Block::Footnotes(of) => {
+            let note = |(number, sentence): &(usize, String)| {
+                context! { number => *number, text => escaped(markup.sentence(sentence)) }
+            };
+            let notes: Vec<Seen> = of.notes.iter().map(note).collect();
+            context! { kind => "footnotes", anchor => &of.anchor, notes }
+        }
+        Block::Link(link) => context! {
+            kind => "link", words => &link.words, text => &link.text, to => &link.to,
+        },
+        Block::Method(of) => context! {
+            kind => "method", title => &of.title, formulas => &of.formulas, text => &of.text, source => &of.source,
+        },
+        Block::SignOff => context! { kind => "signoff" },
         Block::Table(of) => table(of, markup),
         Block::Figure(of) => figure(of),
         Block::Section(class, below) => {
             context! { kind => "section", class => *class, blocks => blocks(below, markup) }
+        }
+        Block::Fold(of, below) => {
+            context! { kind => "fold", heading => heading(of, markup), blocks => blocks(below, markup) }
         }
         Block::SummaryEnd => context! { kind => "summary_end" },
     }
@@ -114,11 +159,19 @@ fn state(state: &State) -> Seen {
     context! { id => &state.id, word => &state.word }
 }
 
-fn head(head: &Head) -> Seen {
+fn heading(heading: &Heading, markup: &dyn Markup) -> Seen {
+    context! {
+        kind => "heading", level => heading.level, text => escaped(markup.value(&heading.text, true)),
+        verdict => heading.verdict.as_ref().map(state),
+    }
+}
+
+/// `kind`: that of the block, and so of its template.
+fn head(kind: &str, head: &Head) -> Seen {
     let count = |(of, n): &(State, usize)| context! { id => &of.id, word => &of.word, n => *n };
     let counts: Vec<Seen> = head.counts.iter().map(count).collect();
     context! {
-        kind => "head", document => &head.kind, title => &head.title, size => &head.size,
+        kind, document => &head.kind, title => &head.title, size => &head.size,
         label => &head.label, verdict => head.has_verdict().then(|| state(&head.verdict)), counts,
     }
 }
@@ -134,17 +187,25 @@ fn table(table: &Table, markup: &dyn Markup) -> Seen {
     let with_unit = !shown.units_in_names && !shown.columns.iter().any(|c| c.is_unit);
     let row = |row: &super::table::Row| {
         let cells = shown.columns.iter().zip(&row.cells);
-        let cell = |(column, value): (&Column, &Value)| {
+        // A cell behind a wide one has no room.
+        let covered = std::iter::once(false).chain(row.cells.iter().map(|v| matches!(v, Value::Wide(_))));
+        let cell = |((column, value), is_covered): ((&Column, &Value), bool)| {
             context! {
                 text => escaped(markup.value(value, with_unit)),
                 is_empty => markup.value(value, with_unit).is_empty(),
                 is_list => matches!(value, Value::List { .. }),
+                is_state => matches!(value, Value::State(_)),
+                is_wide => matches!(value, Value::Wide(_)),
+                is_covered,
                 listed => listed(&column.listed),
                 words => match &column.listed { Listed::Below(words) => words.as_str(), _ => "" },
                 ..column_seen(column)
             }
         };
-        context! { chosen => row.chosen, cells => cells.map(cell).collect::<Vec<Seen>>() }
+        context! {
+            chosen => row.chosen, is_heading => row.is_heading, id => &row.id, channel => &row.channel,
+            cells => cells.zip(covered).map(cell).collect::<Vec<Seen>>(),
+        }
     };
     context! {
         kind => "table", class => table.class, is_list,

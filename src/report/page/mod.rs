@@ -12,7 +12,9 @@ mod table;
 mod terminal;
 mod value;
 
-pub use block::{Block, Facts, Figure, Head, Heading, Lead, Page, Step, Steps};
+pub use block::{
+    Block, Facts, Figure, Footnotes, Head, Heading, Lead, Link, List, Method, Page, Reasons, Step, Steps,
+};
 pub use csv::csv;
 pub use html::Html;
 pub use markdown::Markdown;

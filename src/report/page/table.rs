@@ -36,6 +36,12 @@ pub struct Row {
     pub cells: Vec<Value>,
     /// True for the one that was chosen of those that are compared.
     pub chosen: bool,
+    /// True for a row whose first cell is the heading of those below it.
+    pub is_heading: bool,
+    /// Id by which signatures name what it is of; empty where they do not.
+    pub id: String,
+    /// Channel of what it is of.
+    pub channel: String,
 }
 
 /// A column.
@@ -198,7 +204,7 @@ impl Table {
     fn picked(&self, places: &[usize]) -> Table {
         let row = |row: &Row| Row {
             cells: places.iter().filter_map(|i| row.cells.get(*i).cloned()).collect(),
-            chosen: row.chosen,
+            ..row.clone()
         };
         Table {
             columns: places.iter().filter_map(|i| self.columns.get(*i).cloned()).collect(),

@@ -8,7 +8,7 @@ use crate::report::terminal::Terminal;
 use crate::report::terminal::table::{self, Cell};
 use crate::report::terminal::verdict_style;
 
-/// The blocks one below the other. Facts and figures are for pages.
+/// The blocks one below the other. Facts, figures, footnotes, methods and lines to be signed are for pages.
 pub fn terminal(blocks: &[Block], terminal: Terminal) -> String {
     let mut out = String::new();
     let mut before = None;
@@ -21,19 +21,26 @@ pub fn terminal(blocks: &[Block], terminal: Terminal) -> String {
 
 fn shown(block: &Block, before: Option<&Block>, on: Terminal) -> String {
     match block {
-        Block::Head(of) => head(of, on),
+        Block::Head(of) | Block::Verdict(of) => head(of, on),
         Block::Lead(lead) => on.indented(&lead.sentences),
         Block::Heading(heading) => format!("\n{}\n", on.heading(&visible(&heading.text.plain()))),
         Block::Paragraph(text) => on.indented([text]),
         Block::Hint(text) => format!("\n{}", on.indented([text])),
-        Block::Remarks(all) => format!("\n{}", on.indented(all)),
         Block::Steps(steps) => {
             on.indented(steps.items.iter().zip(1..).map(|(step, n)| format!("{n}. {}", step.text)))
         }
         Block::Table(of) if matches!(before, None | Some(Block::Heading(_))) => grid(of, on),
         Block::Table(of) => format!("\n{}", grid(of, on)),
-        Block::Section(_, below) => terminal(below, on),
-        Block::Facts(_) | Block::Figure(_) | Block::SummaryEnd => String::new(),
+        Block::Reasons(of) => {
+            let heading = on.heading(&visible(&of.heading));
+            format!("\n{heading}\n{}", on.indented(&of.sentences))
+        }
+        Block::List(list) => format!("\n{}", on.indented(list.items.iter().map(|(text, _)| text))),
+        Block::Section(_, below) | Block::Fold(_, below) => terminal(below, on),
+        Block::Facts(_) | Block::Figure(_) | Block::Footnotes(_) | Block::Link(_) | Block::Method(_) => {
+            String::new()
+        }
+        Block::SignOff | Block::SummaryEnd => String::new(),
     }
 }
 

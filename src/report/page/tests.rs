@@ -246,6 +246,7 @@ fn figures_are_drawn_or_linked_and_the_summary_ends_on_paper_alone() {
     let figure = Figure {
         id: "sigma".into(),
         number: 1,
+        mark: String::new(),
         title: "σ <τ>".into(),
         caption: "Falls.".into(),
         is_titled: false,
@@ -270,6 +271,90 @@ fn figures_are_drawn_or_linked_and_the_summary_ends_on_paper_alone() {
     let context = crate::report::render::paper_context(page_context(seen(&page, &Markdown), Lang::En));
     let paper = Renderer::new().render("page.md", &context, Lang::En).unwrap();
     assert!(paper.contains("Falls.\n\n<!-- summary -->\n\nx"), "{paper}");
+}
+
+#[test]
+fn a_verdict_that_may_be_signed_stands_before_its_reasons() {
+    let blocks = || {
+        let head =
+            Head { kind: "Report".into(), title: "SN".into(), label: "Verdict".into(), ..Head::default() };
+        let reasons = Reasons {
+            class: "reasons",
+            id: "pass".into(),
+            mark: "why".into(),
+            heading: "Reasons".into(),
+            sentences: vec!["a < b".into()],
+        };
+        vec![Block::Verdict(Head { verdict: pass(), ..head }), Block::Reasons(reasons)]
+    };
+    let page = html(blocks());
+    assert!(page.contains("<strong>годен</strong>"), "{page}");
+    assert!(page.contains("<section class=\"reasons pass\" id=\"why\">"), "{page}");
+    assert!(page.contains("<ul><li>a &lt; b</li></ul>"), "{page}");
+    assert_eq!(markdown(blocks()), "# SN\n\n**Verdict: ГОДЕН**\n\n## Reasons\n\n- a &lt; b");
+    assert_eq!(on_terminal(&blocks()), "ГОДЕН  SN\n\nReasons\n  a < b\n");
+    // A page without a verdict states none.
+    let none = html(vec![Block::Verdict(Head { title: "SN".into(), ..Head::default() })]);
+    assert!(none.contains("<h1>SN</h1>") && !none.contains("verdict"), "{none}");
+}
+
+#[test]
+fn lists_footnotes_links_methods_and_folds_are_shown() {
+    let blocks = || {
+        let method =
+            Method { title: "M".into(), formulas: vec!["y_x".into()], text: "T".into(), source: "S".into() };
+        let link = Link { words: "Model: m".into(), text: "whole".into(), to: "explain/report".into() };
+        let heading = Heading { level: 2, text: "Methods".into(), verdict: None };
+        vec![
+            Block::List(List { class: "remarks", items: vec![("a".into(), true), ("b".into(), false)] }),
+            Block::Footnotes(Footnotes { anchor: "p-".into(), notes: vec![(3, "n".into())] }),
+            Block::Link(link),
+            Block::Fold(heading, vec![Block::Method(method)]),
+        ]
+    };
+    let page = html(blocks());
+    for part in [
+        "<ul class=\"remarks\"><li class=\"fail\">a</li><li>b</li></ul>",
+        "<li id=\"note-p-3\" value=\"3\">n</li>",
+        "<summary><h2>Methods</h2></summary>",
+        "<p class=\"formula\">y<sub>x</sub></p>",
+        "report.html\">whole</a>",
+    ] {
+        assert!(page.contains(part), "{part}\n{page}");
+    }
+    assert_eq!(
+        markdown(blocks()),
+        "- **a**\n- b\n\n3. n\n\nModel: m · [whole](explain/report.md)\n\n## Methods\n\n### M\n\n- y\\_x\n\nT (S)"
+    );
+}
+
+#[test]
+fn cells_have_footnotes_smaller_lines_and_room_for_two() {
+    let table = || {
+        let noted = Value::from("N").noted("p-", vec![1, 2]);
+        let wide = Value::Wide(Box::new(Value::from("≤ 1").over(["not resolved".into(), Value::Empty])));
+        let mut table = Table::new("", 2)
+            .column(Column::text("name", "Name"), [Value::from("Phase"), noted])
+            .column(Column::number("value", "Value"), [Value::Empty, wide])
+            .column(Column::number("interval", "Interval"), [""])
+            .column(Column::text("fit", "Fit"), [Value::Empty, Value::Strong("bad".into())]);
+        table.rows[0].is_heading = true;
+        table
+    };
+    let page = html(vec![Block::Table(table())]);
+    for part in [
+        "<tr class=\"group\"><th colspan=\"4\">Phase</th></tr>",
+        "N<sup><a href=\"#note-p-1\">1</a></sup><sup>,</sup><sup><a href=\"#note-p-2\">2</a></sup></th>",
+        "<td class=\"n bound\" colspan=\"2\">≤ 1<small>not resolved</small></td><td><strong>bad</strong></td>",
+    ] {
+        assert!(page.contains(part), "{part}\n{page}");
+    }
+    let rows = "| Phase |  |  |  |\n| N (1) (2) | ≤ 1 (not resolved) |  | **bad** |";
+    assert!(
+        markdown(vec![Block::Table(table())]).ends_with(rows),
+        "{}",
+        markdown(vec![Block::Table(table())])
+    );
 }
 
 #[test]
@@ -301,7 +386,7 @@ fn nothing_in_a_text_is_markup() {
             Block::Head(Head { kind: text(), title: text(), size: text(), label: text(), ..Head::default() }),
             Block::Lead(Lead { id: text(), sentences: vec![text()] }),
             Block::heading(named.clone()),
-            Block::Remarks(vec![text()]),
+            Block::List(List { class: "remarks", items: vec![(text(), true)] }),
             Block::Facts(Facts { class: "", rows: values().map(|v| (v.clone(), v)).into() }),
             Block::Steps(Steps {
                 class: "",

@@ -34,6 +34,33 @@ pub enum Value {
     Quantity(Quantity),
     /// A value with what belongs to it, such as a number with its interval.
     Detailed(Box<Detailed>),
+    /// A sentence that stands out.
+    Strong(String),
+    /// A value with others below it in smaller print.
+    Stacked {
+        /// Value.
+        value: Box<Value>,
+        /// What stands below it.
+        below: Vec<Value>,
+    },
+    /// A value with the numbers of footnotes.
+    Noted {
+        /// Value.
+        value: Box<Value>,
+        /// Beginning of the marks of the footnotes.
+        anchor: String,
+        /// Numbers of the footnotes.
+        notes: Vec<usize>,
+    },
+    /// A value that takes the place of the cell behind it too, which is empty.
+    Wide(Box<Value>),
+    /// Values one behind the other.
+    Several {
+        /// The values.
+        values: Vec<Value>,
+        /// What stands between them.
+        between: &'static str,
+    },
     /// Sentences; in their order where they are steps.
     List {
         /// The sentences.
@@ -134,17 +161,36 @@ impl Value {
         }
     }
 
+    /// The value with others below it in smaller print; empty ones are left out.
+    #[must_use]
+    pub fn over(self, below: impl IntoIterator<Item = Value>) -> Value {
+        let below: Vec<Value> = below.into_iter().filter(|v| !v.plain().is_empty()).collect();
+        if below.is_empty() { self } else { Value::Stacked { value: Box::new(self), below } }
+    }
+
+    /// The value with the numbers of footnotes, whose marks begin with `anchor`.
+    #[must_use]
+    pub fn noted(self, anchor: &str, notes: Vec<usize>) -> Value {
+        if notes.is_empty() {
+            return self;
+        }
+        Value::Noted { value: Box::new(self), anchor: anchor.to_owned(), notes }
+    }
+
     /// The value as one line of plain text, as a terminal has it.
     pub fn plain(&self) -> String {
         match self {
             Value::Empty => String::new(),
-            Value::Text(text) | Value::Sentence(text) | Value::Code(text) | Value::Digest(text) => {
-                text.clone()
-            }
+            Value::Text(text) | Value::Sentence(text) | Value::Strong(text) => text.clone(),
+            Value::Code(text) | Value::Digest(text) => text.clone(),
             Value::Named { text, .. } | Value::Link { text, .. } => text.clone(),
             Value::State(state) => state.word.clone(),
             Value::Quantity(quantity) => quantity.whole(),
             Value::Detailed(detailed) => detailed.value.plain(),
+            Value::Stacked { value, .. } | Value::Noted { value, .. } | Value::Wide(value) => value.plain(),
+            Value::Several { values, between } => {
+                values.iter().map(Value::plain).collect::<Vec<_>>().join(between)
+            }
             Value::List { items, ordered: true } => items.join("; "),
             Value::List { items, ordered: false } => items.join(" "),
         }

@@ -15,6 +15,7 @@ impl FigureView {
         FigureView {
             id: figure.id.clone(),
             number,
+            mark: String::new(),
             title: if figure.channel.is_empty() { title } else { format!("{title} · {}", figure.channel) },
             caption: caption(figure, words),
             is_titled: false,
