@@ -4,7 +4,8 @@ use super::explain::{ExplainFile, ExplainView};
 use super::files::{JointFile, PlanFile};
 use super::page::{self, Block, Page};
 use super::render::{page_context, paper_context, run_context, view_context};
-use super::view::{PhasePart, View};
+use super::translator::Translator;
+use super::view::{self, Part, Phase};
 use super::{Renderer, ReportError};
 use crate::acceptance::Outcome;
 use crate::acceptance::compare::Comparison;
@@ -54,7 +55,7 @@ pub enum Contents {
     View {
         /// Name of the template without the ending of its file.
         template: &'static str,
-        /// What it sees: `v`, the view; `locale`, the words of the language; `run`, the record of a run.
+        /// What it sees: `v`, the view; `locale`, the words of the language.
         context: Value,
     },
 }
@@ -113,11 +114,15 @@ impl PageForm {
     /// # Errors
     /// [`ReportError`] when a template is wrong.
     pub fn page(self, page: &Page, renderer: &Renderer, lang: Lang) -> Result<String, ReportError> {
-        let seen = match self {
+        self.rendered("page", page_context(self.seen(page), lang), renderer, lang)
+    }
+
+    /// A page of blocks as the templates of the form see it.
+    fn seen(self, page: &Page) -> Value {
+        match self {
             PageForm::Html => page::seen(page, &page::Html),
             PageForm::Markdown | PageForm::Paper => page::seen(page, &page::Markdown),
-        };
-        self.rendered("page", page_context(seen, lang), renderer, lang)
+        }
     }
 
     /// The text of a template, named without the ending of its file.
@@ -166,15 +171,15 @@ impl<'a> Document<'a> {
     pub fn of_phases(record: &'a RunRecord, phases: &[Option<Outcome>], lang: Lang) -> Document<'a> {
         let figures: Vec<Vec<Figure>> =
             record.phases.iter().zip(phases).map(|(p, o)| phase_figures(&p.id, o.as_ref())).collect();
-        let parts: Vec<PhasePart<'_>> = record
-            .phases
-            .iter()
-            .zip(phases)
-            .zip(&figures)
-            .map(|((phase, o), figures)| PhasePart { phase, record: o.as_ref().map(|o| &o.record), figures })
+        let words = Translator { lang };
+        let parts = record.phases.iter().zip(phases).zip(&figures).zip(1..);
+        let parts: Vec<Phase<'_>> = parts
+            .map(|(((phase, outcome), figures), number)| {
+                let part = outcome.as_ref().map(|o| Part::of_phase(phase, &o.record, figures, words));
+                Phase { phase, number, part }
+            })
             .collect();
-        let context = run_context(&View::of_phases(record, &parts, lang), record, lang);
-        let contents = Contents::View { template: "phases", context };
+        let contents = Contents::Page(view::page(&Part::new(record, &[], words), &parts));
         Document { lang, contents, figures: figures.concat().into(), tables: &[], of: record }
     }
 
@@ -213,7 +218,12 @@ impl<'a> Document<'a> {
             Contents::View { template, context } => {
                 form.rendered(template, context.clone(), renderer, self.lang)
             }
-            Contents::Page(page) => form.page(page, renderer, self.lang),
+            Contents::Page(page) => match self.of.record() {
+                Record::Run(run) => {
+                    form.rendered("report", run_context(form.seen(page), run, self.lang), renderer, self.lang)
+                }
+                _ => form.page(page, renderer, self.lang),
+            },
         }
     }
 
@@ -234,11 +244,37 @@ impl<'a> Document<'a> {
 
     /// The figures whose data are to be kept beside the record. A phase keeps its own.
     pub fn own_figures(&self) -> &[Figure] {
-        match self.contents {
-            Contents::View { template: "phases", .. } => &[],
+        match self.of.record() {
+            Record::Run(run) if !run.phases.is_empty() => &[],
             _ => &self.figures,
         }
     }
+}
+
+/// Renders the HTML report of a run: one file that needs no other.
+///
+/// # Errors
+/// [`ReportError::Template`] when a template is wrong.
+pub fn render_html(
+    record: &RunRecord,
+    figures: &[Figure],
+    lang: Lang,
+    renderer: &Renderer,
+) -> Result<String, ReportError> {
+    Document::new(record, figures, &[], lang).text(PageForm::Html, renderer)
+}
+
+/// Renders the Markdown report of a run, with links to `figures/*.svg`.
+///
+/// # Errors
+/// [`ReportError::Template`] when a template is wrong.
+pub fn render_markdown(
+    record: &RunRecord,
+    figures: &[Figure],
+    lang: Lang,
+    renderer: &Renderer,
+) -> Result<String, ReportError> {
+    Document::new(record, figures, &[], lang).text(PageForm::Markdown, renderer)
 }
 
 impl Documented for RunRecord {
@@ -263,8 +299,7 @@ impl Documented for RunRecord {
     }
 
     fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
-        let context = run_context(&View::new(self, figures, lang), self, lang);
-        Contents::View { template: "report", context }
+        Contents::Page(view::page(&Part::new(self, figures, Translator { lang }), &[]))
     }
 }
 

@@ -29,9 +29,9 @@ mod translator;
 pub mod unit;
 pub mod view;
 
-pub use document::{Contents, Document, Documented, PageForm, Record};
+pub use document::{Contents, Document, Documented, PageForm, Record, render_html, render_markdown};
 pub use figure_file::FIGURES_FILE;
-pub use render::{Renderer, ReportError, render_html, render_markdown};
+pub use render::{Renderer, ReportError};
 pub use results::{
     ALTERNATIVES_FILE, ExplanationResults, JointResults, OtherResults, Results, RunResults, SCHEDULE_FILE,
     StoredResults,

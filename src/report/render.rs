@@ -4,8 +4,6 @@ use super::number;
 use super::prose::{self, prose};
 use super::signatures::{Signature, SignatureView, waived};
 use super::translator::Translator;
-use super::view::View;
-use crate::figure::Figure;
 use crate::i18n::{Arg, Lang, Localize, Note, io_reason, lookup, note, table};
 use crate::record::RunRecord;
 use base64::Engine as _;
@@ -24,21 +22,9 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("report.html", include_str!("../../templates/report.html")),
     ("meta.html", include_str!("../../templates/meta.html")),
     ("pointer.js", include_str!("../../templates/pointer.js")),
-    ("cover.html", include_str!("../../templates/cover.html")),
-    ("limits.html", include_str!("../../templates/limits.html")),
-    ("conditions.md", include_str!("../../templates/conditions.md")),
     ("signoff.md", include_str!("../../templates/signoff.md")),
-    ("conditions.html", include_str!("../../templates/conditions.html")),
-    ("files.html", include_str!("../../templates/files.html")),
-    ("top.html", include_str!("../../templates/top.html")),
     ("style.css", include_str!("../../templates/style.css")),
-    ("head.html", include_str!("../../templates/head.html")),
-    ("measurands.html", include_str!("../../templates/measurands.html")),
-    ("evidence.html", include_str!("../../templates/evidence.html")),
-    ("methods.html", include_str!("../../templates/methods.html")),
     ("signoff.html", include_str!("../../templates/signoff.html")),
-    ("phases.html", include_str!("../../templates/phases.html")),
-    ("phases.md", include_str!("../../templates/phases.md")),
     ("report.md", include_str!("../../templates/report.md")),
     ("page.html", include_str!("../../templates/page.html")),
     ("page.md", include_str!("../../templates/page.md")),
@@ -370,13 +356,9 @@ impl Renderer {
     }
 }
 
-/// What a template of a run sees.
-pub(super) fn run_context(view: &View, record: &RunRecord, lang: Lang) -> Value {
-    minijinja::context! {
-        v => Value::from(Serde(view)),
-        run => Value::from(Serde(record)),
-        locale => Value::from(Serde(table(lang))),
-    }
+/// What the templates of blocks see of a run: with its record.
+pub(super) fn run_context(page: Value, record: &RunRecord, lang: Lang) -> Value {
+    minijinja::context! { run => Value::from(Serde(record)), ..page_context(page, lang) }
 }
 
 /// What any other template sees.
@@ -395,32 +377,6 @@ pub(super) fn page_context(page: Value, lang: Lang) -> Value {
 /// What a template sees whose page is to be printed.
 pub(super) fn paper_context(context: Value) -> Value {
     minijinja::context! { paper => true, ..context }
-}
-
-/// Renders the HTML report: one file that needs no other.
-///
-/// # Errors
-/// [`ReportError::Template`] when a template is wrong.
-pub fn render_html(
-    record: &RunRecord,
-    figures: &[Figure],
-    lang: Lang,
-    renderer: &Renderer,
-) -> Result<String, ReportError> {
-    renderer.render("report.html", &run_context(&View::new(record, figures, lang), record, lang), lang)
-}
-
-/// Renders the Markdown report, with links to `figures/*.svg`.
-///
-/// # Errors
-/// [`ReportError::Template`] when a template is wrong.
-pub fn render_markdown(
-    record: &RunRecord,
-    figures: &[Figure],
-    lang: Lang,
-    renderer: &Renderer,
-) -> Result<String, ReportError> {
-    renderer.render("report.md", &run_context(&View::new(record, figures, lang), record, lang), lang)
 }
 
 /// A page in the making, of a bounded size.

@@ -11,6 +11,5 @@ mod wrap;
 
 pub use explanation::explanation;
 pub use results::results;
-pub use run::run;
 pub use screen::Terminal;
 pub(super) use screen::verdict_style;

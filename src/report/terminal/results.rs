@@ -1,15 +1,17 @@
 //! Results of any kind as text.
 
-use super::{Terminal, explanation, run};
+use super::run::run;
+use super::{Terminal, explanation};
 use crate::i18n::Lang;
 use crate::report::explain::ExplainView;
-use crate::report::view::{PhasePart, View};
+use crate::report::translator::Translator;
+use crate::report::view::{Part, Phase};
 use crate::report::{Record, Results, RunResults, page};
 
 /// Results as text for a terminal.
 pub fn results(results: &Results, lang: Lang, terminal: Terminal) -> String {
     if let Results::Run(of) = results {
-        return run(&view(of, lang), lang, terminal);
+        return run_with_phases(of, lang, terminal);
     }
     match results.record().record() {
         Record::Explanation(of) => {
@@ -22,16 +24,13 @@ pub fn results(results: &Results, lang: Lang, terminal: Terminal) -> String {
     }
 }
 
-/// The view of a run, with its phases where it has some.
-fn view(results: &RunResults, lang: Lang) -> View {
+/// A run with its phases where it has some.
+fn run_with_phases(results: &RunResults, lang: Lang, terminal: Terminal) -> String {
     let record = &results.outcome.record;
-    let phases = record.phases.iter().zip(&results.phases);
-    let parts: Vec<PhasePart<'_>> = phases
-        .map(|(phase, outcome)| PhasePart {
-            phase,
-            record: outcome.as_ref().map(|o| &o.record),
-            figures: &[],
-        })
-        .collect();
-    View::of_phases(record, &parts, lang)
+    let words = Translator { lang };
+    let phases = record.phases.iter().zip(&results.phases).zip(1..).map(|((phase, outcome), number)| {
+        let part = outcome.as_ref().map(|o| Part::of_phase(phase, &o.record, &[], words));
+        Phase { phase, number, part }
+    });
+    run(&Part::new(record, &[], words), &phases.collect::<Vec<_>>(), terminal)
 }

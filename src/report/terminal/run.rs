@@ -2,61 +2,79 @@
 
 use super::screen::{Terminal, verdict_style};
 use super::table::{Align, Cell, Column, table};
-use crate::i18n::{Lang, visible};
+use crate::estimate::Verdict;
+use crate::i18n::visible;
+use crate::report::explain::explained_summary;
 use crate::report::translator::Translator;
-use crate::report::view::{PhaseView, Row, View};
+use crate::report::view::{self, Part, Phase, Row};
 use anstyle::Style;
 
-/// The outcome: verdict, quantities, reasons, conditions that are not met, faults.
-pub fn run(view: &View, lang: Lang, terminal: Terminal) -> String {
-    let words = Translator { lang };
-    let mut out = head(view, words, terminal);
-    if view.phases.is_empty() {
-        out += &terminal.indented(&view.contradicted);
+/// The outcome: verdict, quantities, reasons, conditions that are not met, faults. `in_phases`: what a test of several
+/// phases found in each.
+pub(super) fn run(whole: &Part<'_>, in_phases: &[Phase<'_>], terminal: Terminal) -> String {
+    let words = whole.words;
+    let mut out = head(whole, in_phases.is_empty(), terminal);
+    if in_phases.is_empty() {
+        out += &terminal.indented(contradicted(whole));
         // A pass needs no reasons; what fails is read in the table first.
-        let settled = matches!(view.verdict, "pass" | "none");
+        let settled = matches!(whole.record.verdict, Verdict::Pass | Verdict::None);
+        let reasons = reasons(whole);
         if settled {
-            out += &terminal.indented(reasons(view));
+            out += &terminal.indented(&reasons);
         }
-        out += &quantities(view, words, terminal);
-        if !settled && !reasons(view).is_empty() {
+        out += &quantities(whole, terminal);
+        if !settled && !reasons.is_empty() {
             out += &section("terminal.reasons", words, terminal);
-            out += &terminal.indented(reasons(view));
+            out += &terminal.indented(&reasons);
         }
-        out += &conditions(view, words, terminal);
+        out += &conditions(whole, terminal);
     } else {
-        out += &phases(&view.phases, words, terminal);
-        out += &terminal.indented(&view.errors);
+        out += &phases(in_phases, words, terminal);
+        out += &terminal.indented(whole.errors());
     }
-    if !view.attempt.is_empty() {
-        out += &format!("\n{}", terminal.indented(&view.attempt));
+    let attempt = whole.attempt();
+    if !attempt.is_empty() {
+        out += &format!("\n{}", terminal.indented(attempt));
     }
-    if let Some(explained) = &view.explained {
+    if let Some(explained) = &whole.record.explained {
         out += &section("terminal.explained", words, terminal);
-        out += &terminal.indented(&explained.summary);
+        out += &terminal.indented(explained_summary(explained, words.lang));
     }
     out
 }
 
-/// Verdict, test, unit.
-fn head(view: &View, words: Translator, terminal: Terminal) -> String {
-    let verdict = terminal.verdict(&view.verdict_word.to_uppercase(), view.verdict);
-    let serial = view.identity.iter().find(|f| f.label == words.t("report.serial")).map(|f| f.value.as_str());
-    let serial = serial.filter(|s| *s != words.t("report.missing"));
-    let file = view.files.first().map(|f| f.path.as_str()).filter(|_| view.phases.is_empty());
-    let parts: Vec<String> = [Some(view.title.as_str()), serial, file]
+/// Verdict, test, unit; the file that was read where it is one test.
+fn head(whole: &Part<'_>, is_single: bool, terminal: Terminal) -> String {
+    let (record, words) = (whole.record, whole.words);
+    let word = words.verdict(record.verdict);
+    let verdict = terminal.verdict(&word.to_uppercase(), record.verdict.id());
+    let serial = record.unit_under_test.serial.as_deref().filter(|s| !s.trim().is_empty());
+    let read = record.recording.first().map(|f| f.path.as_str());
+    let file = read.or(record.procedure.as_ref().map(|p| p.path.as_str())).filter(|_| is_single);
+    let title = whole.title();
+    let parts: Vec<String> = [Some(title.as_str()), serial, file]
         .into_iter()
         .flatten()
         .map(|part| visible(part).into_owned())
         .collect();
-    terminal.headed(&verdict, &view.verdict_word, &parts.join(" · "))
+    terminal.headed(&verdict, &word, &parts.join(" · "))
+}
+
+/// The reason that a check contradicts what a row rests on.
+const CONTRADICTED: &str = "summary.contradicted";
+
+/// What checks contradict: the first of the reasons.
+fn contradicted(whole: &Part<'_>) -> Vec<String> {
+    let notes = whole.record.summary.iter().filter(|n| n.id == CONTRADICTED);
+    notes.map(|n| whole.words.say(n)).collect()
 }
 
 /// Errors and reasons, each once; what is contradicted is told before.
-fn reasons(view: &View) -> Vec<&String> {
-    let mut out: Vec<&String> = vec![];
-    for sentence in view.errors.iter().chain(&view.summary) {
-        if !out.contains(&sentence) && !view.contradicted.contains(sentence) {
+fn reasons(whole: &Part<'_>) -> Vec<String> {
+    let contradicted = contradicted(whole);
+    let mut out: Vec<String> = vec![];
+    for sentence in whole.errors().into_iter().chain(whole.summary()) {
+        if !out.contains(&sentence) && !contradicted.contains(&sentence) {
             out.push(sentence);
         }
     }
@@ -68,12 +86,13 @@ fn section(key: &str, words: Translator, terminal: Terminal) -> String {
 }
 
 /// Rows with a limit, failed and undecided first; without limits, those that have a value or a bound.
-fn quantities(view: &View, words: Translator, terminal: Terminal) -> String {
-    if view.judged.is_empty() {
-        return without_limits(view, words, terminal);
+fn quantities(part: &Part<'_>, terminal: Terminal) -> String {
+    let words = part.words;
+    if part.judged.is_empty() {
+        return without_limits(part, terminal);
     }
-    let mut rows: Vec<&Row> = view.judged.iter().collect();
-    rows.sort_by_key(|row| urgency(row.verdict));
+    let mut rows: Vec<&Row<'_>> = part.judged.iter().collect();
+    rows.sort_by_key(|row| urgency(row.of.verdict.id()));
     let columns = [
         column("quantity", Align::Left, false, words),
         column("value", Align::Right, false, words),
@@ -86,18 +105,18 @@ fn quantities(view: &View, words: Translator, terminal: Terminal) -> String {
         .iter()
         .map(|row| {
             vec![
-                name(row, view.several_channels).into(),
+                row.name_in(part.several_channels, words).into(),
                 value(row, words).into(),
                 interval(row, words).into(),
-                row.limit.clone().into(),
-                row.margin.clone().into(),
-                Cell { text: row.verdict_word.clone(), style: verdict_style(row.verdict) },
+                row.limit(words).into(),
+                row.margin(words).into(),
+                Cell { text: view::verdict_word(row.of, words), style: verdict_style(row.of.verdict.id()) },
             ]
         })
         .collect();
     let mut out = format!("\n{}", table(&columns, &cells, terminal));
-    if !view.further.is_empty() {
-        let count = view.further.len().to_string();
+    if !part.further.is_empty() {
+        let count = part.further.len().to_string();
         let more = words.with("terminal.further", &[("n", &count)]);
         out += &terminal.indented([more]);
     }
@@ -108,9 +127,10 @@ fn urgency(verdict: &str) -> usize {
     ["error", "fail", "indeterminate"].iter().position(|v| *v == verdict).unwrap_or(3)
 }
 
-fn without_limits(view: &View, words: Translator, terminal: Terminal) -> String {
-    let (shown, absent): (Vec<&Row>, Vec<&Row>) =
-        view.further.iter().partition(|row| row.identifiable || !row.bound.is_empty());
+fn without_limits(part: &Part<'_>, terminal: Terminal) -> String {
+    let words = part.words;
+    let is_shown = |row: &&Row<'_>| row.of.identifiable || !view::bound_alone(row.of, words).is_empty();
+    let (shown, absent): (Vec<&Row<'_>>, Vec<&Row<'_>>) = part.further.iter().partition(is_shown);
     let columns = [
         column("quantity", Align::Left, false, words),
         column("value", Align::Right, false, words),
@@ -120,13 +140,10 @@ fn without_limits(view: &View, words: Translator, terminal: Terminal) -> String 
     let cells: Vec<Vec<Cell>> = shown
         .iter()
         .map(|row| {
-            let read = if row.place.is_empty() {
-                row.method.clone()
-            } else {
-                format!("{}, {}", row.method, row.place)
-            };
+            let (method, place) = (row.method(words), view::place(row.of, words));
+            let read = if place.is_empty() { method } else { format!("{method}, {place}") };
             vec![
-                name(row, view.several_channels).into(),
+                row.name_in(part.several_channels, words).into(),
                 value(row, words).into(),
                 interval(row, words).into(),
                 Cell { text: read, style: Style::new().dimmed() },
@@ -135,22 +152,13 @@ fn without_limits(view: &View, words: Translator, terminal: Terminal) -> String 
         .collect();
     let mut out =
         if cells.is_empty() { String::new() } else { format!("\n{}", table(&columns, &cells, terminal)) };
-    let lines: Vec<String> = view
-        .evidence
-        .lines
-        .iter()
-        .map(|l| {
-            let args =
-                [("frequency", l.frequency.as_str()), ("amplitude", &l.amplitude), ("period", &l.period)];
-            words.with("terminal.line", &args)
-        })
-        .collect();
+    let lines = view::line_sentences(part.record, words);
     if !lines.is_empty() {
         out += &section("terminal.lines", words, terminal);
         out += &terminal.indented(lines);
     }
     if !absent.is_empty() {
-        let names: Vec<String> = absent.iter().map(|row| name(row, view.several_channels)).collect();
+        let names: Vec<String> = absent.iter().map(|row| row.name_in(part.several_channels, words)).collect();
         let sentence = words.with("terminal.absent", &[("names", &names.join("; "))]);
         out.push('\n');
         out += &terminal.indented([sentence]);
@@ -162,36 +170,30 @@ fn column(id: &str, align: Align, optional: bool, words: Translator) -> Column {
     Column { head: words.name("terminal_column", id), align, optional }
 }
 
-fn name(row: &Row, several_channels: bool) -> String {
-    if several_channels { format!("{} · {}", row.name, row.channel) } else { row.name.clone() }
-}
-
-fn value(row: &Row, words: Translator) -> String {
-    if row.identifiable && row.bound.is_empty() {
-        if row.value.contains(char::is_numeric) {
-            words.joined(&row.value, &row.unit)
-        } else {
-            row.value.clone()
-        }
+fn value(row: &Row<'_>, words: Translator) -> String {
+    if row.of.identifiable && view::bound_alone(row.of, words).is_empty() {
+        let value = view::value(row.of, words);
+        if value.contains(char::is_numeric) { words.quantity(&value, &row.of.unit) } else { value }
     } else {
         "–".to_owned()
     }
 }
 
 /// The interval, or the bound of a quantity without a value.
-fn interval(row: &Row, words: Translator) -> String {
-    if row.bound.is_empty() { row.interval.clone() } else { words.joined(&row.bound, &row.unit) }
+fn interval(row: &Row<'_>, words: Translator) -> String {
+    let bound = view::bound_alone(row.of, words);
+    if bound.is_empty() { view::interval(row.of, words) } else { words.quantity(&bound, &row.of.unit) }
 }
 
 /// Conditions that are not met or remarked on, broken budgets of faults, what is declared only.
-fn conditions(view: &View, words: Translator, terminal: Terminal) -> String {
+fn conditions(part: &Part<'_>, terminal: Terminal) -> String {
+    let (record, words) = (part.record, part.words);
     let mut out = String::new();
-    let odd: Vec<_> = view.evidence.conditions.iter().filter(|c| c.status == "remark").collect();
+    let odd: Vec<view::Condition> =
+        view::conditions(record, words).into_iter().filter(|c| c.status == "remark").collect();
     // A broken budget is a reason of the verdict.
-    let faults: Vec<String> = view
-        .evidence
-        .faults
-        .found_faults
+    let faults: Vec<String> = view::FaultKinds::new(record, words)
+        .found
         .iter()
         .filter(|f| f.status != "invalid")
         .map(|f| words.with("terminal.fault", &[("name", &f.name), ("found", &f.found)]))
@@ -209,15 +211,16 @@ fn conditions(view: &View, words: Translator, terminal: Terminal) -> String {
         let sentence = words.with("terminal.faults", &[("faults", &faults.join("; "))]);
         out += &format!("\n{}", terminal.indented([sentence]));
     }
-    if !view.declared.is_empty() {
-        let note = words.with("cli.declared", &[("names", &view.declared.join(", "))]);
+    let declared = view::declared(record, words);
+    if !declared.is_empty() {
+        let note = words.with("cli.declared", &[("names", &declared.join(", "))]);
         out += &format!("\n{}", terminal.indented([note]));
     }
     out
 }
 
 /// A line for each phase, and below it the reasons of those that do not pass.
-fn phases(phases: &[PhaseView], words: Translator, terminal: Terminal) -> String {
+fn phases(phases: &[Phase<'_>], words: Translator, terminal: Terminal) -> String {
     let columns = [
         column("phase", Align::Left, false, words),
         column("met", Align::Left, false, words),
@@ -226,24 +229,25 @@ fn phases(phases: &[PhaseView], words: Translator, terminal: Terminal) -> String
     let rows: Vec<Vec<Cell>> = phases
         .iter()
         .map(|p| {
-            let judged = p.view.iter().flat_map(|v| &v.judged);
+            let judged = p.part.iter().flat_map(|part| &part.judged);
             let (mut met, mut all) = (0, 0);
             for row in judged {
                 all += 1;
-                met += usize::from(row.verdict == "pass");
+                met += usize::from(row.of.verdict == Verdict::Pass);
             }
             let counted = words.with("terminal.met", &[("met", &met.to_string()), ("all", &all.to_string())]);
             let counted = if all == 0 { String::new() } else { counted };
-            let verdict = Cell { text: p.verdict_word.clone(), style: verdict_style(p.verdict) };
-            vec![p.title.clone().into(), counted.into(), verdict]
+            let verdict = p.phase.verdict;
+            let verdict = Cell { text: words.verdict(verdict), style: verdict_style(verdict.id()) };
+            vec![p.title(words).into(), counted.into(), verdict]
         })
         .collect();
     let mut out = format!("\n{}", table(&columns, &rows, terminal));
-    for p in phases.iter().filter(|p| p.verdict != "pass") {
-        out += &format!("\n{}\n", terminal.heading(&visible(&p.title)));
-        match p.view.first() {
-            Some(view) => out += &terminal.indented(view.errors.iter().chain(&view.summary)),
-            None => out += &terminal.indented(&p.summary),
+    for p in phases.iter().filter(|p| p.phase.verdict != Verdict::Pass) {
+        out += &format!("\n{}\n", terminal.heading(&visible(&p.title(words))));
+        match &p.part {
+            Some(part) => out += &terminal.indented(part.errors().into_iter().chain(part.summary())),
+            None => out += &terminal.indented(p.summary(words)),
         }
     }
     out

@@ -1,46 +1,12 @@
 //! Russian and Allan values of the same record, side by side, each with its convention.
 
+use super::part::Part;
 use super::rows;
 use crate::measurand;
-use crate::record::{MeasurandRecord, RunRecord};
+use crate::record::MeasurandRecord;
 use crate::report::number::{bound, limit_digits};
+use crate::report::page::{Block, Table, Value};
 use crate::report::translator::Translator;
-use serde::Serialize;
-
-/// The comparison for one channel.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Comparison {
-    /// Channel.
-    pub channel: String,
-    /// Lines of the comparison: one Russian value, one Allan value.
-    pub pairs: Vec<Pair>,
-    /// Ratios and predictions.
-    pub ratios: Vec<Side>,
-}
-
-/// One line.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Pair {
-    /// Value of the Russian practice.
-    pub russian: Option<Side>,
-    /// Value of the Allan analysis.
-    pub allan: Option<Side>,
-}
-
-/// One value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Side {
-    /// Name.
-    pub name: String,
-    /// What the name stands for.
-    pub convention: String,
-    /// Value.
-    pub value: String,
-    /// Interval.
-    pub interval: String,
-    /// Unit.
-    pub unit: String,
-}
 
 /// What stands beside what.
 const PAIRS: &[(&str, &str)] = &[
@@ -54,34 +20,52 @@ const PAIRS: &[(&str, &str)] = &[
 const RATIOS: &[&str] =
     &[measurand::RATIO_RUSSIAN_TO_ALLAN_BIAS.id, measurand::RATIO_RUSSIAN_TO_ALLAN_ARW.id];
 
-/// The comparisons, one for each channel that has a Russian value.
-pub fn comparisons(record: &RunRecord, words: Translator) -> Vec<Comparison> {
+/// A table for each channel that has a Russian value.
+pub fn section(part: &Part<'_>) -> Vec<Block> {
+    let words = part.words;
     let mut channels: Vec<&str> = vec![];
-    for m in record.measurands.iter().filter(|m| PAIRS.iter().any(|(russian, _)| *russian == m.id)) {
+    for m in part.record.measurands.iter().filter(|m| PAIRS.iter().any(|(russian, _)| *russian == m.id)) {
         if !channels.contains(&m.channel.as_str()) {
             channels.push(&m.channel);
         }
     }
-    channels
-        .into_iter()
-        .map(|channel| {
-            let find = |id: &str| {
-                record.measurands.iter().find(|m| m.channel == channel && m.id == id).map(|m| side(m, words))
-            };
-            Comparison {
-                channel: channel.to_owned(),
-                pairs: PAIRS
-                    .iter()
-                    .map(|(russian, allan)| Pair { russian: find(russian), allan: find(allan) })
-                    .filter(|p| p.russian.is_some() || p.allan.is_some())
-                    .collect(),
-                ratios: RATIOS.iter().filter_map(|id| find(id)).collect(),
-            }
-        })
-        .collect()
+    if channels.is_empty() {
+        return vec![];
+    }
+    let mut below = vec![Block::Hint(words.t("report.comparison_hint"))];
+    for channel in channels {
+        below.extend(part.several_channels.then(|| Block::subheading(channel)));
+        below.push(Block::Table(table(channel, part)));
+    }
+    vec![Block::section("", words.t("report.comparison"), below)]
 }
 
-fn side(m: &MeasurandRecord, words: Translator) -> Side {
+/// A Russian value and an Allan value in each line, then ratios.
+fn table(channel: &str, part: &Part<'_>) -> Table {
+    let words = part.words;
+    let find = |id: &str| part.record.measurands.iter().find(|m| m.channel == channel && m.id == id);
+    let pairs = PAIRS.iter().map(|(russian, allan)| (find(russian), find(allan)));
+    let ratios = RATIOS.iter().map(|id| (find(id), None));
+    let lines: Vec<(Option<&MeasurandRecord>, Option<&MeasurandRecord>)> =
+        pairs.chain(ratios).filter(|(russian, allan)| russian.is_some() || allan.is_some()).collect();
+    let name = |m: Option<&MeasurandRecord>| m.map_or(Value::Empty, |m| name(m, words));
+    let value = |m: Option<&MeasurandRecord>| m.map_or(Value::Empty, |m| value(m, words));
+    let shown = || words.number_column("report.value_interval");
+    Table::new("comparison", lines.len())
+        .column(words.column("report.russian"), lines.iter().map(|l| name(l.0)))
+        .column(shown(), lines.iter().map(|l| value(l.0)))
+        .column(words.column("report.allan").class("second"), lines.iter().map(|l| name(l.1)))
+        .column(shown(), lines.iter().map(|l| value(l.1)))
+}
+
+/// Name, below it the convention that it stands for.
+fn name(m: &MeasurandRecord, words: Translator) -> Value {
+    let convention = words.t(&format!("convention.{}", m.id));
+    Value::Text(words.name("measurand", &m.id)).over([Value::Text(convention)])
+}
+
+/// Value with its unit, below it the interval.
+fn value(m: &MeasurandRecord, words: Translator) -> Value {
     let unit = words.unit(&m.unit);
     let (value, unit) = match (m.value, m.upper_limit) {
         // The unit belongs to the number, the coverage to the statement.
@@ -92,11 +76,6 @@ fn side(m: &MeasurandRecord, words: Translator) -> Side {
         }
         _ => (rows::value(m, words), unit),
     };
-    Side {
-        name: words.name("measurand", &m.id),
-        convention: words.t(&format!("convention.{}", m.id)),
-        value,
-        interval: rows::interval(m, words),
-        unit,
-    }
+    let value = if unit.is_empty() { value } else { format!("{value} {unit}") };
+    Value::Text(value).over([Value::Text(rows::interval(m, words))])
 }

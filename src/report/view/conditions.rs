@@ -1,15 +1,17 @@
 //! Conditions of the test with what was found, and how it is known, in words and units.
 
 use super::common::{required, status};
-use super::faults;
-use crate::record::{ConditionRecord, RunRecord};
+use super::part::Part;
+use super::{faults, instruments};
+use crate::record::{ConditionRecord, ConditionStatus, Evidence, RunRecord};
 use crate::report::number::{NOTHING, count, duration, limit_digits, percent};
+use crate::report::page::{self, Block, Facts, Table};
 use crate::report::translator::Translator;
-use serde::Serialize;
 use serde_json::Value;
+use std::collections::BTreeSet;
 
 /// A condition.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Condition {
     /// Name.
     pub name: String,
@@ -45,6 +47,105 @@ const ALWAYS_NAMED: &[&str] = &["factor", "probability", "stretches"];
 /// Values that the explanation states better.
 const IN_WORDS: &[&str] = &["difference"];
 
+/// The conditions of the test; faults and instruments, which have tables of their own, in a line each.
+pub fn section(part: &Part<'_>) -> Vec<Block> {
+    let words = part.words;
+    let all = all(part.record, words);
+    if all.is_empty() {
+        return vec![];
+    }
+    let text = |of: fn(&Condition) -> &String| all.iter().map(move |c| of(c).clone());
+    let sentence = |of: fn(&Condition) -> &String| text(of).map(page::Value::Sentence);
+    let table = Table::new("conditions cards", all.len())
+        .column(words.column("report.condition"), text(|c| &c.name))
+        .column(words.column("report.required"), sentence(|c| &c.required))
+        .column(words.column("report.value_found"), sentence(|c| &c.found))
+        .column(words.column("report.evidence"), text(|c| &c.evidence))
+        .column(
+            words.column("report.state"),
+            all.iter().map(|c| page::Value::state(c.status, c.status_word.as_str())),
+        );
+    vec![Block::section("", words.t("report.conditions"), vec![Block::Table(table)])]
+}
+
+/// What is to be said of single conditions.
+pub fn remarks(part: &Part<'_>) -> Vec<Block> {
+    let words = part.words;
+    let rows: Vec<(page::Value, page::Value)> = conditions(part.record, words)
+        .into_iter()
+        .filter(|c| !c.note.is_empty())
+        .map(|c| (c.name.into(), page::Value::Sentence(c.note)))
+        .collect();
+    if rows.is_empty() {
+        return vec![];
+    }
+    let facts = Block::Facts(Facts { class: "options", rows });
+    vec![Block::section("", words.t("report.condition_remarks"), vec![facts])]
+}
+
+/// The conditions, then faults and instruments in a line each.
+pub fn all(record: &RunRecord, words: Translator) -> Vec<Condition> {
+    conditions(record, words).into_iter().chain(in_short(record, words)).collect()
+}
+
+/// Names of the conditions that are only declared, in alphabetical order.
+pub fn declared(record: &RunRecord, words: Translator) -> Vec<String> {
+    let declared = record.conditions.iter().filter(|c| c.evidence == Some(Evidence::Declared));
+    let names = declared.map(|c| words.name("condition", c.id.split('.').next().unwrap_or(&c.id)));
+    names.collect::<BTreeSet<String>>().into_iter().collect()
+}
+
+/// The faults of the recording and the instruments, a line each.
+fn in_short(record: &RunRecord, words: Translator) -> Vec<Condition> {
+    let line =
+        |key: &str, worst: ConditionStatus, required: String, found: String, evidence: &str| Condition {
+            name: words.t(key),
+            status: status(worst),
+            status_word: words.name("status", status(worst)),
+            required,
+            evidence: words.name("evidence", evidence),
+            found,
+            note: String::new(),
+        };
+    let worst = |of: &dyn Fn(&str) -> bool| {
+        let states = record.conditions.iter().filter(|c| of(&c.id)).map(|c| c.status);
+        states.max().unwrap_or(ConditionStatus::Ok)
+    };
+    let mut lines = vec![];
+    if record.conditions.iter().any(|c| faults::is_fault(&c.id)) {
+        let found: Vec<String> = faults::FaultKinds::new(record, words)
+            .found
+            .iter()
+            .map(|f| format!("{}\u{a0}{}", f.name, f.found))
+            .collect();
+        let found = if found.is_empty() { words.t("report.faultless") } else { found.join("; ") };
+        let allowed = words.t("report.within_budget");
+        lines.push(line("report.integrity", worst(&faults::is_fault), allowed, found, "recorded"));
+    }
+    if !record.instruments.is_empty() {
+        let calibrated = record.conditions.iter().find(|c| c.id == "calibration");
+        let required = calibrated.map_or_else(String::new, |c| required(c, words));
+        let mut found: Vec<(String, u64)> = vec![];
+        let states = record.instruments.iter().map(|i| instruments::state(i, record, words));
+        let mut is_remarkable = false;
+        for state in states {
+            is_remarkable |= state.id != "ok";
+            match found.iter_mut().find(|(word, _)| *word == state.word) {
+                Some((_, n)) => *n += 1,
+                None => found.push((state.word, 1)),
+            }
+        }
+        let found: Vec<String> =
+            found.iter().map(|(word, n)| format!("{word} ({})", count(*n, words.lang))).collect();
+        let mut state = worst(&|id| id == "calibration");
+        if state == ConditionStatus::Ok && is_remarkable {
+            state = ConditionStatus::Remark;
+        }
+        lines.push(line("condition.calibration", state, required, found.join("; "), "declared"));
+    }
+    lines
+}
+
 /// The conditions that have no table of their own.
 pub fn conditions(record: &RunRecord, words: Translator) -> Vec<Condition> {
     record
@@ -63,7 +164,7 @@ fn condition(c: &ConditionRecord, words: Translator) -> Condition {
         status: status(c.status),
         status_word: words.name("status", status(c.status)),
         required: required(c, words),
-        evidence: words.name("evidence", c.evidence.map_or("none", crate::record::Evidence::id)),
+        evidence: words.name("evidence", c.evidence.map_or("none", Evidence::id)),
         found: found(kind, c, words),
         note: c.message.as_ref().map_or_else(|| c.note.clone(), |m| words.say(m)),
     }

@@ -1,28 +1,19 @@
-//! The recording against the model of its family, printed.
+//! The recording against the model of its family.
 
-use crate::i18n::Lang;
-use crate::record::ExplainedRecord;
+use super::part::Part;
 use crate::report::explain::explained_summary;
-use serde::Serialize;
+use crate::report::page::{Block, Link};
 
-/// The recording against the model of its family.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Explained {
-    /// The model.
-    pub model: String,
-    /// What came of it, in sentences.
-    pub summary: Vec<String>,
-    /// The whole explanation, where there is one.
-    pub page: Option<&'static str>,
-}
-
-impl Explained {
-    /// Of what the record holds.
-    pub fn new(explained: &ExplainedRecord, lang: Lang) -> Explained {
-        Explained {
-            model: explained.model.clone(),
-            summary: explained_summary(explained, lang),
-            page: explained.explanation.as_ref().map(|_| "explain/report.html"),
-        }
-    }
+/// What came of it, in sentences, and the way to the whole explanation where there is one.
+pub fn section(part: &Part<'_>) -> Vec<Block> {
+    let words = part.words;
+    let Some(explained) = &part.record.explained else { return vec![] };
+    let to = explained.explanation.as_ref().map_or("", |_| "explain/report");
+    let link = Block::Link(Link {
+        words: format!("{}: {}", words.t("explained.model"), explained.model),
+        text: words.t("explained.page"),
+        to: to.to_owned(),
+    });
+    let summary = explained_summary(explained, words.lang).into_iter().map(Block::Paragraph);
+    vec![Block::section("", words.t("explained.title"), summary.chain([link]).collect())]
 }

@@ -1,65 +1,39 @@
 //! Faults of the recording: what was found against what is allowed, and the first of each kind one by one.
 
 use super::common::{required, status};
+use super::part::Part;
 use crate::record::{ConditionRecord, FaultRecord, Integrity, RunRecord};
 use crate::report::number::{NOTHING, count, duration, limit_digits, percent};
-use crate::report::translator::{Field, Translator};
-use serde::Serialize;
+use crate::report::page::{Block, Facts, Table, Value};
+use crate::report::translator::Translator;
 
 /// Faults of one kind that a report lists; more would bury the rest of it.
 const SHOWN_OF_A_KIND: usize = 10;
 
-/// Printed faults.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Faults {
+/// Faults of the recording by kind.
+pub struct FaultKinds {
     /// Kinds that were found, and those whose budget is broken.
-    pub found_faults: Vec<FaultKind>,
-    /// Kinds that were looked for and not found, with what is allowed, as a sentence.
-    pub absent_faults: String,
-    /// Kinds that could not be looked for, as a sentence.
-    pub unexamined_faults: String,
-    /// True when it was looked for faults and none was found.
-    pub faultless: bool,
-    /// Jitter, quantisation step, threshold.
-    pub integrity_facts: Vec<Field>,
-    /// Faults one by one, the first of each kind.
-    pub faults: Vec<Fault>,
-    /// How many of the listed faults are shown; empty when all are.
-    pub faults_shown: String,
+    pub found: Vec<FaultKind>,
+    /// Kinds that were looked for and not found.
+    absent: Vec<FaultKind>,
+    /// Names of the kinds that could not be looked for.
+    unexamined: Vec<String>,
 }
 
 /// One kind of fault.
-#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct FaultKind {
     /// Name.
     pub name: String,
     /// How many or how much was found.
     pub found: String,
     /// Share of the rows; empty for what is no count.
-    pub share: String,
+    share: String,
     /// What is allowed.
-    pub allowed: String,
+    allowed: String,
     /// Id of the state; empty without a budget.
     pub status: &'static str,
     /// State in words.
-    pub status_word: String,
-}
-
-/// A fault.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Fault {
-    /// Kind, in words.
-    pub kind: String,
-    /// Channel.
-    pub channel: String,
-    /// Row.
-    pub row: String,
-    /// Time.
-    pub time: String,
-    /// Samples concerned.
-    pub count: String,
-    /// What was seen.
-    pub note: String,
+    status_word: String,
 }
 
 /// Counted faults: id and count.
@@ -94,9 +68,33 @@ pub fn is_fault(id: &str) -> bool {
         || counts(&none).iter().any(|c| c.0 == id)
 }
 
-impl Faults {
-    /// Prints the faults of a record.
-    pub(crate) fn new(record: &RunRecord, words: Translator) -> Faults {
+/// What was found against what is allowed, what was not found or not looked for, and the first faults of each kind.
+pub fn section(part: &Part<'_>) -> Vec<Block> {
+    let (integrity, words) = (&part.record.integrity, part.words);
+    let kinds = FaultKinds::new(part.record, words);
+    let is_faultless = !integrity.examined.is_empty()
+        && counts(integrity).iter().chain(&grave(integrity)).all(|c| c.1 == 0)
+        && integrity.faults.is_empty();
+    let mut below = vec![];
+    if is_faultless {
+        below.push(Block::Paragraph(words.t("report.faultless")));
+    }
+    if !kinds.found.is_empty() {
+        below.push(Block::Table(budget(&kinds.found, words)));
+    }
+    let sentences = [sentence(&kinds.absent, words), kinds.unexamined(integrity, words)];
+    below.extend(sentences.into_iter().filter(|s| !s.is_empty()).map(Block::Hint));
+    let rows = facts(integrity, words);
+    if !rows.is_empty() {
+        below.push(Block::Facts(Facts { class: "counts", rows }));
+    }
+    below.extend(one_by_one(integrity, words));
+    vec![Block::section("", words.t("report.integrity"), below)]
+}
+
+impl FaultKinds {
+    /// The kinds of faults of a record.
+    pub fn new(record: &RunRecord, words: Translator) -> FaultKinds {
         let integrity = &record.integrity;
         let rows: u64 = record.recording.iter().map(|f| f.samples).sum();
         let condition = |id: &str| record.conditions.iter().find(|c| c.id == id);
@@ -119,29 +117,58 @@ impl Faults {
             let kind = kind(&c.id, duration(seconds, words.lang), String::new(), Some(c), words);
             if seconds > 0.0 || kind.status == "invalid" { found.push(kind) } else { absent.push(kind) }
         }
-        let shown = first_of_each_kind(&integrity.faults);
-        Faults {
-            unexamined_faults: match unexamined.len() {
-                0 => String::new(),
-                _ if integrity.examined.is_empty() && found.is_empty() => words.t("report.none_examined"),
-                _ => words.with("report.unexamined", &[("kinds", &unexamined.join("; "))]),
-            },
-            faultless: !integrity.examined.is_empty()
-                && counts(integrity).iter().chain(&grave(integrity)).all(|c| c.1 == 0)
-                && integrity.faults.is_empty(),
-            found_faults: found,
-            absent_faults: sentence(&absent, words),
-            integrity_facts: facts(integrity, words),
-            faults_shown: if shown.len() < integrity.faults.len() {
-                let listed = count(integrity.faults.len() as u64, words.lang);
-                let n = count(shown.len() as u64, words.lang);
-                words.with("report.faults_shown", &[("shown", &n), ("listed", &listed)])
-            } else {
-                String::new()
-            },
-            faults: shown.into_iter().map(|f| fault(f, words)).collect(),
+        FaultKinds { found, absent, unexamined }
+    }
+
+    /// The kinds that could not be looked for, as a sentence; empty where there are none.
+    fn unexamined(&self, integrity: &Integrity, words: Translator) -> String {
+        match self.unexamined.len() {
+            0 => String::new(),
+            _ if integrity.examined.is_empty() && self.found.is_empty() => words.t("report.none_examined"),
+            _ => words.with("report.unexamined", &[("kinds", &self.unexamined.join("; "))]),
         }
     }
+}
+
+/// What was found of each kind against what is allowed.
+fn budget(found: &[FaultKind], words: Translator) -> Table {
+    let text = |of: fn(&FaultKind) -> &String| found.iter().map(move |f| of(f).clone());
+    let state = |f: &FaultKind| match f.status {
+        "" => Value::Empty,
+        id => Value::state(id, f.status_word.as_str()),
+    };
+    Table::new("budget cards", found.len())
+        .column(words.column("report.fault"), text(|f| &f.name))
+        .column(words.number_column("report.found").class("n value"), text(|f| &f.found))
+        .column(words.number_column("report.share"), text(|f| &f.share))
+        .column(words.column("report.allowed"), text(|f| &f.allowed))
+        .column(words.column("report.state"), found.iter().map(state))
+}
+
+/// The first faults of each kind, one by one, and how many of the listed ones they are.
+fn one_by_one(integrity: &Integrity, words: Translator) -> Vec<Block> {
+    let shown = first_of_each_kind(&integrity.faults);
+    if shown.is_empty() {
+        return vec![];
+    }
+    let each = |of: &dyn Fn(&FaultRecord) -> String| shown.iter().map(|f| of(f)).collect::<Vec<_>>();
+    let time = |f: &FaultRecord| {
+        let seconds = |t| words.quantity(&limit_digits(t, 9, words.lang), "s");
+        f.time_s.map_or_else(|| NOTHING.to_owned(), seconds)
+    };
+    let table = Table::new("faults cards", shown.len())
+        .column(words.column("report.fault"), each(&|f| words.name("fault", &f.kind)))
+        .column(words.column("report.channel"), each(&|f| f.channel.clone().unwrap_or_default()))
+        .column(words.number_column("report.file_row"), each(&|f| count(f.row, words.lang)))
+        .column(words.number_column("report.time"), each(&time))
+        .column(words.number_column("report.samples"), each(&|f| count(f.count, words.lang)))
+        .column(words.column("report.seen"), shown.iter().map(|f| Value::Sentence(seen(f, words))));
+    let hint = (shown.len() < integrity.faults.len()).then(|| {
+        let listed = count(integrity.faults.len() as u64, words.lang);
+        let n = count(shown.len() as u64, words.lang);
+        Block::Hint(words.with("report.faults_shown", &[("shown", &n), ("listed", &listed)]))
+    });
+    std::iter::once(Block::Table(table)).chain(hint).collect()
 }
 
 fn kind(id: &str, found: String, share: String, c: Option<&ConditionRecord>, words: Translator) -> FaultKind {
@@ -169,7 +196,8 @@ fn sentence(absent: &[FaultKind], words: Translator) -> String {
     }
 }
 
-fn facts(i: &Integrity, words: Translator) -> Vec<Field> {
+/// Jitter, quantisation step, threshold of outliers.
+fn facts(i: &Integrity, words: Translator) -> Vec<(Value, Value)> {
     let lang = words.lang;
     [
         i.timestamp_jitter_s.map(|v| ("report.jitter", duration(v, lang))),
@@ -182,7 +210,7 @@ fn facts(i: &Integrity, words: Translator) -> Vec<Field> {
     ]
     .into_iter()
     .flatten()
-    .map(|(key, value)| Field { label: words.t(key), value })
+    .map(|(key, value)| (words.t(key).into(), value.into()))
     .collect()
 }
 
@@ -199,16 +227,8 @@ fn first_of_each_kind(faults: &[FaultRecord]) -> Vec<&FaultRecord> {
         .collect()
 }
 
-fn fault(f: &FaultRecord, words: Translator) -> Fault {
+/// What was seen of a fault, with its file where there are several.
+fn seen(f: &FaultRecord, words: Translator) -> String {
     let note = f.seen.message.as_ref().map_or_else(|| f.seen.note.clone(), |m| words.say(m));
-    Fault {
-        kind: words.name("fault", &f.kind),
-        channel: f.channel.clone().unwrap_or_default(),
-        row: count(f.row, words.lang),
-        time: f
-            .time_s
-            .map_or_else(|| NOTHING.to_owned(), |t| words.quantity(&limit_digits(t, 9, words.lang), "s")),
-        count: count(f.count, words.lang),
-        note: f.file.as_ref().map_or_else(|| note.clone(), |file| format!("{file}: {note}")),
-    }
+    f.file.as_ref().map_or_else(|| note.clone(), |file| format!("{file}: {note}"))
 }

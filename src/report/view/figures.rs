@@ -1,8 +1,9 @@
 //! Figures as a report shows them.
 
+use super::part::Part;
 use crate::figure::{Figure, Layer};
 use crate::i18n::lookup;
-use crate::record::RunRecord;
+use crate::report::page::Block;
 use crate::report::translator::Translator;
 use crate::report::{file_name, svg};
 
@@ -37,13 +38,30 @@ impl FigureView {
     }
 }
 
-/// The figures of a report with their titles and captions.
-pub(super) fn select(record: &RunRecord, figures: &[Figure], words: Translator) -> Vec<FigureView> {
-    let view = |(i, figure): (usize, &Figure)| match record.figures.iter().find(|f| f.id == figure.id) {
-        Some(known) => FigureView::new(figure, i + 1, &known.file, words),
-        None => FigureView::of(figure, i + 1, words),
+/// The figures, or that their data are not kept.
+pub(super) fn section(part: &Part<'_>) -> Vec<Block> {
+    let words = part.words;
+    let mut below: Vec<Block> = part.figures.iter().zip(1..).map(|(f, n)| numbered(f, n, part)).collect();
+    if below.is_empty() && part.figure_records.is_empty() {
+        return vec![];
+    }
+    if below.is_empty() {
+        below.push(Block::Paragraph(words.t("report.figures_missing")));
+    }
+    vec![Block::section("figures", words.t("report.figures"), below)]
+}
+
+/// A figure with its number before its caption.
+fn numbered(figure: &Figure, number: usize, part: &Part<'_>) -> Block {
+    let words = part.words;
+    let drawn = match part.figure_records.iter().find(|f| f.id == figure.id) {
+        Some(known) => FigureView::new(figure, number, &known.file, words),
+        None => FigureView::of(figure, number, words),
     };
-    figures.iter().enumerate().map(view).collect()
+    let label = words.with("report.figure_number", &[("number", &number.to_string())]);
+    let text = if drawn.caption.is_empty() { &drawn.title } else { &drawn.caption };
+    let caption = format!("{label}. {text}");
+    Block::Figure(Box::new(FigureView { mark: format!("figure-{}{number}", part.anchor), caption, ..drawn }))
 }
 
 /// What is to be seen, in a sentence, and the numbers that belong to it.

@@ -1,7 +1,5 @@
-//! The view: the run record as words and printed numbers, ready for a template.
-//!
-//! Everything a template shows by default is a string here, so that HTML and Markdown cannot differ and no template
-//! computes. The record itself is handed to the templates as well, for those that users write.
+//! The page of a run: the record as blocks. Every section of the page is a module, which says what it shows of the record
+//! in words and printed numbers.
 
 mod checks;
 mod common;
@@ -12,25 +10,25 @@ mod evidence;
 mod explained;
 mod faults;
 mod figures;
-mod goodness;
+mod further;
+mod instruments;
 mod interval_means;
-mod matrix;
+mod limits;
+mod lines;
+mod models;
 mod page;
+mod part;
+mod phases;
 mod rows;
 mod table_steps;
 
-pub use comparison::{Comparison, Pair, Side};
-pub use conditions::Condition;
-pub use deviations::{DeviationCell, DeviationRow, Deviations};
-pub use evidence::{Clause, Evidence, Excluded, Instrument, Line, Model, ModelRemark, Power, Waiver};
-pub use explained::Explained;
-pub use faults::{Fault, FaultKind, Faults};
+pub(super) use conditions::{Condition, conditions, declared};
+pub(super) use faults::FaultKinds;
 pub use figures::FigureView;
-pub use goodness::Goodness;
-pub use interval_means::{IntervalMean, IntervalMeans};
-pub use matrix::{Matrix, MatrixRow};
-pub(super) use page::summary;
-pub use page::{FileView, MethodView, PhasePart, PhaseView, View};
-pub use rows::Row;
-pub(super) use rows::{limit_text, reason as row_reason, rounding};
-pub use table_steps::{TableStep, TableSteps};
+pub(super) use lines::sentences as line_sentences;
+pub(super) use page::page;
+pub(super) use part::{Part, Phase};
+pub(super) use rows::{
+    Row, bound_alone, interval, limit_text, place, reason as row_reason, rounding, summary, value,
+    verdict_word,
+};

@@ -4,69 +4,146 @@ use super::common::MODEL_NOTES;
 use crate::estimate::{Rule, Verdict};
 use crate::i18n::Arg;
 use crate::measurand;
-use crate::record::{LimitRecord, MeasurandRecord, RunRecord};
+use crate::record::{LimitRecord, MeasurandRecord, Message};
 use crate::report::number::{Rounding, acceptance, bound, digits, limit, limit_digits, percent};
+use crate::report::page::Value;
 use crate::report::translator::Translator;
-use serde::Serialize;
 
-/// One row, printed. Empty strings where there is nothing to show.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Row {
-    /// Id of the measurand.
-    pub id: String,
-    /// Channel, with the temperature, ramp or level that the row is of.
-    pub channel: String,
-    /// True where the row is of a temperature, a ramp or a level of a channel.
-    pub is_part: bool,
-    /// Name of the quantity.
-    pub name: String,
-    /// How it was obtained, in words.
-    pub method: String,
-    /// Where on the curve it was read; empty where it was not read from one.
-    pub place: String,
-    /// Unit.
-    pub unit: String,
-    /// Value, or the bound where the record cannot show it.
-    pub value: String,
-    /// 95 % interval.
-    pub interval: String,
-    /// What bounds the quantity where it has no value, as `≤ x`; empty otherwise.
-    pub bound: String,
-    /// Whether the record can show the quantity.
-    pub identifiable: bool,
-    /// Why there is no value; empty where there is one, or where the words in its place say why.
-    pub hint: String,
-    /// Limit.
-    pub limit: String,
-    /// Acceptance limit.
-    pub acceptance: String,
-    /// Decision rule.
-    pub rule: String,
-    /// Distance to the nearest limit.
-    pub margin: String,
-    /// Specific risk.
-    pub risk: String,
-    /// Published or data-sheet value.
-    pub reference: String,
-    /// Id of the verdict.
-    pub verdict: &'static str,
-    /// The verdict in words.
-    pub verdict_word: String,
+/// A measured quantity with the numbers of its footnotes.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row<'a> {
+    /// The quantity.
+    pub of: &'a MeasurandRecord,
     /// Numbers of the footnotes.
     pub footnotes: Vec<usize>,
 }
 
-/// The rows with and without a limit, in the order of the record; footnotes are collected, equal ones once.
-pub fn rows(record: &RunRecord, words: Translator, footnotes: &mut Vec<String>) -> (Vec<Row>, Vec<Row>) {
-    let (mut judged, mut further) = (vec![], vec![]);
-    // Footnotes are numbered in reading order: all rows with limits come first.
-    let with_limit = record.measurands.iter().filter(|m| m.limit.is_some());
-    let without = record.measurands.iter().filter(|m| m.limit.is_none());
-    for m in with_limit.chain(without) {
-        let row = row(m, words, footnotes);
-        if m.limit.is_some() { judged.push(row) } else { further.push(row) }
+impl<'a> Row<'a> {
+    /// The row of a quantity; its footnotes are added to those that there are, equal ones once.
+    pub fn new(m: &'a MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> Row<'a> {
+        let mut numbers = vec![];
+        for note in &m.notes {
+            // The model of a channel is remarked on once, where it is tabled.
+            let sentence = match note.id.as_ref() {
+                "note.model_misfit" => words.t("report.misfit_footnote"),
+                id if MODEL_NOTES.contains(&id) || (SEARCHED.contains(&id) && searched(m)) => continue,
+                _ => words.say(note),
+            };
+            numbers.push(footnote(sentence, footnotes));
+        }
+        if out_of_reach(m) {
+            numbers.push(footnote(words.t("report.no_value_passes"), footnotes));
+        }
+        numbers.sort_unstable();
+        numbers.dedup();
+        Row { of: m, footnotes: numbers }
     }
-    (judged, further)
+
+    /// Name of the quantity.
+    pub fn name(&self, words: Translator) -> String {
+        words.name("measurand", &self.of.id)
+    }
+
+    /// Channel, with the temperature, ramp or level that the row is of.
+    pub fn channel(&self, words: Translator) -> String {
+        words.channel(&self.of.channel, &self.of.id)
+    }
+
+    /// Name, and the channel where there are several.
+    pub fn name_in(&self, several_channels: bool, words: Translator) -> String {
+        let name = self.name(words);
+        if several_channels { format!("{name} · {}", self.channel(words)) } else { name }
+    }
+
+    /// The method by which it was obtained, in words.
+    pub fn method(&self, words: Translator) -> String {
+        words.name("how", &self.of.method)
+    }
+
+    /// Why there is no value; empty where there is one, or where the words in its place say why.
+    pub fn hint(&self, words: Translator) -> String {
+        if self.of.identifiable || searched(self.of) {
+            String::new()
+        } else {
+            words.t("report.not_shown_by_record")
+        }
+    }
+
+    /// The value, or what bounds it with the reason, which takes the place of the interval too.
+    pub fn value(&self, words: Translator) -> Value {
+        let value = Value::Text(value(self.of, words));
+        if self.of.identifiable {
+            return value;
+        }
+        Value::Wide(Box::new(value.over([Value::Text(self.hint(words))])))
+    }
+
+    /// Published or data-sheet value.
+    pub fn reference(&self, words: Translator) -> String {
+        self.of.reference.as_ref().map_or_else(String::new, |r| limit(r.value, words.lang))
+    }
+
+    /// Margin to the nearest limit.
+    pub fn margin(&self, words: Translator) -> String {
+        self.of.margin.map_or_else(String::new, |margin| match self.of.value {
+            Some(_) => margin_digits(margin, words),
+            None => bound(margin, false, words.lang),
+        })
+    }
+
+    /// Limit, with its unit where that is another one than that of the row.
+    pub fn limit(&self, words: Translator) -> String {
+        self.of.limit.as_ref().map_or_else(String::new, |l| limits(l, &self.of.unit, words))
+    }
+
+    /// Acceptance limit.
+    pub fn acceptance(&self, words: Translator) -> String {
+        match &self.of.limit {
+            Some(_) if out_of_reach(self.of) => words.t("report.none_passes"),
+            Some(l) => accepted(l, words),
+            None => String::new(),
+        }
+    }
+
+    /// Decision rule.
+    pub fn rule(&self, words: Translator) -> String {
+        self.of.limit.as_ref().map_or_else(String::new, |l| rule(l, words))
+    }
+
+    /// Specific risk.
+    pub fn risk(&self, words: Translator) -> String {
+        self.of.specific_risk.map_or_else(String::new, |p| percent(p, words.lang))
+    }
+}
+
+/// Reasons that a record gives for a row; a report states them with their numbers.
+const ROW_REASONS: [&str; 6] = [
+    "summary.row_failed",
+    "summary.row_failed_of",
+    "summary.row_not_shown",
+    "summary.row_not_shown_of",
+    "summary.row_indeterminate",
+    "summary.row_indeterminate_of",
+];
+
+/// The reasons for the verdict; those of rows with their numbers.
+pub fn summary(
+    reasons: &[Message],
+    rows: &[MeasurandRecord],
+    several_channels: bool,
+    words: Translator,
+) -> Vec<String> {
+    let is_row = |id: &str| ROW_REASONS.contains(&id);
+    let first_row = reasons.iter().position(|n| is_row(&n.id)).unwrap_or(reasons.len());
+    let (before, after) = reasons.split_at(first_row);
+    let of = |verdict: Verdict| rows.iter().filter(move |m| m.verdict == verdict);
+    let rows = of(Verdict::Fail).chain(of(Verdict::Indeterminate)).filter(|m| m.objections.is_empty());
+    let mut out: Vec<String> = before.iter().map(|n| words.say(n)).collect();
+    if !after.is_empty() {
+        out.extend(rows.filter_map(|m| reason(m, several_channels, words)));
+    }
+    out.extend(after.iter().filter(|n| !is_row(&n.id)).map(|n| words.say(n)));
+    out
 }
 
 /// Rounding of a row: by its interval.
@@ -133,7 +210,7 @@ pub fn interval(m: &MeasurandRecord, words: Translator) -> String {
 }
 
 /// The 95 % bound of a quantity without a value.
-fn bound_alone(m: &MeasurandRecord, words: Translator) -> String {
+pub fn bound_alone(m: &MeasurandRecord, words: Translator) -> String {
     match (m.value, m.upper_limit, m.lower_limit) {
         (None, Some(u), _) => format!("≤\u{202f}{}", bound(u.value, true, words.lang)),
         (None, None, Some(l)) => format!("≥\u{202f}{}", bound(l.value, false, words.lang)),
@@ -142,7 +219,7 @@ fn bound_alone(m: &MeasurandRecord, words: Translator) -> String {
 }
 
 /// The averaging time at which a value was read from σ(τ).
-fn place(m: &MeasurandRecord, words: Translator) -> String {
+pub fn place(m: &MeasurandRecord, words: Translator) -> String {
     let tau_s = m.notes.iter().find_map(|n| {
         let argument = match n.id.as_ref() {
             "note.minimum_at" => "tau_s",
@@ -224,61 +301,8 @@ fn footnote(sentence: String, footnotes: &mut Vec<String>) -> usize {
     }) + 1
 }
 
-fn row(m: &MeasurandRecord, words: Translator, footnotes: &mut Vec<String>) -> Row {
-    let lang = words.lang;
-    let mut numbers = vec![];
-    for note in &m.notes {
-        // The model of a channel is remarked on once, where it is tabled.
-        let sentence = match note.id.as_ref() {
-            "note.model_misfit" => words.t("report.misfit_footnote"),
-            id if MODEL_NOTES.contains(&id) || (SEARCHED.contains(&id) && searched(m)) => continue,
-            _ => words.say(note),
-        };
-        numbers.push(footnote(sentence, footnotes));
-    }
-    if out_of_reach(m) {
-        numbers.push(footnote(words.t("report.no_value_passes"), footnotes));
-    }
-    numbers.sort_unstable();
-    numbers.dedup();
-    Row {
-        id: m.id.clone(),
-        channel: words.channel(&m.channel, &m.id),
-        is_part: m.channel.contains('@'),
-        name: words.name("measurand", &m.id),
-        method: words.name("how", &m.method),
-        place: place(m, words),
-        unit: words.unit(&m.unit),
-        value: value(m, words),
-        interval: interval(m, words),
-        bound: bound_alone(m, words),
-        identifiable: m.identifiable,
-        hint: if m.identifiable || searched(m) {
-            String::new()
-        } else {
-            words.t("report.not_shown_by_record")
-        },
-        limit: m.limit.as_ref().map_or_else(String::new, |l| limits(l, &m.unit, words)),
-        acceptance: match &m.limit {
-            Some(_) if out_of_reach(m) => words.t("report.none_passes"),
-            Some(l) => accepted(l, words),
-            None => String::new(),
-        },
-        rule: m.limit.as_ref().map_or_else(String::new, |l| rule(l, words)),
-        margin: m.margin.map_or_else(String::new, |margin| match m.value {
-            Some(_) => margin_digits(margin, words),
-            None => bound(margin, false, lang),
-        }),
-        risk: m.specific_risk.map_or_else(String::new, |p| percent(p, lang)),
-        reference: m.reference.as_ref().map_or_else(String::new, |r| limit(r.value, lang)),
-        verdict: m.verdict.id(),
-        verdict_word: verdict_word(m, words),
-        footnotes: numbers,
-    }
-}
-
 /// The verdict of a row in words. Of a quantity that the record does not resolve, only its upper limit is known to be inside.
-fn verdict_word(m: &MeasurandRecord, words: Translator) -> String {
+pub fn verdict_word(m: &MeasurandRecord, words: Translator) -> String {
     match (m.verdict, m.value) {
         (Verdict::Pass, None) => words.t("verdict.met_by_upper_limit"),
         (verdict, _) => words.verdict(verdict),
@@ -382,8 +406,8 @@ mod tests {
             let words = Translator { lang };
             for m in [&never_negative, &crossed] {
                 let mut footnotes = vec![];
-                let shown = row(m, words, &mut footnotes);
-                assert_eq!((shown.acceptance.as_str(), shown.footnotes.as_slice()), (none, &[1][..]));
+                let shown = Row::new(m, words, &mut footnotes);
+                assert_eq!((shown.acceptance(words).as_str(), shown.footnotes.as_slice()), (none, &[1][..]));
                 assert!(footnotes.iter().all(|f| f.contains(why)), "{footnotes:?}");
                 let reason = reason(m, false, words).unwrap();
                 assert!(
@@ -395,8 +419,8 @@ mod tests {
         // A signed quantity may lie below zero.
         let words = Translator { lang: Lang::En };
         let signed = judged("static_bias", [None, Some(-0.2)], [None, Some(0.5)]);
-        assert_eq!(row(&signed, words, &mut vec![]).acceptance, "≤\u{202f}−0.2");
+        assert_eq!(Row::new(&signed, words, &mut vec![]).acceptance(words), "≤\u{202f}−0.2");
         let inside = judged("dead_zone", [None, Some(0.2)], [None, Some(0.5)]);
-        assert_eq!(row(&inside, words, &mut vec![]).acceptance, "≤\u{202f}0.2");
+        assert_eq!(Row::new(&inside, words, &mut vec![]).acceptance(words), "≤\u{202f}0.2");
     }
 }
