@@ -56,6 +56,8 @@ pub enum Block {
     Section(&'static str, Vec<Block>),
     /// Blocks under a heading that a reader opens in HTML.
     Fold(Heading, Vec<Block>),
+    /// The end of a page on paper.
+    PageEnd,
     /// The end of the summary: what follows it is left out where only the summary is printed.
     SummaryEnd,
 }

@@ -151,6 +151,7 @@ fn block(block: &Block, markup: &dyn Markup) -> Seen {
         Block::Fold(of, below) => {
             context! { kind => "fold", heading => heading(of, markup), blocks => blocks(below, markup) }
         }
+        Block::PageEnd => context! { kind => "page_end" },
         Block::SummaryEnd => context! { kind => "summary_end" },
     }
 }

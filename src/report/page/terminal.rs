@@ -40,7 +40,7 @@ fn shown(block: &Block, before: Option<&Block>, on: Terminal) -> String {
         Block::Facts(_) | Block::Figure(_) | Block::Footnotes(_) | Block::Link(_) | Block::Method(_) => {
             String::new()
         }
-        Block::SignOff | Block::SummaryEnd => String::new(),
+        Block::SignOff | Block::PageEnd | Block::SummaryEnd => String::new(),
     }
 }
 

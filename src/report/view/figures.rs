@@ -38,17 +38,50 @@ impl FigureView {
     }
 }
 
+/// The figure that shows most of a test, for its first page; nothing where the data of figures are not kept.
+pub(super) fn key(part: &Part<'_>) -> Option<Block> {
+    let first = ordered(part).into_iter().next()?;
+    Some(Block::Section("figures key", vec![numbered(first, 1, part)]))
+}
+
+/// The figures without the key figure, or that their data are not kept.
+pub(super) fn others(part: &Part<'_>) -> Vec<Block> {
+    from(2, part)
+}
+
 /// The figures, or that their data are not kept.
-pub(super) fn section(part: &Part<'_>) -> Vec<Block> {
+pub(super) fn all(part: &Part<'_>) -> Vec<Block> {
+    from(1, part)
+}
+
+/// The figures from a number on.
+fn from(first: usize, part: &Part<'_>) -> Vec<Block> {
     let words = part.words;
-    let mut below: Vec<Block> = part.figures.iter().zip(1..).map(|(f, n)| numbered(f, n, part)).collect();
-    if below.is_empty() && part.figure_records.is_empty() {
-        return vec![];
-    }
-    if below.is_empty() {
+    let figures = (1..).zip(ordered(part)).skip_while(|(number, _)| *number < first);
+    let mut below: Vec<Block> = figures.map(|(number, figure)| numbered(figure, number, part)).collect();
+    if part.figures.is_empty() && !part.figure_records.is_empty() {
         below.push(Block::Paragraph(words.t("report.figures_missing")));
     }
+    if below.is_empty() {
+        return vec![];
+    }
     vec![Block::section("figures", words.t("report.figures"), below)]
+}
+
+/// The figures, the key figure first: σ(τ) where there is one, otherwise the first that is not the record itself.
+fn ordered<'a>(part: &Part<'a>) -> Vec<&'a Figure> {
+    let rank = |figure: &&Figure| match figure.id.as_str() {
+        id if id.starts_with("sigma_tau") => 0,
+        id if id.starts_with("time_series") => 2,
+        _ => 1,
+    };
+    let key =
+        (0..).zip(part.figures).min_by_key(|(_, figure)| rank(figure)).map_or(0, |(at, _): (usize, _)| at);
+    let mut figures: Vec<&Figure> = part.figures.iter().collect();
+    if let Some(first) = figures.get_mut(..=key) {
+        first.rotate_right(1);
+    }
+    figures
 }
 
 /// A figure with its number before its caption.

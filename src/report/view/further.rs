@@ -13,14 +13,21 @@ const MAX_COLUMNS: usize = 4;
 pub fn further(part: &Part<'_>) -> Vec<Block> {
     let words = part.words;
     if part.further.is_empty() {
-        return vec![];
+        return part.notes(first_note(part)..=part.footnotes.len()).into_iter().collect();
     }
     let heading = words.t(if part.judged.is_empty() { "report.measured" } else { "report.further" });
-    let below = match Matrix::new(&part.further, words) {
+    let mut below = match Matrix::new(&part.further, words) {
         Some(matrix) => vec![Block::Table(matrix.table(&part.anchor, words))],
         None => list(part),
     };
+    below.extend(part.notes(first_note(part)..=part.footnotes.len()));
     vec![Block::section("", heading, below)]
+}
+
+/// Number of the first footnote that stands here: those of rows with a limit stand below these, but for a phase, whose rows
+/// with a limit stand on the first page.
+fn first_note(part: &Part<'_>) -> usize {
+    if part.is_phase() { 1 } else { part.limit_footnotes + 1 }
 }
 
 /// A row for each quantity. One that was searched for and not found needs no row.

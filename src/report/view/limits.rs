@@ -59,7 +59,9 @@ pub fn limits(whole: &Part<'_>, phases: &[Phase<'_>]) -> Vec<Block> {
         mark(row, line);
     }
     let rule = shared.map(|rule| Block::Hint(words.with("report.shared_rule", &[("rule", &rule)])));
-    let below = rule.into_iter().chain([Block::Table(table)]).collect();
+    // Phases count their footnotes from 1 each, so that theirs stand where the phase does.
+    let notes = if phases.is_empty() { whole.notes(1..=whole.limit_footnotes) } else { None };
+    let below = rule.into_iter().chain([Block::Table(table)]).chain(notes).collect();
     vec![Block::section("limits", words.t("report.judged"), below)]
 }
 

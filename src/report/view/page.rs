@@ -9,31 +9,35 @@ use crate::i18n::LocalText;
 use crate::record::{RunKind, RunRecord};
 use crate::report::methods;
 use crate::report::number::{count, date_time, duration, limit};
-use crate::report::page::{Block, Facts, Footnotes, Head, Method, Page, Reasons, State, Table, Value};
+use crate::report::page::{Block, Facts, Head, Heading, Method, Page, Reasons, State, Table, Value};
 use crate::report::translator::Translator;
 
 /// The page of a run or an analysis; of a test of several phases with those.
 pub fn page(whole: &Part<'_>, phases: &[Phase<'_>]) -> Page {
     let (record, words) = (whole.record, whole.words);
-    let mut blocks = vec![Block::Section("cover", cover(whole, phases))];
-    blocks.extend(phases::overview(phases, words));
-    blocks.extend(file_table(record, words));
+    let is_judged = record.kind == RunKind::Run;
+    let mut blocks = if is_judged { cover(whole, phases) } else { opening(whole) };
     if phases.is_empty() {
-        blocks.extend(measured(whole));
+        blocks.extend(figures::others(whole));
+        blocks.extend(if is_judged { measured(whole) } else { conventions(whole) });
         blocks.extend(shown(whole));
+    } else {
+        blocks.extend(phases::overview(phases, words));
     }
     for phase in phases {
         blocks.extend(phases::head(phase, words));
         if let Some(part) = &phase.part {
             blocks.extend(conditions::section(part));
+            blocks.extend(figures::all(part));
             blocks.extend(measured(part));
             blocks.extend(shown(part));
         }
     }
+    blocks.extend(file_table(record, words));
     blocks.push(method_list(record, words));
-    let verdict = words.verdict(record.verdict);
+    let verdict = is_judged.then(|| words.verdict(record.verdict));
     let serial = record.unit_under_test.serial.clone();
-    let title: Vec<String> = [Some(whole.title()), serial, Some(verdict)].into_iter().flatten().collect();
+    let title: Vec<String> = [Some(whole.title()), serial, verdict].into_iter().flatten().collect();
     Page {
         title: title.join(" · "),
         generator: format!("{} {}", record.program.name, record.program.version),
@@ -42,7 +46,8 @@ pub fn page(whole: &Part<'_>, phases: &[Phase<'_>]) -> Page {
     }
 }
 
-/// The first page: verdict with its reasons, identity, limits, conditions, lines to be signed.
+/// The first page of a test: verdict with its reasons, identity, limits, conditions, lines to be signed. The key figure
+/// stands behind it on paper, where the lines to be signed must be on the first page, and behind the reasons on a screen.
 fn cover(whole: &Part<'_>, phases: &[Phase<'_>]) -> Vec<Block> {
     let (record, words) = (whole.record, whole.words);
     let mut blocks = vec![Block::Verdict(head(whole))];
@@ -50,16 +55,38 @@ fn cover(whole: &Part<'_>, phases: &[Phase<'_>]) -> Vec<Block> {
     let attempt = whole.attempt();
     blocks.extend((!attempt.is_empty()).then(|| Block::remarks(attempt)));
     blocks.extend((!record.waivers.is_empty()).then(|| Block::Hint(words.t("report.waivers_below"))));
-    let identity = Block::identity(identity(record, words));
-    blocks.push(Block::section("identity", words.t("report.identity"), vec![identity]));
+    blocks.push(identity_section(whole));
     blocks.extend(limits::limits(whole, phases));
     if phases.is_empty() {
         blocks.extend(conditions::section(whole));
     } else {
         blocks.extend(phases::conditions_met(phases, words));
     }
-    blocks.push(Block::SignOff);
+    blocks.extend([Block::SignOff, Block::PageEnd]);
+    blocks.extend(figures::key(whole));
+    vec![Block::Section("cover", blocks)]
+}
+
+/// The first page of an analysis, on which nothing is decided: numbers, then the key figure.
+fn opening(whole: &Part<'_>) -> Vec<Block> {
+    let errors = reasons(whole).into_iter().filter(|b| matches!(b, Block::Reasons(r) if r.id == "error"));
+    let mut blocks: Vec<Block> = std::iter::once(Block::Verdict(head(whole))).chain(errors).collect();
+    let said = whole.record.summary.iter().filter(|n| n.id != NO_LIMITS).map(|n| whole.words.say(n));
+    let said: Vec<String> = said.chain(whole.attempt()).collect();
+    blocks.extend((!said.is_empty()).then(|| Block::remarks(said)));
+    blocks.extend(further::further(whole));
+    blocks.extend(figures::key(whole));
+    blocks.extend(conditions::section(whole));
+    blocks.push(identity_section(whole));
     blocks
+}
+
+/// The reason of a record without a limit, which tells nothing on a page without a verdict.
+const NO_LIMITS: &str = "summary.no_limits";
+
+fn identity_section(whole: &Part<'_>) -> Block {
+    let identity = Block::identity(identity(whole.record, whole.words));
+    Block::section("identity", whole.words.t("report.identity"), vec![identity])
 }
 
 fn head(whole: &Part<'_>) -> Head {
@@ -69,7 +96,11 @@ fn head(whole: &Part<'_>) -> Head {
         kind: words.t(kind),
         title: whole.title(),
         label: words.t("report.verdict"),
-        verdict: State { id: record.verdict.id().to_owned(), word: words.verdict(record.verdict) },
+        verdict: if record.kind == RunKind::Run {
+            State { id: record.verdict.id().to_owned(), word: words.verdict(record.verdict) }
+        } else {
+            State::default()
+        },
         ..Head::default()
     }
 }
@@ -88,28 +119,28 @@ fn reasons(whole: &Part<'_>) -> Vec<Block> {
     both.into_iter().filter(|(_, _, sentences)| !sentences.is_empty()).map(block).collect()
 }
 
-/// Quantities with their methods, footnotes and conventions.
+/// Methods of the quantities with a limit, and the quantities without one.
 fn measured(part: &Part<'_>) -> Vec<Block> {
     let mut blocks = limits::methods(part);
     blocks.extend(further::further(part));
-    let notes: Vec<(usize, String)> = (1..).zip(part.footnotes.iter().cloned()).collect();
-    let footnotes = Footnotes { anchor: part.anchor.clone(), notes };
-    blocks.extend((!footnotes.notes.is_empty()).then_some(Block::Footnotes(footnotes)));
-    blocks.extend(further::references(part));
-    blocks.extend(comparison::section(part));
+    blocks.extend(conventions(part));
     blocks
+}
+
+/// Where reference values come from, and values by both conventions side by side.
+fn conventions(part: &Part<'_>) -> Vec<Block> {
+    further::references(part).into_iter().chain(comparison::section(part)).collect()
 }
 
 /// What the verdict rests on.
 fn shown(part: &Part<'_>) -> Vec<Block> {
-    let sections: [fn(&Part<'_>) -> Vec<Block>; 14] = [
+    let sections: [fn(&Part<'_>) -> Vec<Block>; 13] = [
         explained::section,
         conditions::remarks,
         checks::section,
         instruments::section,
         faults::section,
         evidence::window,
-        figures::section,
         interval_means::section,
         table_steps::section,
         lines::section,
@@ -140,7 +171,8 @@ fn method_list(record: &RunRecord, words: Translator) -> Block {
         below.push(Block::subheading(words.t("report.options")));
         below.push(Block::Facts(Facts { class: "options", rows }));
     }
-    Block::section("methods", words.t("report.methods"), below)
+    let heading = Heading { level: 2, text: words.t("report.methods").into(), verdict: None };
+    Block::Section("methods", vec![Block::Fold(heading, below)])
 }
 
 fn file_table(record: &RunRecord, words: Translator) -> Vec<Block> {

@@ -3,7 +3,9 @@
 use super::rows::{self, Row};
 use crate::figure::Figure;
 use crate::record::{FigureRecord, MeasurandRecord, PhaseRecord, RunRecord};
+use crate::report::page::{Block, Footnotes};
 use crate::report::translator::Translator;
+use std::ops::RangeInclusive;
 
 /// The record of a run or of one phase, with what the sections of its page share.
 pub struct Part<'a> {
@@ -19,6 +21,8 @@ pub struct Part<'a> {
     pub further: Vec<Row<'a>>,
     /// Footnotes of the rows, those of rows with a limit first.
     pub footnotes: Vec<String>,
+    /// How many footnotes are those of rows with a limit.
+    pub limit_footnotes: usize,
     /// True where rows must name their channel.
     pub several_channels: bool,
     /// Beginning of the marks that others refer to: it differs between the phases of one page.
@@ -44,6 +48,7 @@ impl<'a> Part<'a> {
         // Footnotes are numbered in reading order: all rows with limits come first.
         let with_limit = record.measurands.iter().filter(|m| m.limit.is_some());
         let judged = with_limit.map(|m| Row::new(m, words, &mut footnotes)).collect();
+        let limit_footnotes = footnotes.len();
         let without = record.measurands.iter().filter(|m| m.limit.is_none());
         let further = without.map(|m| Row::new(m, words, &mut footnotes)).collect();
         Part {
@@ -53,6 +58,7 @@ impl<'a> Part<'a> {
             judged,
             further,
             footnotes,
+            limit_footnotes,
             several_channels: has_several_channels(&record.measurands),
             anchor: String::new(),
             words,
@@ -73,6 +79,19 @@ impl<'a> Part<'a> {
     /// Whether a row has a reference value.
     pub fn has_references(&self) -> bool {
         self.judged.iter().chain(&self.further).any(|r| r.of.reference.is_some())
+    }
+
+    /// True for a phase of a test of several.
+    pub fn is_phase(&self) -> bool {
+        !self.anchor.is_empty()
+    }
+
+    /// The footnotes of a range of numbers; nothing where there are none.
+    pub fn notes(&self, numbers: RangeInclusive<usize>) -> Option<Block> {
+        let all = (1..).zip(self.footnotes.iter().cloned());
+        let notes: Vec<(usize, String)> = all.filter(|(n, _)| numbers.contains(n)).collect();
+        let is_empty = notes.is_empty();
+        (!is_empty).then(|| Block::Footnotes(Footnotes { anchor: self.anchor.clone(), notes }))
     }
 
     /// A heading, and the channel that it is of where there are several.

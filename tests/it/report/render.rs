@@ -3,7 +3,7 @@
 use crate::report::fixture;
 use sagnac::estimate::Rule;
 use sagnac::i18n::Lang;
-use sagnac::record::RunRecord;
+use sagnac::record::{RunKind, RunRecord};
 use sagnac::report::{Renderer, ReportError, render_html, render_markdown, write_figures};
 use std::path::Path;
 
@@ -53,11 +53,14 @@ fn both_forms_say_the_same() {
             "0.08330",
             "9\u{202f}h 29\u{202f}min 59\u{202f}s",
             "Overlapping Allan deviation with its 95 % band",
-            "Reviewed by",
         ] {
             assert!(html.contains(shown), "HTML lacks {shown}");
             assert!(md.contains(shown), "Markdown lacks {shown}");
         }
+        // Nothing is decided by an analysis, and nothing is signed.
+        let is_signed = record.kind == RunKind::Run;
+        assert_eq!([&html, &md].map(|page| page.contains("Reviewed by")), [is_signed; 2]);
+        assert_eq!(html.contains("class=\"verdict"), is_signed);
         assert_eq!(html.matches("<svg ").count(), 5);
         assert!(md.contains("](figures/sigma_tau.svg)"));
     }
