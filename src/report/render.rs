@@ -61,8 +61,6 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("block-steps.md", include_str!("../../templates/block-steps.md")),
     ("block-table.html", include_str!("../../templates/block-table.html")),
     ("block-table.md", include_str!("../../templates/block-table.md")),
-    ("block-verdict.html", include_str!("../../templates/block-verdict.html")),
-    ("block-verdict.md", include_str!("../../templates/block-verdict.md")),
     ("explain.html", include_str!("../../templates/explain.html")),
     ("explain.md", include_str!("../../templates/explain.md")),
 ];

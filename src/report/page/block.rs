@@ -22,8 +22,6 @@ pub struct Page {
 pub enum Block {
     /// What the page is of, and the verdict.
     Head(Head),
-    /// The same of a page whose verdict may be signed: with the rows that signatures waive.
-    Verdict(Head),
     /// Sentences that say why a verdict is what it is, in its colour.
     Reasons(Reasons),
     /// The verdict in sentences, in its colour.
@@ -71,6 +69,8 @@ pub struct Head {
     pub title: String,
     /// Of how many; empty where it is of one.
     pub size: String,
+    /// True where signatures may waive rows of the verdict: they are shown with it.
+    pub is_signed: bool,
     /// What the verdict is, such as “Outcome”.
     pub label: String,
     /// The verdict; empty where the page has none.

@@ -2,7 +2,7 @@
 
 use super::markup::Markup;
 use super::table::{Layout, Table};
-use super::value::{Detail, Detailed, Joined, State};
+use super::value::{Joined, State};
 use crate::report::prose;
 use crate::report::svg::escape;
 
@@ -38,23 +38,16 @@ impl Markup for Html {
         format!("<span class=\"mark {}\">{}</span>", escape(&state.id), escape(&state.word))
     }
 
-    fn detailed(&self, value: String, detailed: &Detailed) -> String {
-        let value = if detailed.is_strong { format!("<b>{value}</b>") } else { value };
-        let detail = |detail: &Detail| match detail.joined {
-            Joined::Unit => format!(", <span class=\"unit\">{}</span>", escape(&detail.text)),
-            Joined::Interval | Joined::Remark | Joined::Further => {
-                format!("<small>{}</small>", escape(&detail.text))
-            }
+    fn strong(&self, printed: &str) -> String {
+        format!("<b>{printed}</b>")
+    }
+
+    fn detailed(&self, value: String, details: &[(Joined, String)]) -> String {
+        let detail = |(joined, detail): &(Joined, String)| match joined {
+            Joined::Unit => format!(", <span class=\"unit\">{detail}</span>"),
+            Joined::Interval | Joined::Remark | Joined::Further => format!("<small>{detail}</small>"),
         };
-        std::iter::once(value).chain(detailed.details.iter().map(detail)).collect()
-    }
-
-    fn strong(&self, sentence: &str) -> String {
-        format!("<strong>{}</strong>", self.sentence(sentence))
-    }
-
-    fn stacked(&self, value: String, below: &[String]) -> String {
-        below.iter().fold(value, |out, b| format!("{out}<small>{b}</small>"))
+        std::iter::once(value).chain(details.iter().map(detail)).collect()
     }
 
     fn footnote(&self, anchor: &str, number: usize, is_last: bool) -> String {

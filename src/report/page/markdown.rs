@@ -2,7 +2,7 @@
 
 use super::markup::Markup;
 use super::table::{Layout, Table};
-use super::value::{Detail, Detailed, Joined, State};
+use super::value::{Joined, State};
 use crate::i18n::visible;
 use crate::report::prose;
 
@@ -45,26 +45,25 @@ impl Markup for Markdown {
         self.text(&state.word)
     }
 
-    fn detailed(&self, value: String, detailed: &Detailed) -> String {
-        let detail = |detail: &Detail| {
-            let text = self.text(&detail.text);
-            match detail.joined {
-                Joined::Interval => format!(" [{text}]"),
-                Joined::Remark => format!(" ({text})"),
-                Joined::Further => format!("; {text}"),
-                Joined::Unit => format!(", {text}"),
-            }
-        };
-        std::iter::once(value).chain(detailed.details.iter().map(detail)).collect()
+    fn strong(&self, printed: &str) -> String {
+        format!("**{printed}**")
     }
 
-    fn strong(&self, sentence: &str) -> String {
-        format!("**{}**", self.sentence(sentence))
-    }
-
-    fn stacked(&self, value: String, below: &[String]) -> String {
-        let below = below.join("; ");
-        if value.is_empty() { below } else { format!("{value} ({below})") }
+    fn detailed(&self, value: String, details: &[(Joined, String)]) -> String {
+        let mut out = value;
+        for group in details.chunk_by(|(a, _), (b, _)| a == b) {
+            let joined = group.first().map(|(joined, _)| *joined);
+            let texts: Vec<&str> = group.iter().map(|(_, text)| text.as_str()).collect();
+            let text = texts.join("; ");
+            out += &match joined {
+                _ if out.is_empty() => text,
+                Some(Joined::Interval) => format!(" [{text}]"),
+                Some(Joined::Remark) => format!(" ({text})"),
+                Some(Joined::Unit) => format!(", {text}"),
+                Some(Joined::Further) | None => format!("; {text}"),
+            };
+        }
+        out
     }
 
     fn footnote(&self, _: &str, number: usize, _: bool) -> String {

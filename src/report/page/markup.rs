@@ -2,7 +2,7 @@
 
 use super::block::{Block, Figure, Head, Heading, Page};
 use super::table::{Column, Layout, Listed, Table};
-use super::value::{Detailed, State, Value};
+use super::value::{Joined, State, Value};
 use minijinja::context;
 use minijinja::value::{Serde, Value as Seen};
 
@@ -22,12 +22,10 @@ pub trait Markup {
     fn link(&self, text: &str, to: &str) -> String;
     /// A verdict or a state.
     fn state(&self, state: &State) -> String;
-    /// A value that is printed already, with its details.
-    fn detailed(&self, value: String, detailed: &Detailed) -> String;
-    /// A sentence that stands out.
-    fn strong(&self, sentence: &str) -> String;
-    /// A value, and what stands below it in smaller print.
-    fn stacked(&self, value: String, below: &[String]) -> String;
+    /// A printed value that stands out.
+    fn strong(&self, printed: &str) -> String;
+    /// A printed value with its printed details.
+    fn detailed(&self, value: String, details: &[(Joined, String)]) -> String;
     /// The number of a footnote behind the value that it is of.
     fn footnote(&self, anchor: &str, number: usize, is_last: bool) -> String;
     /// Sentences in a cell.
@@ -48,11 +46,12 @@ pub trait Markup {
             Value::State(state) => self.state(state),
             Value::Quantity(quantity) if with_unit => self.text(&quantity.whole()),
             Value::Quantity(quantity) => self.text(&quantity.printed),
-            Value::Detailed(detailed) => self.detailed(self.value(&detailed.value, with_unit), detailed),
-            Value::Strong(sentence) => self.strong(sentence),
-            Value::Stacked { value, below } => {
-                let below: Vec<String> = below.iter().map(|v| self.value(v, true)).collect();
-                self.stacked(self.value(value, with_unit), &below)
+            Value::Detailed(detailed) => {
+                let value = self.value(&detailed.value, with_unit);
+                let value = if detailed.is_strong && !value.is_empty() { self.strong(&value) } else { value };
+                let details: Vec<(Joined, String)> =
+                    detailed.details.iter().map(|d| (d.joined, self.value(&d.value, true))).collect();
+                self.detailed(value, &details)
             }
             Value::Noted { value, anchor, notes } => {
                 let number = |(i, n): (usize, &usize)| self.footnote(anchor, *n, i + 1 == notes.len());
@@ -94,8 +93,7 @@ fn sentences(all: &[String], markup: &dyn Markup) -> Vec<Seen> {
 fn block(block: &Block, markup: &dyn Markup) -> Seen {
     let value = |v: &Value| escaped(markup.value(v, true));
     match block {
-        Block::Head(of) => head("head", of),
-        Block::Verdict(of) => head("verdict", of),
+        Block::Head(of) => head(of),
         Block::Reasons(of) => context! {
             kind => "reasons", class => of.class, id => &of.id, mark => &of.mark, heading => &of.heading,
             sentences => sentences(&of.sentences, markup),
@@ -167,12 +165,11 @@ fn heading(heading: &Heading, markup: &dyn Markup) -> Seen {
     }
 }
 
-/// `kind`: that of the block, and so of its template.
-fn head(kind: &str, head: &Head) -> Seen {
+fn head(head: &Head) -> Seen {
     let count = |(of, n): &(State, usize)| context! { id => &of.id, word => &of.word, n => *n };
     let counts: Vec<Seen> = head.counts.iter().map(count).collect();
     context! {
-        kind, document => &head.kind, title => &head.title, size => &head.size,
+        kind => "head", is_signed => head.is_signed, document => &head.kind, title => &head.title, size => &head.size,
         label => &head.label, verdict => head.has_verdict().then(|| state(&head.verdict)), counts,
     }
 }

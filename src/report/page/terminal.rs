@@ -21,7 +21,7 @@ pub fn terminal(blocks: &[Block], terminal: Terminal) -> String {
 
 fn shown(block: &Block, before: Option<&Block>, on: Terminal) -> String {
     match block {
-        Block::Head(of) | Block::Verdict(of) => head(of, on),
+        Block::Head(of) => head(of, on),
         Block::Lead(lead) => on.indented(&lead.sentences),
         Block::Heading(heading) => format!("\n{}\n", on.heading(&visible(&heading.text.plain()))),
         Block::Paragraph(text) => on.indented([text]),

@@ -105,7 +105,7 @@ fn a_value_has_its_details_on_pages_alone() {
     ] {
         assert!(page.contains(part), "{part}\n{page}");
     }
-    let row = "| Bias, °/h | 0.50 [0.4 … 0.6]; ratio 7 | 30 (2 bounded) |";
+    let row = "| Bias, °/h | **0.50** [0.4 … 0.6]; ratio 7 | 30 (2 bounded) |";
     assert!(markdown(vec![Block::Table(table.clone())]).ends_with(row));
     assert_eq!(csv(&table), "name,typical,units\nBias,5e-1,30\n");
     let shown = on_terminal(&[Block::Table(table)]);
@@ -285,7 +285,7 @@ fn a_verdict_that_may_be_signed_stands_before_its_reasons() {
             heading: "Reasons".into(),
             sentences: vec!["a < b".into()],
         };
-        vec![Block::Verdict(Head { verdict: pass(), ..head }), Block::Reasons(reasons)]
+        vec![Block::Head(Head { is_signed: true, verdict: pass(), ..head }), Block::Reasons(reasons)]
     };
     let page = html(blocks());
     assert!(page.contains("<strong>годен</strong>"), "{page}");
@@ -294,7 +294,7 @@ fn a_verdict_that_may_be_signed_stands_before_its_reasons() {
     assert_eq!(markdown(blocks()), "# SN\n\n**Verdict: ГОДЕН**\n\n## Reasons\n\n- a &lt; b");
     assert_eq!(on_terminal(&blocks()), "ГОДЕН  SN\n\nReasons\n  a < b\n");
     // A page without a verdict states none.
-    let none = html(vec![Block::Verdict(Head { title: "SN".into(), ..Head::default() })]);
+    let none = html(vec![Block::Head(Head { is_signed: true, title: "SN".into(), ..Head::default() })]);
     assert!(none.contains("<h1>SN</h1>") && !none.contains("verdict"), "{none}");
 }
 
@@ -337,7 +337,7 @@ fn cells_have_footnotes_smaller_lines_and_room_for_two() {
             .column(Column::text("name", "Name"), [Value::from("Phase"), noted])
             .column(Column::number("value", "Value"), [Value::Empty, wide])
             .column(Column::number("interval", "Interval"), [""])
-            .column(Column::text("fit", "Fit"), [Value::Empty, Value::Strong("bad".into())]);
+            .column(Column::text("fit", "Fit"), [Value::Empty, Value::from("bad").strong()]);
         table.rows[0].is_heading = true;
         table
     };
@@ -345,7 +345,7 @@ fn cells_have_footnotes_smaller_lines_and_room_for_two() {
     for part in [
         "<tr class=\"group\"><th colspan=\"4\">Phase</th></tr>",
         "N<sup><a href=\"#note-p-1\">1</a></sup><sup>,</sup><sup><a href=\"#note-p-2\">2</a></sup></th>",
-        "<td class=\"n bound\" colspan=\"2\">≤ 1<small>not resolved</small></td><td><strong>bad</strong></td>",
+        "<td class=\"n bound\" colspan=\"2\">≤ 1<small>not resolved</small></td><td><b>bad</b></td>",
     ] {
         assert!(page.contains(part), "{part}\n{page}");
     }

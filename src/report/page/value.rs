@@ -34,15 +34,6 @@ pub enum Value {
     Quantity(Quantity),
     /// A value with what belongs to it, such as a number with its interval.
     Detailed(Box<Detailed>),
-    /// A sentence that stands out.
-    Strong(String),
-    /// A value with others below it in smaller print.
-    Stacked {
-        /// Value.
-        value: Box<Value>,
-        /// What stands below it.
-        below: Vec<Value>,
-    },
     /// A value with the numbers of footnotes.
     Noted {
         /// Value.
@@ -79,24 +70,24 @@ pub struct State {
     pub word: String,
 }
 
-/// A value with what belongs to it. Pages show all of it, the terminal and tables for programs the value alone.
+/// A value with its details. Pages show all of it, the terminal and tables for programs the value alone.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Detailed {
-    /// The value.
+    /// Value; empty where the details stand alone.
     pub value: Value,
-    /// True for the one that a reader looks for in its row.
+    /// True for the value that a reader looks for in its row: it stands out.
     pub is_strong: bool,
     /// Details, in their order.
     pub details: Vec<Detail>,
 }
 
-/// What belongs to a value.
-#[derive(Debug, Clone, PartialEq, Eq)]
+/// A detail of a value.
+#[derive(Debug, Clone, PartialEq)]
 pub struct Detail {
     /// How it follows the value.
     pub joined: Joined,
-    /// Text.
-    pub text: String,
+    /// Detail itself; a number has its unit.
+    pub value: Value,
 }
 
 /// How a detail follows its value: HTML sets units behind a comma and all others below the value, in small.
@@ -104,7 +95,7 @@ pub struct Detail {
 pub enum Joined {
     /// Interval, in square brackets in Markdown.
     Interval,
-    /// Remark, in round brackets in Markdown.
+    /// Remark, in round brackets in Markdown; several one after the other share the brackets.
     Remark,
     /// Further value, behind a semicolon in Markdown.
     Further,
@@ -136,21 +127,21 @@ impl Value {
         Value::State(State { id: id.into(), word: word.into() })
     }
 
-    /// The same as what a reader looks for in its row.
+    /// The same, standing out in its row.
     #[must_use]
     pub fn strong(self) -> Value {
         Value::Detailed(Box::new(Detailed { is_strong: true, ..self.detailed() }))
     }
 
-    /// The same with a detail; without it where the text is empty.
+    /// The same with a detail; without it where it is empty.
     #[must_use]
-    pub fn detail(self, joined: Joined, text: impl Into<String>) -> Value {
-        let text = text.into();
-        if text.is_empty() {
+    pub fn detail(self, joined: Joined, value: impl Into<Value>) -> Value {
+        let value = value.into();
+        if value.plain().is_empty() {
             return self;
         }
         let mut detailed = self.detailed();
-        detailed.details.push(Detail { joined, text });
+        detailed.details.push(Detail { joined, value });
         Value::Detailed(Box::new(detailed))
     }
 
@@ -161,11 +152,10 @@ impl Value {
         }
     }
 
-    /// The value with others below it in smaller print; empty ones are left out.
+    /// The same with remarks; empty ones are left out.
     #[must_use]
     pub fn over(self, below: impl IntoIterator<Item = Value>) -> Value {
-        let below: Vec<Value> = below.into_iter().filter(|v| !v.plain().is_empty()).collect();
-        if below.is_empty() { self } else { Value::Stacked { value: Box::new(self), below } }
+        below.into_iter().fold(self, |value, remark| value.detail(Joined::Remark, remark))
     }
 
     /// The value with the numbers of footnotes, whose marks begin with `anchor`.
@@ -181,13 +171,13 @@ impl Value {
     pub fn plain(&self) -> String {
         match self {
             Value::Empty => String::new(),
-            Value::Text(text) | Value::Sentence(text) | Value::Strong(text) => text.clone(),
+            Value::Text(text) | Value::Sentence(text) => text.clone(),
             Value::Code(text) | Value::Digest(text) => text.clone(),
             Value::Named { text, .. } | Value::Link { text, .. } => text.clone(),
             Value::State(state) => state.word.clone(),
             Value::Quantity(quantity) => quantity.whole(),
             Value::Detailed(detailed) => detailed.value.plain(),
-            Value::Stacked { value, .. } | Value::Noted { value, .. } | Value::Wide(value) => value.plain(),
+            Value::Noted { value, .. } | Value::Wide(value) => value.plain(),
             Value::Several { values, between } => {
                 values.iter().map(Value::plain).collect::<Vec<_>>().join(between)
             }

@@ -147,7 +147,8 @@ fn goodness(part: &Part<'_>) -> Vec<Block> {
     }
     let finding = |g: &GoodnessOfFitRecord| {
         let said = words.say(&g.message);
-        if g.departs { Value::Strong(said) } else { Value::Sentence(said) }
+        let said = Value::Sentence(said);
+        if g.departs { said.strong() } else { said }
     };
     let mut table = Table::new("", all.len());
     if part.several_channels {

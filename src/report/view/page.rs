@@ -50,7 +50,7 @@ pub fn page(whole: &Part<'_>, phases: &[Phase<'_>]) -> Page {
 /// stands behind it on paper, where the lines to be signed must be on the first page, and behind the reasons on a screen.
 fn cover(whole: &Part<'_>, phases: &[Phase<'_>]) -> Vec<Block> {
     let (record, words) = (whole.record, whole.words);
-    let mut blocks = vec![Block::Verdict(head(whole))];
+    let mut blocks = vec![Block::Head(head(whole))];
     blocks.extend(reasons(whole));
     let attempt = whole.attempt();
     blocks.extend((!attempt.is_empty()).then(|| Block::remarks(attempt)));
@@ -70,7 +70,7 @@ fn cover(whole: &Part<'_>, phases: &[Phase<'_>]) -> Vec<Block> {
 /// The first page of an analysis, on which nothing is decided: numbers, then the key figure.
 fn opening(whole: &Part<'_>) -> Vec<Block> {
     let errors = reasons(whole).into_iter().filter(|b| matches!(b, Block::Reasons(r) if r.id == "error"));
-    let mut blocks: Vec<Block> = std::iter::once(Block::Verdict(head(whole))).chain(errors).collect();
+    let mut blocks: Vec<Block> = std::iter::once(Block::Head(head(whole))).chain(errors).collect();
     let said = whole.record.summary.iter().filter(|n| n.id != NO_LIMITS).map(|n| whole.words.say(n));
     let said: Vec<String> = said.chain(whole.attempt()).collect();
     blocks.extend((!said.is_empty()).then(|| Block::remarks(said)));
@@ -95,6 +95,7 @@ fn head(whole: &Part<'_>) -> Head {
     Head {
         kind: words.t(kind),
         title: whole.title(),
+        is_signed: true,
         label: words.t("report.verdict"),
         verdict: if record.kind == RunKind::Run {
             State { id: record.verdict.id().to_owned(), word: words.verdict(record.verdict) }
