@@ -59,7 +59,8 @@ impl Printer {
         let text = if self.quiet {
             String::new()
         } else {
-            format!("{}\n", terminal::results(results, self.lang, standard_output()))
+            let (lang, on) = (self.lang, standard_output());
+            format!("{}\n{}", terminal::results(results, lang, on), terminal::verdict(results, lang, on))
         };
         stdout::write_styled(&format!("{text}{place}\n"));
         Ok(())

@@ -38,6 +38,10 @@ fn a_run_prints_its_table_by_width_and_language() {
     let narrow = printed(folder.path(), "60", &[], &run(&fail, "narrow"));
     insta::assert_snapshot!("narrow", text(&narrow, folder.path()));
     assert!(text(&narrow, folder.path()).lines().all(|l| l.chars().count() <= 60));
+    let usual = text(&printed(folder.path(), "80", &[], &run(&fail, "usual")), folder.path());
+    assert!(usual.lines().any(|l| l.starts_with("  Quantity ") && l.ends_with("Limit  Verdict")), "{usual}");
+    assert!(usual.lines().all(|l| l.chars().count() <= 80), "{usual}");
+    assert!(usual.contains("\nVerdict: FAIL\nReport: usual/report.html\n"), "{usual}");
     let russian = printed(folder.path(), "140", &[("LANG", "ru_RU.UTF-8")], &run(&faults, "ru"));
     insta::assert_snapshot!("russian", text(&russian, folder.path()));
 }

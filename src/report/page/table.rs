@@ -83,7 +83,7 @@ pub enum OnTerminal {
     /// As a column.
     #[default]
     Shown,
-    /// As a column, which is left out first where the columns do not fit.
+    /// As a column, which is left out where not all columns fit: of several, the left one first.
     Optional,
     /// In brackets behind the cell before.
     Bracketed,

@@ -72,7 +72,7 @@ fn grid(of: &Table, on: Terminal) -> String {
         .map(|c| table::Column {
             head: c.short.as_ref().unwrap_or(&c.head).clone(),
             align: c.align,
-            optional: c.on_terminal == OnTerminal::Optional,
+            left_out: (c.on_terminal == OnTerminal::Optional).then_some(0),
         })
         .collect();
     let rows: Vec<Vec<Cell>> = of

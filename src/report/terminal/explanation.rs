@@ -31,8 +31,8 @@ pub fn explanation(view: &ExplainView, lang: Lang, terminal: Terminal) -> String
 const NOTICEABLE: usize = 8;
 
 fn noticeable(all: &[NoticeableRow], words: Translator, terminal: Terminal) -> String {
-    let column = |id: &str, align| Column { head: words.name("terminal_column", id), align, optional: false };
-    let place = Column { optional: true, ..column("place", Align::Left) };
+    let column = |id: &str, align| Column { head: words.name("terminal_column", id), align, left_out: None };
+    let place = Column { left_out: Some(0), ..column("place", Align::Left) };
     let columns = [column("effect", Align::Left), column("noticed_from", Align::Right), place];
     let shown = all.iter().take(NOTICEABLE);
     let rows: Vec<Vec<Cell>> =
@@ -47,7 +47,7 @@ fn noticeable(all: &[NoticeableRow], words: Translator, terminal: Terminal) -> S
 
 /// Parameters with their values and intervals; nothing where there are none.
 fn parameters(parameters: &[ParameterRow], words: Translator, terminal: Terminal) -> String {
-    let column = |id: &str, align| Column { head: words.name("terminal_column", id), align, optional: false };
+    let column = |id: &str, align| Column { head: words.name("terminal_column", id), align, left_out: None };
     let columns =
         [column("parameter", Align::Left), column("value", Align::Right), column("interval", Align::Right)];
     let rows: Vec<Vec<Cell>> = parameters

@@ -10,6 +10,6 @@ pub(super) mod table;
 mod wrap;
 
 pub use explanation::explanation;
-pub use results::results;
+pub use results::{results, verdict};
 pub use screen::Terminal;
 pub(super) use screen::verdict_style;

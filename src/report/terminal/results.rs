@@ -2,6 +2,7 @@
 
 use super::run::run;
 use super::{Terminal, explanation};
+use crate::estimate::Verdict;
 use crate::i18n::Lang;
 use crate::report::explain::ExplainView;
 use crate::report::translator::Translator;
@@ -22,6 +23,17 @@ pub fn results(results: &Results, lang: Lang, terminal: Terminal) -> String {
         Record::Lot(_) => format!("\n{}", page::terminal(&results.record().on_terminal(lang), terminal)),
         _ => page::terminal(&results.record().on_terminal(lang), terminal),
     }
+}
+
+/// The verdict of a test in a word, on a line of its own behind what was printed of it; empty where nothing was decided.
+pub fn verdict(results: &Results, lang: Lang, terminal: Terminal) -> String {
+    let Results::Run(of) = results else { return String::new() };
+    let (verdict, words) = (of.outcome.record.verdict, Translator { lang });
+    if verdict == Verdict::None {
+        return String::new();
+    }
+    let word = terminal.verdict(&words.verdict(verdict).to_uppercase(), verdict.id());
+    format!("{}: {word}\n", words.t("report.verdict"))
 }
 
 /// A run with its phases where it has some.

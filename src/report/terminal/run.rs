@@ -94,12 +94,12 @@ fn quantities(part: &Part<'_>, terminal: Terminal) -> String {
     let mut rows: Vec<&Row<'_>> = part.judged.iter().collect();
     rows.sort_by_key(|row| urgency(row.of.verdict.id()));
     let columns = [
-        column("quantity", Align::Left, false, words),
-        column("value", Align::Right, false, words),
-        column("interval", Align::Right, false, words),
-        column("limit", Align::Right, false, words),
-        column("margin", Align::Right, true, words),
-        column("verdict", Align::Left, false, words),
+        column("quantity", Align::Left, None, words),
+        column("value", Align::Right, None, words),
+        column("interval", Align::Right, Some(1), words),
+        column("limit", Align::Right, None, words),
+        column("margin", Align::Right, Some(0), words),
+        column("verdict", Align::Left, None, words),
     ];
     let cells: Vec<Vec<Cell>> = rows
         .iter()
@@ -132,10 +132,10 @@ fn without_limits(part: &Part<'_>, terminal: Terminal) -> String {
     let is_shown = |row: &&Row<'_>| row.of.identifiable || !view::bound_alone(row.of, words).is_empty();
     let (shown, absent): (Vec<&Row<'_>>, Vec<&Row<'_>>) = part.further.iter().partition(is_shown);
     let columns = [
-        column("quantity", Align::Left, false, words),
-        column("value", Align::Right, false, words),
-        column("interval", Align::Right, false, words),
-        column("read", Align::Left, true, words),
+        column("quantity", Align::Left, None, words),
+        column("value", Align::Right, None, words),
+        column("interval", Align::Right, Some(1), words),
+        column("read", Align::Left, Some(0), words),
     ];
     let cells: Vec<Vec<Cell>> = shown
         .iter()
@@ -166,8 +166,8 @@ fn without_limits(part: &Part<'_>, terminal: Terminal) -> String {
     out
 }
 
-fn column(id: &str, align: Align, optional: bool, words: Translator) -> Column {
-    Column { head: words.name("terminal_column", id), align, optional }
+fn column(id: &str, align: Align, left_out: Option<u8>, words: Translator) -> Column {
+    Column { head: words.name("terminal_column", id), align, left_out }
 }
 
 fn value(row: &Row<'_>, words: Translator) -> String {
@@ -222,9 +222,9 @@ fn conditions(part: &Part<'_>, terminal: Terminal) -> String {
 /// A line for each phase, and below it the reasons of those that do not pass.
 fn phases(phases: &[Phase<'_>], words: Translator, terminal: Terminal) -> String {
     let columns = [
-        column("phase", Align::Left, false, words),
-        column("met", Align::Left, false, words),
-        column("verdict", Align::Left, false, words),
+        column("phase", Align::Left, None, words),
+        column("met", Align::Left, None, words),
+        column("verdict", Align::Left, None, words),
     ];
     let rows: Vec<Vec<Cell>> = phases
         .iter()

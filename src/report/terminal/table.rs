@@ -11,7 +11,7 @@ use unicode_width::UnicodeWidthStr;
 const GAP: usize = 2;
 /// Widest first column; longer names are wrapped.
 const NAME_WIDTH: usize = 46;
-/// Narrowest column that names are wrapped to where the others need the room.
+/// Narrowest column that names are wrapped to before another column is left out.
 const LEAST_NAME_WIDTH: usize = 26;
 
 /// A column with its head.
@@ -20,8 +20,9 @@ pub struct Column {
     pub head: String,
     /// Side.
     pub align: Align,
-    /// Left out first where the columns do not fit.
-    pub optional: bool,
+    /// Rank among the columns that may be left out, one by one, where not all fit: the least first, of equal ones the
+    /// left one. `None` for a column that stays.
+    pub left_out: Option<u8>,
 }
 
 /// A cell with the style of its text.
@@ -40,7 +41,8 @@ impl From<String> for Cell {
 }
 
 /// The rows under their heads, two columns indented; the first column names the row. Columns without any text are left
-/// out. Where not even the others fit, each row is its name, its last cell, and the cells between with their heads below.
+/// out. Where the others do not fit, names are wrapped, then columns are left out by their ranks. Where not even the
+/// rest fits, each row is a paragraph: its name, and below it the other cells with their heads.
 pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> String {
     let rows: Vec<Vec<Cell>> = rows
         .iter()
@@ -64,11 +66,14 @@ pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Stri
         terminal.width.checked_sub(others + GAP)
     };
     let names = needed(0).min(NAME_WIDTH);
-    if room(&shown).is_none_or(|room| room < names) {
-        shown.retain(|c| columns.get(*c).is_some_and(|column| !column.optional));
-    }
-    let Some(name_width) = room(&shown).filter(|room| *room >= names.min(LEAST_NAME_WIDTH)) else {
-        return stacked(columns, &rows, terminal);
+    let rank = |c: usize| columns.get(c).and_then(|column| column.left_out);
+    let name_width = loop {
+        if let Some(width) = room(&shown).filter(|room| *room >= names.min(LEAST_NAME_WIDTH)) {
+            break width;
+        }
+        let next = shown.iter().copied().filter_map(|c| Some((rank(c)?, c))).min();
+        let Some((_, next)) = next else { return stacked(columns, &rows, terminal) };
+        shown.retain(|c| *c != next);
     };
     let name_width = names.min(name_width);
     let widest = |c: usize| if c == 0 { name_width } else { needed(c) };
@@ -128,12 +133,12 @@ mod tests {
     use super::*;
 
     fn columns() -> Vec<Column> {
-        let column = |head: &str, align, optional| Column { head: head.into(), align, optional };
+        let column = |head: &str, align, left_out| Column { head: head.into(), align, left_out };
         vec![
-            column("Quantity", Align::Left, false),
-            column("Value", Align::Right, false),
-            column("Margin", Align::Right, true),
-            column("Verdict", Align::Left, false),
+            column("Quantity", Align::Left, None),
+            column("Value", Align::Right, Some(1)),
+            column("Margin", Align::Right, Some(0)),
+            column("Verdict", Align::Left, None),
         ]
     }
 
@@ -143,7 +148,7 @@ mod tests {
     }
 
     #[test]
-    fn columns_are_in_line_and_the_optional_ones_go_first() {
+    fn columns_are_in_line_and_those_with_a_rank_go_one_by_one() {
         let wide = table(&columns(), &rows(), Terminal { width: 80, colour: false });
         assert_eq!(
             wide,
@@ -151,9 +156,24 @@ mod tests {
              \u{20}\u{20}N           12.25 °/√h      -1  fail\n"
         );
         let medium = table(&columns(), &rows(), Terminal { width: 36, colour: false });
-        assert!(!medium.contains("Margin") && medium.starts_with("  Quantity  "), "{medium}");
+        assert!(!medium.contains("Margin") && medium.starts_with("  Quantity         Value  "), "{medium}");
+        let small = table(&columns(), &rows(), Terminal { width: 24, colour: false });
+        assert_eq!(small, "  Quantity    Verdict\n  Сдвиг нуля  pass\n  N           fail\n");
         let narrow = table(&columns(), &rows(), Terminal { width: 20, colour: false });
         assert!(narrow.starts_with("  Сдвиг нуля\n    Value: 0.12 °/h\n    Margin: 0.38\n"), "{narrow}");
+    }
+
+    #[test]
+    fn long_names_are_wrapped_before_a_column_goes() {
+        let row = ["Drift of 100-s averages predicted by the noise model", "0.01278 °/h", "0.38", "pass"];
+        let rows = [row.map(|text| Cell::from(text.to_owned())).to_vec()];
+        let shown = table(&columns(), &rows, Terminal { width: 64, colour: false });
+        assert_eq!(
+            shown,
+            "  Quantity                                Value  Margin  Verdict\n  \
+             Drift of 100-s averages           0.01278 °/h    0.38  pass\n    \
+             predicted by the noise model\n"
+        );
     }
 
     #[test]
