@@ -52,8 +52,7 @@ fn cover(whole: &Part<'_>, phases: &[Phase<'_>]) -> Vec<Block> {
     let (record, words) = (whole.record, whole.words);
     let mut blocks = vec![Block::Head(head(whole))];
     blocks.extend(reasons(whole));
-    let attempt = whole.attempt();
-    blocks.extend((!attempt.is_empty()).then(|| Block::remarks(attempt)));
+    blocks.extend(Block::remarks(whole.attempt()));
     blocks.extend((!record.waivers.is_empty()).then(|| Block::Hint(words.t("report.waivers_below"))));
     blocks.push(identity_section(whole));
     blocks.extend(limits::limits(whole, phases));
@@ -72,8 +71,7 @@ fn opening(whole: &Part<'_>) -> Vec<Block> {
     let errors = reasons(whole).into_iter().filter(|b| matches!(b, Block::Reasons(r) if r.id == "error"));
     let mut blocks: Vec<Block> = std::iter::once(Block::Head(head(whole))).chain(errors).collect();
     let said = whole.record.summary.iter().filter(|n| n.id != NO_LIMITS).map(|n| whole.words.say(n));
-    let said: Vec<String> = said.chain(whole.attempt()).collect();
-    blocks.extend((!said.is_empty()).then(|| Block::remarks(said)));
+    blocks.extend(Block::remarks(said.chain(whole.attempt())));
     blocks.extend(further::further(whole));
     blocks.extend(figures::key(whole));
     blocks.extend(conditions::section(whole));
