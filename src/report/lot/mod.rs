@@ -116,6 +116,7 @@ fn head(lot: &LotRecord, words: Translator) -> Head {
         label: words.t("lot.worst"),
         verdict: verdict(lot.verdict, words),
         counts: lot.counts.present().into_iter().map(|(v, n)| (verdict(v, words), n)).collect(),
+        is_signed: false,
     }
 }
 

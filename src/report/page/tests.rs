@@ -42,6 +42,7 @@ fn head(size: &str) -> Block {
         label: "Outcome".into(),
         verdict: pass(),
         counts,
+        is_signed: false,
     })
 }
 
