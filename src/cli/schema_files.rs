@@ -13,7 +13,7 @@ const SCHEMA_FOLDER: &str = "schemas";
 const SOURCES: &str = "SOURCES";
 
 /// Folders whose types have derived schemas.
-const SOURCE_FOLDERS: [&str; 2] = ["src", "crates/sagnac-core/src"];
+const SOURCE_FOLDERS: [&str; 3] = ["src", "crates/sagnac-base/src", "crates/sagnac-core/src"];
 
 /// How a line begins that gives a type its schema.
 const SCHEMA_DERIVES: [&str; 2] =

@@ -33,17 +33,18 @@ fn circles(uses: &BTreeMap<&Module, BTreeSet<Module>>) -> Vec<String> {
 #[test]
 fn no_file_leads_back_to_itself() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut found = vec![];
-    for folder in ["src", "crates/sagnac-core/src", "crates/sagnac-ingest/src", "studies/src"] {
+    let (mut found, mut modules, mut used) = (vec![], 0, 0);
+    for folder in
+        ["src", "crates/sagnac-base/src", "crates/sagnac-core/src", "crates/sagnac-ingest/src", "studies/src"]
+    {
         let package = Package::new(&root.join(folder)).unwrap();
-        assert!(package.text.len() > 50, "{folder}");
+        assert!(package.text.len() > 20, "{folder}");
         let uses = package.uses();
-        assert!(
-            uses.values().map(BTreeSet::len).sum::<usize>() > 2 * package.text.len(),
-            "{folder}: few uses found"
-        );
+        modules += package.text.len();
+        used += uses.values().map(BTreeSet::len).sum::<usize>();
         found.extend(circles(&uses).into_iter().map(|c| format!("{folder}: {c}")));
     }
+    assert!(used > 2 * modules, "only {used} uses found among {modules} modules");
     assert!(found.is_empty(), "{}", found.join("\n"));
 }
 

@@ -13,8 +13,9 @@ const SPLINTER_LINES: usize = 60;
 /// Commits from here on count for the files that a change touches, where no date is given.
 pub const COMMITS_SINCE: &str = "2026-11-24";
 /// The package of the program, and those that its `run` leads to.
-const PACKAGES: [&str; 6] = [
+const PACKAGES: [&str; 7] = [
     "src",
+    "crates/sagnac-base/src",
     "crates/sagnac-core/src",
     "crates/sagnac-ingest/src",
     "crates/sagnac-fft/src",
@@ -239,8 +240,13 @@ fn reached(root: &Path) -> io::Result<usize> {
             let (package, rest) = path.split_once("::").unwrap_or((&path, ""));
             for (other, folder) in PACKAGES.iter().enumerate().skip(1) {
                 let name = folder.trim_start_matches("crates/").trim_end_matches("/src").replace('-', "_");
-                // The library of the program re-exports modules of the core.
-                if package == name || (at == 0 && package == "crate") {
+                // The program re-exports modules of the core, and the core those of the base.
+                let reexported = match package {
+                    "crate" => at == 0 || name == "sagnac_base",
+                    "sagnac_core" => name == "sagnac_base",
+                    _ => false,
+                };
+                if package == name || reexported {
                     next.extend(packages[other].target(rest).map(|module| (other, module)));
                 }
             }

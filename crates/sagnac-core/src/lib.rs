@@ -18,12 +18,8 @@
 //!
 //! | module | what it has |
 //! |---|---|
-//! | [`local_text`], [`message`], [`render`], [`visible`], [`spelling`] | texts of users by language; messages as a key with arguments; a table that the caller brings turns them into text |
-//! | [`numeric`], [`units`] | numerical methods; units and their conversion |
-//! | [`estimate`] | an estimate with its confidence distribution, limits, decision rules, verdicts |
-//! | [`figure`] | plots as data |
+//! | [`message`], [`numeric`], [`units`], [`estimate`], [`figure`], [`recording`] and others | those of [`sagnac_base`], re-exported: messages, numerical methods, units, estimates and verdicts, plots as data, blocks of samples |
 //! | [`lot`] | the population that the units of a lot come from |
-//! | [`recording`] | channels, their roles and units, and the blocks of samples that they deliver |
 //! | [`noise`] | a gyro at rest: Allan family, spectra, identification of noise terms, their simulation |
 //! | [`rate_table`], [`temperature`], [`influence`] | tests on a rate table, over temperature, under an influence |
 //! | [`effect`] | the catalogue of physical effects that a simulation can omit |
@@ -37,29 +33,22 @@
 //!
 //! Nothing here panics on any input: what cannot be computed is `None`, an error, or an estimate without a value.
 
+pub use sagnac_base::{
+    estimate, figure, local_text, message, note, numeric, recording, render, spelling, units, visible,
+};
+
 pub mod claim;
 pub mod criticism;
 pub mod effect;
-pub mod estimate;
 pub mod evidence;
-pub mod figure;
 pub mod influence;
-pub mod local_text;
 pub mod lot;
 pub mod measurand;
-pub mod message;
 pub mod mismatch;
 pub mod noise;
-pub mod numeric;
 pub mod plan;
 pub mod rate_table;
-mod real;
-pub mod recording;
-pub mod render;
 pub mod schedule;
 pub mod series;
 pub mod simulate;
-pub mod spelling;
 pub mod temperature;
-pub mod units;
-pub mod visible;

@@ -148,7 +148,7 @@ fn is_sentence(text: &str) -> bool {
 fn found() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = vec![];
-    for folder in ["src", "crates/sagnac-core/src", "crates/sagnac-ingest/src"] {
+    for folder in ["src", "crates/sagnac-base/src", "crates/sagnac-core/src", "crates/sagnac-ingest/src"] {
         sources(&root.join(folder), &mut files);
     }
     let mut out = vec![];

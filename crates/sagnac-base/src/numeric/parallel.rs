@@ -6,7 +6,7 @@ use std::sync::OnceLock;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 
 /// The values of `value` at 0 to `count`, in this order.
-pub(crate) fn map<T: Send + Sync>(count: usize, value: impl Fn(usize) -> T + Sync) -> Vec<T> {
+pub fn map<T: Send + Sync>(count: usize, value: impl Fn(usize) -> T + Sync) -> Vec<T> {
     let slots: Vec<OnceLock<T>> = (0..count).map(|_| OnceLock::new()).collect();
     for_each(count, &|i| {
         slots[i].get_or_init(|| value(i));
@@ -15,7 +15,7 @@ pub(crate) fn map<T: Send + Sync>(count: usize, value: impl Fn(usize) -> T + Syn
 }
 
 /// The value of each item, in their order.
-pub(crate) fn map_items<S: Sync, T: Send + Sync>(items: &[S], value: impl Fn(&S) -> T + Sync) -> Vec<T> {
+pub fn map_items<S: Sync, T: Send + Sync>(items: &[S], value: impl Fn(&S) -> T + Sync) -> Vec<T> {
     map(items.len(), |i| value(&items[i]))
 }
 

@@ -46,7 +46,7 @@ pub(super) fn student_upper_tail(t: f64, dof: f64) -> f64 {
 }
 
 /// The quantile of a probability.
-pub(crate) fn student_quantile(probability: f64, dof: f64) -> f64 {
+pub fn student_quantile(probability: f64, dof: f64) -> f64 {
     let (dof, p) = (dof.max(1.0), probability.clamp(1e-15, 1.0 - 1e-15));
     if dof >= EXPANSION_DOF {
         // Abramowitz and Stegun 26.7.5.

@@ -16,7 +16,7 @@ mod objection;
 mod tail;
 
 pub use decision::{Judgement, Limit, Limits, Rule, Verdict, judge};
-pub(crate) use distribution::student_quantile;
+pub use distribution::student_quantile;
 pub use distribution::{chi_square_quantile, normal_probability, normal_quantile};
 pub use objection::{Finding, Holds, Objection};
 pub use tail::{

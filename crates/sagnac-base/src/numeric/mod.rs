@@ -6,19 +6,19 @@
 //! | [`optimize`] | bisection, golden sections, step rules of Newton ascents, bounded quadratics |
 //! | [`least_squares`] | weighted least squares with priors |
 //! | [`order`] | sorting by numbers, medians, quantiles |
-//! | `parallel` | work side by side on all cores |
+//! | [`parallel`] | work side by side on all cores |
 //! | [`reml`] | linear models with variance components, by restricted maximum likelihood |
 //! | [`special`] | special functions |
 //! | [`sums`] | compensated and running sums |
 //! | [`range`], [`decimal`] | magnitudes that figures are right for; decimals of a number |
 
-pub(crate) mod cholesky;
+pub mod cholesky;
 pub mod cosine;
 pub mod decimal;
 pub mod least_squares;
 pub mod optimize;
 pub mod order;
-pub(crate) mod parallel;
+pub mod parallel;
 pub mod range;
 pub mod reml;
 pub mod special;
