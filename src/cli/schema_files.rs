@@ -13,7 +13,8 @@ const SCHEMA_FOLDER: &str = "schemas";
 const SOURCES: &str = "SOURCES";
 
 /// Folders whose types have derived schemas.
-const SOURCE_FOLDERS: [&str; 3] = ["src", "crates/sagnac-base/src", "crates/sagnac-core/src"];
+const SOURCE_FOLDERS: [&str; 4] =
+    ["src", "crates/sagnac-base/src", "crates/sagnac-noise/src", "crates/sagnac-explain/src"];
 
 /// How a line begins that gives a type its schema.
 const SCHEMA_DERIVES: [&str; 2] =

@@ -73,8 +73,9 @@ fn validate(root: &Path, arguments: &[String]) -> ExitCode {
 /// The generator is a build of its own: own packages with the feature `schema`, which nothing optimises, and the dependencies that
 /// there are already.
 fn schemas(root: &Path, arguments: &[&String]) -> ExitCode {
-    let unoptimised = ["sagnac", "sagnac-base", "sagnac-core", "sagnac-ingest"]
-        .map(|package| format!("--config=profile.dev.package.{package}.opt-level=0"));
+    let unoptimised =
+        ["sagnac", "sagnac-base", "sagnac-core", "sagnac-explain", "sagnac-ingest", "sagnac-noise"]
+            .map(|package| format!("--config=profile.dev.package.{package}.opt-level=0"));
     let options: Vec<&str> = unoptimised.iter().map(String::as_str).collect();
     let run = ["run", "--quiet", "--package", "sagnac", "--features", "schema", "--bin", "generate-schemas"];
     cargo(root, &[&run, &options[..], &["--"]].concat(), arguments)

@@ -36,19 +36,13 @@
 pub use sagnac_base::{
     estimate, figure, local_text, message, note, numeric, recording, render, spelling, units, visible,
 };
+pub use sagnac_explain::{claim, effect, mismatch, plan, schedule, series, simulate};
+pub use sagnac_noise::noise;
 
-pub mod claim;
 pub mod criticism;
-pub mod effect;
 pub mod evidence;
 pub mod influence;
 pub mod lot;
 pub mod measurand;
-pub mod mismatch;
-pub mod noise;
-pub mod plan;
 pub mod rate_table;
-pub mod schedule;
-pub mod series;
-pub mod simulate;
 pub mod temperature;

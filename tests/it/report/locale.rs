@@ -187,7 +187,14 @@ fn used() -> (BTreeSet<String>, BTreeSet<String>) {
         table(Lang::En).keys().filter_map(|k| k.split('.').next()).map(str::to_owned).collect();
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut code = vec![];
-    for folder in ["src", "crates/sagnac-base/src", "crates/sagnac-core/src", "crates/sagnac-ingest/src"] {
+    for folder in [
+        "src",
+        "crates/sagnac-base/src",
+        "crates/sagnac-core/src",
+        "crates/sagnac-explain/src",
+        "crates/sagnac-ingest/src",
+        "crates/sagnac-noise/src",
+    ] {
         sources(&root.join(folder), &mut code);
     }
     let mut fixtures = vec![];

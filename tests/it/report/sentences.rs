@@ -56,7 +56,7 @@ const LITERALS: &[(&str, &str, &str)] = &[
         "a fault of the decoder, quoted as it says it",
     ),
     (
-        "crates/sagnac-core/src/noise/part.rs",
+        "crates/sagnac-noise/src/noise/part.rs",
         "the later part continues a stretch",
         "a mistake of a program that merges parts, not of a user",
     ),
@@ -148,7 +148,14 @@ fn is_sentence(text: &str) -> bool {
 fn found() -> Vec<(String, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let mut files = vec![];
-    for folder in ["src", "crates/sagnac-base/src", "crates/sagnac-core/src", "crates/sagnac-ingest/src"] {
+    for folder in [
+        "src",
+        "crates/sagnac-base/src",
+        "crates/sagnac-core/src",
+        "crates/sagnac-explain/src",
+        "crates/sagnac-ingest/src",
+        "crates/sagnac-noise/src",
+    ] {
         sources(&root.join(folder), &mut files);
     }
     let mut out = vec![];

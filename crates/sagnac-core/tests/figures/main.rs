@@ -6,7 +6,7 @@ mod effects;
 mod measurands;
 mod noise;
 mod stored;
-#[path = "../../src/effect/kinds/truths.rs"]
+#[path = "../../../sagnac-explain/src/effect/kinds/truths.rs"]
 mod truths;
 
 // The truths name the catalogue as the crate itself does.

@@ -92,7 +92,7 @@ impl Misfit {
 }
 
 /// Normal score of a χ² sum by the cube root (Wilson and Hilferty 1931).
-pub(crate) fn normal_score(sum: f64, dof: f64) -> f64 {
+pub fn normal_score(sum: f64, dof: f64) -> f64 {
     let spread = 2.0 / (9.0 * dof);
     ((sum / dof).cbrt() - (1.0 - spread)) / spread.sqrt()
 }

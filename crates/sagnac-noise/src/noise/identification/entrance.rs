@@ -13,10 +13,10 @@ use crate::noise::evidence::Evidence;
 /// has no limits.
 ///
 /// ```
-/// use sagnac_core::noise::data::NoiseType;
-/// use sagnac_core::noise::evidence::Evidence;
-/// use sagnac_core::noise::identification::{Options, identify};
-/// use sagnac_core::noise::model::NoiseModel;
+/// use sagnac_noise::noise::data::NoiseType;
+/// use sagnac_noise::noise::evidence::Evidence;
+/// use sagnac_noise::noise::identification::{Options, identify};
+/// use sagnac_noise::noise::model::NoiseModel;
 ///
 /// // Ten hours at 1 Hz: what a record of 0.002 deg/√h is expected to give.
 /// let model = NoiseModel { n: 0.002, ..NoiseModel::default() };

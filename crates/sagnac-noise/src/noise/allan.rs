@@ -72,7 +72,7 @@ impl DeviationSet {
 /// ```
 /// // Samples that alternate between −1 and 1: neighbours differ by 2, so that σ(τ0) = √(4/2), and means of two are all 0.
 /// let rate: Vec<f64> = (0..8).map(|i| if i % 2 == 0 { 1.0 } else { -1.0 }).collect();
-/// let points = sagnac_core::noise::allan::allan_deviation(&rate, 0.1);
+/// let points = sagnac_noise::noise::allan::allan_deviation(&rate, 0.1);
 ///
 /// assert_eq!(points.iter().map(|p| p.m).collect::<Vec<_>>(), [1, 2, 4]);
 /// assert!((points[0].deviation - 2f64.sqrt()).abs() < 1e-12);

@@ -163,7 +163,8 @@ impl Identification {
         self.claimed.contains(&term)
     }
 
-    pub(crate) fn empty(channel: &str) -> Identification {
+    /// The result for a channel of which nothing was identified.
+    pub fn empty(channel: &str) -> Identification {
         let none = |i: usize| Estimate::not_identifiable(IDS[i].0, channel, None, IDS[i].1, METHOD);
         Identification {
             channel: channel.to_owned(),

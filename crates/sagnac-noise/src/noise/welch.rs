@@ -32,7 +32,7 @@ pub struct WelchResult {
 /// 2^20 samples or at the end, whichever is first; until then samples are kept.
 ///
 /// ```
-/// use sagnac_core::noise::welch::WelchAccumulator;
+/// use sagnac_noise::noise::welch::WelchAccumulator;
 ///
 /// // A sinusoid of amplitude 2 deg/h on bin 20 of segments of 256 samples: its variance is 2.
 /// let turn = std::f64::consts::TAU * 20.0 / 256.0;

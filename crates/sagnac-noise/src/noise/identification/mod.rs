@@ -31,7 +31,7 @@ mod entrance;
 mod joint;
 mod likelihood;
 pub mod linear_fit;
-pub(crate) mod misfit;
+pub mod misfit;
 mod options;
 pub(crate) mod profile;
 mod range;
