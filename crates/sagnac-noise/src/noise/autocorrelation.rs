@@ -72,7 +72,7 @@ pub fn of_series(series: &[f64], max_lag: usize) -> Option<Autocorrelation> {
 
 /// Sums of products of values `k` apart, k = 0 to `max_lag`; `length` of the transform, at least the values and the lags
 /// together. `None` where a transform fails.
-pub(crate) fn lagged_products(
+pub fn lagged_products(
     values: impl Iterator<Item = f64>,
     length: usize,
     max_lag: usize,

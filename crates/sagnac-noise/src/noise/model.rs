@@ -83,7 +83,7 @@ pub fn unit_mode_variance(term: NoiseType, mode: usize, blocks: usize, tau_s: f6
 }
 
 /// What the transform shows at a bin on average, over the density there.
-pub(crate) fn bin_ratio(term: NoiseType, bin: &Bin) -> f64 {
+pub fn bin_ratio(term: NoiseType, bin: &Bin) -> f64 {
     match term {
         NoiseType::AngleRandomWalk => bin.filling.max(1.0),
         NoiseType::Flicker => flicker_mode_ratio(bin.mode, bin.blocks),
