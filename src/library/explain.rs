@@ -7,10 +7,10 @@ use crate::i18n::{Lang, Note};
 use crate::mismatch::{self, Options, Outcome, Progress};
 use crate::moment;
 use crate::record::explanation::{self, MismatchVerdict};
-use crate::report::explain::{Context, ExplainView};
+use crate::report::explain::{Context, on_terminal};
 use crate::report::export::Exporter;
-use crate::report::terminal::{self, Terminal};
-use crate::report::{ExplanationResults, Results};
+use crate::report::terminal::Terminal;
+use crate::report::{ExplanationResults, Results, page};
 use crate::simulate::{Order, Over, Rows, SimulateError, Simulation};
 use chrono::SecondsFormat;
 use std::path::Path;
@@ -162,8 +162,8 @@ impl Explanation {
 
     /// The finding in a few lines.
     pub fn summary(&self, lang: Lang) -> String {
-        let view = ExplainView::new(&self.outcome.explanation, &[], &self.context(), lang);
-        terminal::explanation(&view, lang, Terminal { width: 100, colour: false })
+        let blocks = on_terminal(&self.outcome.explanation, &self.context(), lang);
+        page::terminal(&blocks, Terminal { width: 100, colour: false })
     }
 
     fn context(&self) -> Context {

@@ -1,9 +1,9 @@
 //! What is exported: a record with its figures and tables, in one language.
 
-use super::explain::{ExplainFile, ExplainView};
+use super::explain::ExplainFile;
 use super::files::{JointFile, PlanFile};
 use super::page::{self, Block, Page};
-use super::render::{page_context, paper_context, run_context, view_context};
+use super::render::{page_context, paper_context, run_context};
 use super::translator::Translator;
 use super::view::{self, Part, Phase};
 use super::{Renderer, ReportError};
@@ -28,8 +28,8 @@ pub trait Documented: Send + Sync {
     fn subject(&self) -> Option<&str>;
     /// When the record was made, RFC 3339.
     fn made_at(&self) -> &str;
-    /// What its pages show.
-    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents;
+    /// The page, with the figures drawn.
+    fn page(&self, figures: &[Figure], lang: Lang) -> Page;
 
     /// What a folder is named after that the document is written into.
     fn folder_name(&self) -> Option<&str> {
@@ -44,26 +44,6 @@ pub trait Documented: Send + Sync {
     /// What a terminal shows of it; nothing where the terminal has a text of its own.
     fn on_terminal(&self, _: Lang) -> Vec<Block> {
         vec![]
-    }
-}
-
-/// What pages show.
-pub enum Contents {
-    /// Blocks, which the templates of blocks lay out.
-    Page(Page),
-    /// What a template of its own sees.
-    View {
-        /// Name of the template without the ending of its file.
-        template: &'static str,
-        /// What it sees: `v`, the view; `locale`, the words of the language.
-        context: Value,
-    },
-}
-
-impl Contents {
-    /// The contents of a template that sees nothing but a view.
-    pub fn view(template: &'static str, view: &impl Serialize, lang: Lang) -> Contents {
-        Contents::View { template, context: view_context(view, lang) }
     }
 }
 
@@ -147,7 +127,7 @@ pub struct Document<'a> {
     /// Tables and other data files, the same in every language: name and contents.
     pub tables: &'a [(String, String)],
     of: &'a dyn Documented,
-    contents: Contents,
+    shown: Page,
 }
 
 impl<'a> Document<'a> {
@@ -158,7 +138,7 @@ impl<'a> Document<'a> {
         tables: &'a [(String, String)],
         lang: Lang,
     ) -> Document<'a> {
-        Document { lang, contents: of.contents(figures, lang), figures: figures.into(), tables, of }
+        Document { lang, shown: of.page(figures, lang), figures: figures.into(), tables, of }
     }
 
     /// The document of a run or an analysis.
@@ -179,8 +159,8 @@ impl<'a> Document<'a> {
                 Phase { phase, number, part }
             })
             .collect();
-        let contents = Contents::Page(view::page(&Part::new(record, &[], words), &parts));
-        Document { lang, contents, figures: figures.concat().into(), tables: &[], of: record }
+        let shown = view::page(&Part::new(record, &[], words), &parts);
+        Document { lang, shown, figures: figures.concat().into(), tables: &[], of: record }
     }
 
     /// The lot that the document is of.
@@ -214,16 +194,12 @@ impl<'a> Document<'a> {
     /// # Errors
     /// [`ReportError`] when a template is wrong.
     pub fn text(&self, form: PageForm, renderer: &Renderer) -> Result<String, ReportError> {
-        match &self.contents {
-            Contents::View { template, context } => {
-                form.rendered(template, context.clone(), renderer, self.lang)
+        match self.of.record() {
+            Record::Run(run) => {
+                let context = run_context(form.seen(&self.shown), run, self.lang);
+                form.rendered("report", context, renderer, self.lang)
             }
-            Contents::Page(page) => match self.of.record() {
-                Record::Run(run) => {
-                    form.rendered("report", run_context(form.seen(page), run, self.lang), renderer, self.lang)
-                }
-                _ => form.page(page, renderer, self.lang),
-            },
+            _ => form.page(&self.shown, renderer, self.lang),
         }
     }
 
@@ -298,29 +274,7 @@ impl Documented for RunRecord {
         Some(&self.program.version)
     }
 
-    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
-        Contents::Page(view::page(&Part::new(self, figures, Translator { lang }), &[]))
-    }
-}
-
-impl Documented for ExplainFile {
-    fn record(&self) -> Record<'_> {
-        Record::Explanation(self)
-    }
-
-    fn kind(&self) -> Kind {
-        Kind::Explanation
-    }
-
-    fn subject(&self) -> Option<&str> {
-        Some(self.explanation.case.as_str()).filter(|c| !c.is_empty())
-    }
-
-    fn made_at(&self) -> &str {
-        &self.context.explained_at
-    }
-
-    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
-        Contents::view("explain", &ExplainView::new(&self.explanation, figures, &self.context, lang), lang)
+    fn page(&self, figures: &[Figure], lang: Lang) -> Page {
+        view::page(&Part::new(self, figures, Translator { lang }), &[])
     }
 }

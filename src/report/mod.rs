@@ -29,7 +29,7 @@ mod translator;
 pub mod unit;
 pub mod view;
 
-pub use document::{Contents, Document, Documented, PageForm, Record, render_html, render_markdown};
+pub use document::{Document, Documented, PageForm, Record, render_html, render_markdown};
 pub use figure_file::FIGURES_FILE;
 pub use render::{Renderer, ReportError};
 pub use results::{

@@ -27,12 +27,13 @@ pub fn markdown_sentence(sentence: &str) -> String {
 /// A formula, escaped for the file. In HTML, letters and digits behind an underscore stand below the line.
 pub fn formula(state: &State, text: &str) -> Value {
     match state.auto_escape() {
-        AutoEscape::Html => Value::from_safe_string(subscripted(text)),
+        AutoEscape::Html => Value::from_safe_string(html_formula(text)),
         _ => Value::from(text),
     }
 }
 
-fn subscripted(text: &str) -> String {
+/// A formula in HTML: letters and digits behind an underscore stand below the line.
+pub fn html_formula(text: &str) -> String {
     let mut parts = text.split('_');
     let mut out = svg::escape(parts.next().unwrap_or_default());
     for part in parts {

@@ -61,8 +61,6 @@ pub const TEMPLATES: &[(&str, &str)] = &[
     ("block-steps.md", include_str!("../../templates/block-steps.md")),
     ("block-table.html", include_str!("../../templates/block-table.html")),
     ("block-table.md", include_str!("../../templates/block-table.md")),
-    ("explain.html", include_str!("../../templates/explain.html")),
-    ("explain.md", include_str!("../../templates/explain.md")),
 ];
 
 /// Largest template file that is read, bytes.
@@ -339,32 +337,11 @@ impl Renderer {
         }
         Ok(text)
     }
-
-    /// Renders a template that sees nothing but a view.
-    ///
-    /// # Errors
-    /// As [`Renderer::render`].
-    pub fn render_view(
-        &self,
-        name: &str,
-        view: &impl serde::Serialize,
-        lang: Lang,
-    ) -> Result<String, ReportError> {
-        self.render(name, &view_context(view, lang), lang)
-    }
 }
 
 /// What the templates of blocks see of a run: with its record.
 pub(super) fn run_context(page: Value, record: &RunRecord, lang: Lang) -> Value {
     minijinja::context! { run => Value::from(Serde(record)), ..page_context(page, lang) }
-}
-
-/// What any other template sees.
-pub(super) fn view_context(view: &impl serde::Serialize, lang: Lang) -> Value {
-    minijinja::context! {
-        v => Value::from(Serde(view)),
-        locale => Value::from(Serde(table(lang))),
-    }
 }
 
 /// What the templates of blocks see.

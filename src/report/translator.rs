@@ -6,16 +6,6 @@ use crate::estimate::Verdict;
 use crate::i18n;
 use crate::i18n::{Arg, Lang, LocalText, Localize, Note, fill, lookup};
 use crate::measurand::{self, Test};
-use serde::Serialize;
-
-/// A label and its value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Field {
-    /// Label, in words.
-    pub label: String,
-    /// Value, printed.
-    pub value: String,
-}
 
 /// Gives keys, ids, notes and units the words of a language.
 #[derive(Debug, Clone, Copy)]

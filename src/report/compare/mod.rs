@@ -4,7 +4,7 @@ mod columns;
 mod published;
 mod unit;
 
-use super::document::{Contents, Documented, Record};
+use super::document::{Documented, Record};
 use super::number::date_time;
 use super::page::{self, Block, Head, Page};
 use super::translator::Translator;
@@ -34,8 +34,8 @@ impl Documented for Comparison {
         Some(&self.program.version)
     }
 
-    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
-        Contents::Page(pages(self, figures, Translator { lang }))
+    fn page(&self, figures: &[Figure], lang: Lang) -> Page {
+        pages(self, figures, Translator { lang })
     }
 
     /// The figures of each unit in a row, what is said of each, and the limits.

@@ -2,7 +2,7 @@
 
 mod quantity;
 
-use super::document::{Contents, Documented, Record};
+use super::document::{Documented, Record};
 use super::number::{count, date_time, duration, limit_digits};
 use super::page::{Block, Head, Joined, Page, Table, Value};
 use super::translator::Translator;
@@ -35,8 +35,8 @@ impl Documented for DataSheet {
         Some(&self.program.version)
     }
 
-    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
-        Contents::Page(pages(self, figures, Translator { lang }))
+    fn page(&self, figures: &[Figure], lang: Lang) -> Page {
+        pages(self, figures, Translator { lang })
     }
 
     /// The quantities with their medians and bounds, and what must be known.

@@ -1,124 +1,35 @@
-//! One cause, printed.
+//! A cause on a page: sentences, parameters, where it shows, and what the recording cannot tell from it.
 
-use super::print::{capital, chance, difference, parameter, place, stated, title, value};
+use super::print::{Printed, capital, chance, difference, parameter, place, stated, title, value};
 use super::sentence;
 use crate::effect::find;
 use crate::i18n::{EffectText, effect_text};
 use crate::mismatch::finding::{Explanation, Finding};
-use crate::report::number::{limit_digits, percent};
+use crate::report::number::{duration, limit_digits, percent};
+use crate::report::page::{Block, Column, Facts, Layout, Listed, OnTerminal, Quantity, Table, Value};
 use crate::report::translator::Translator;
-use serde::Serialize;
 
-/// A parameter of a cause.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ParameterRow {
-    /// In words.
-    pub name: String,
-    /// As the files have it.
-    pub id: String,
-    /// Value.
-    pub value: String,
-    /// 95 % interval.
-    pub interval: String,
-    /// Unit.
-    pub unit: String,
-    /// What the claim states, where it states it.
-    pub claimed: String,
+/// The section of a cause. `number`: its place among the causes, counted from 1.
+pub(super) fn section(number: usize, f: &Finding, all: &Explanation, words: Translator) -> Block {
+    let heading = Value::Named { text: format!("{number}. {}", name(f, words)), id: f.kind.clone() };
+    let sentences = sentence::finding(f, all, words).into_iter().map(Block::Paragraph);
+    let unnamed = f.is_unnamed().then(|| Block::Hint(words.t("explain.unknown.hint")));
+    let below = std::iter::once(Block::subheading(heading))
+        .chain(sentences)
+        .chain(unnamed)
+        .chain(parameters(f, all, words).map(Block::Table))
+        .chain([Block::Facts(about(f, all, words))])
+        .chain(other_causes(f, all, words));
+    Block::Section("effect", below.collect())
 }
 
-/// Something that this recording cannot tell from the cause.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EquivalentView {
-    /// Title.
-    pub title: String,
-    /// How it shows.
-    pub signature: String,
-    /// What tells it from its neighbours.
-    pub told_by: String,
-    /// The experiment that would decide.
-    pub confirm: String,
-    /// Whether a longer record would, and how long.
-    pub longer: String,
+/// Title of a cause.
+pub(super) fn name(f: &Finding, words: Translator) -> String {
+    capital(&title(f.effect_id(), words))
 }
 
-/// A cause.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EffectView {
-    /// Number, counted from 1.
-    pub number: usize,
-    /// Title.
-    pub title: String,
-    /// Kind as the files have it.
-    pub kind: String,
-    /// True for a cause that has no name.
-    pub unknown: bool,
-    /// Sentences about it.
-    pub sentences: Vec<String>,
-    /// What happens in the instrument or around it.
-    pub mechanism: String,
-    /// How it shows in each view.
-    pub signature: String,
-    /// What tells it from its neighbours.
-    pub told_by: String,
-    /// The experiment that would confirm it.
-    pub confirm: String,
-    /// Formula.
-    pub formula: String,
-    /// Source.
-    pub source: String,
-    /// Parameters.
-    pub parameters: Vec<ParameterRow>,
-    /// True when the claim states one of them.
-    pub has_claimed: bool,
-    /// Where it shows.
-    pub places: Vec<String>,
-    /// What it is worth; empty for a cause without a name, which has no model.
-    pub delta_bic: String,
-    /// Probability under its absence.
-    pub p: String,
-    /// Held-out gain; empty where there is none.
-    pub heldout_gain: String,
-    /// Share of the misfit removed; empty where there is none.
-    pub removed: String,
-    /// What cannot be distinguished from it.
-    pub equivalents: Vec<EquivalentView>,
-}
-
-impl EffectView {
-    /// Prints a cause.
-    pub(super) fn new(number: usize, f: &Finding, all: &Explanation, words: Translator) -> EffectView {
-        let text = |part| effect_text(f.effect_id(), part, words.lang).to_owned();
-        let parameters = parameters(f, all, words);
-        EffectView {
-            number,
-            title: capital(&title(f.effect_id(), words)),
-            kind: f.kind.clone(),
-            unknown: f.is_unnamed(),
-            sentences: sentence::finding(f, all, words),
-            mechanism: text(EffectText::Mechanism),
-            signature: text(EffectText::Signature),
-            told_by: text(EffectText::Distinguishing),
-            confirm: text(EffectText::Confirm),
-            formula: words.formula(&text(EffectText::Formula)),
-            source: text(EffectText::Source),
-            has_claimed: parameters.iter().any(|p| !p.claimed.is_empty()),
-            parameters,
-            places: f.places.iter().map(|p| place(p, all.recording.length_s, words)).collect(),
-            delta_bic: if f.is_unnamed() { String::new() } else { difference(f.delta_bic, words) },
-            p: chance(f.p_value, words),
-            heldout_gain: f.heldout_gain.map(|v| difference(v, words)).unwrap_or_default(),
-            removed: f
-                .removed_share
-                .filter(|s| s.is_finite())
-                .map(|s| percent(s, words.lang))
-                .unwrap_or_default(),
-            equivalents: f.other_causes().map(|k| equivalent(k, &f.kind, all, words)).collect(),
-        }
-    }
-}
-
-/// Parameters in the order of the catalogue, the size of the contribution last.
-fn parameters(f: &Finding, all: &Explanation, words: Translator) -> Vec<ParameterRow> {
+/// Parameters in the order of the catalogue, the size of the contribution last; `None` without any.
+pub(super) fn parameters(f: &Finding, all: &Explanation, words: Translator) -> Option<Table> {
     let order: Vec<&str> =
         find(f.effect_id()).map(|e| e.params().iter().map(|p| p.name).collect()).unwrap_or_default();
     let place = |name: &str| match order.iter().position(|p| *p == name) {
@@ -128,41 +39,99 @@ fn parameters(f: &Finding, all: &Explanation, words: Translator) -> Vec<Paramete
     };
     let mut given: Vec<_> = f.parameters.iter().collect();
     given.sort_by_key(|(name, _)| place(name));
-    let row = |(name, p): &(&String, &_)| {
-        let printed = value(name, p, words);
-        let claimed = all.nuisances.iter().find(|n| n.name.rsplit('.').next() == Some(name.as_str()));
-        ParameterRow {
-            name: parameter(name, words),
-            id: (*name).clone(),
-            value: printed.value,
-            interval: printed.interval,
-            unit: words.unit(&p.unit),
-            claimed: claimed.map(|n| limit_digits(n.claimed, 6, words.lang)).unwrap_or_default(),
-        }
+    let printed: Vec<Printed> = given.iter().map(|(name, p)| value(name, p, words)).collect();
+    let quantities = given.iter().zip(&printed).map(|((_, p), printed)| Quantity {
+        number: Some(p.value),
+        printed: printed.value.clone(),
+        unit: words.unit(&p.unit),
+    });
+    let claimed = |name: &str| {
+        let claimed = all.nuisances.iter().find(|n| n.name.rsplit('.').next() == Some(name));
+        claimed.map(|n| limit_digits(n.claimed, 6, words.lang)).unwrap_or_default()
     };
-    given.iter().map(row).collect()
+    let claimed: Vec<String> = given.iter().map(|(name, _)| claimed(name)).collect();
+    let short = |column: Column, id: &str| column.short(words.name("terminal_column", id));
+    let table = Table::new("compact cards", given.len())
+        .column(
+            short(words.column("explain.column.parameter"), "parameter"),
+            given.iter().map(|(name, _)| parameter(name, words)),
+        )
+        .column(short(words.number_column("report.value").class("n value"), "value"), quantities)
+        .column(
+            short(words.number_column("explain.column.interval"), "interval"),
+            printed.iter().map(|p| p.interval.clone()),
+        )
+        .units(words.t("report.unit"));
+    let table = if claimed.iter().all(String::is_empty) {
+        table
+    } else {
+        table.column(words.number_column("explain.column.claimed").on_terminal(OnTerminal::Hidden), claimed)
+    };
+    (!given.is_empty()).then_some(table)
 }
 
-fn equivalent(kind: &str, chosen: &str, all: &Explanation, words: Translator) -> EquivalentView {
-    let text = |part| effect_text(kind, part, words.lang).to_owned();
+/// Where a cause shows, what it is worth, and what the catalogue says of its kind.
+fn about(f: &Finding, all: &Explanation, words: Translator) -> Facts {
+    let text = |part| effect_text(f.effect_id(), part, words.lang).to_owned();
+    let places: Vec<String> = f.places.iter().map(|p| place(p, all.recording.length_s, words)).collect();
+    // A cause without a name has no model.
+    let worth = if f.is_unnamed() { String::new() } else { difference(f.delta_bic, words) };
+    let heldout = f.heldout_gain.map(|v| difference(v, words)).unwrap_or_default();
+    let removed = f.removed_share.filter(|s| s.is_finite()).map(|s| percent(s, words.lang));
+    let rows: [(&str, Value); 11] = [
+        ("explain.column.place_of", places.join("; ").into()),
+        ("explain.column.worth", worth.into()),
+        ("explain.column.p", chance(f.p_value, words).into()),
+        ("explain.column.heldout", heldout.into()),
+        ("explain.column.removed", removed.unwrap_or_default().into()),
+        ("explain.column.mechanism", text(EffectText::Mechanism).into()),
+        ("explain.column.formula", Value::Formula(words.formula(&text(EffectText::Formula)))),
+        ("explain.column.signature", text(EffectText::Signature).into()),
+        ("explain.column.told_by", text(EffectText::Distinguishing).into()),
+        ("explain.column.confirm", text(EffectText::Confirm).into()),
+        ("explain.column.source", text(EffectText::Source).into()),
+    ];
+    let rows = rows.into_iter().filter(|(_, value)| !value.plain().is_empty());
+    Facts { class: "about", rows: rows.map(|(key, value)| (words.t(key).into(), value)).collect() }
+}
+
+/// Causes that the recording cannot tell from this one, each with what would.
+fn other_causes(f: &Finding, all: &Explanation, words: Translator) -> Vec<Block> {
+    let kinds: Vec<&str> = f.other_causes().map(String::as_str).collect();
+    if kinds.is_empty() {
+        return vec![];
+    }
+    let below = |name: &str| Column::text(name, "").listed(Listed::Below(String::new()));
+    let sentences = |key: &str, part: EffectText| {
+        let sentence = |kind: &&str| match effect_text(kind, part, words.lang) {
+            "" => String::new(),
+            text => words.with(key, &[("text", text)]),
+        };
+        kinds.iter().map(sentence).collect::<Vec<_>>()
+    };
+    let table = Table::new("", kinds.len())
+        .column(Column::text("title", ""), kinds.iter().map(|k| capital(&title(k, words))))
+        .column(below("signature"), sentences("explain.equivalents.signature", EffectText::Signature))
+        .column(below("told_by"), sentences("explain.equivalents.told_by", EffectText::Distinguishing))
+        .column(below("confirm"), sentences("explain.equivalents.confirm", EffectText::Confirm))
+        .column(below("longer"), kinds.iter().map(|k| longer(k, &f.kind, all, words)))
+        .laid_out(Layout::List, Layout::List);
+    vec![Block::subheading(words.t("explain.equivalents.title")), Block::Table(table)]
+}
+
+/// Whether a longer record would tell a cause from the chosen one, and how long it must be.
+fn longer(kind: &str, chosen: &str, all: &Explanation, words: Translator) -> String {
     let experiment = all.experiments.iter().find(|e| e.kind == chosen && e.against == kind);
     let times = experiment.and_then(|e| e.times_longer).filter(|t| t.is_finite());
-    let longer = match (times, experiment) {
+    match (times, experiment) {
         (Some(times), _) if times <= 1.0 => words.t("explain.same_length"),
         (Some(times), _) => {
-            let length = crate::report::number::duration(rounded(times * all.recording.length_s), words.lang);
+            let length = duration(rounded(times * all.recording.length_s), words.lang);
             let times = limit_digits(times, 2, words.lang);
             words.with("explain.longer", &[("times", &times), ("length", &length)])
         }
         (None, Some(_)) => words.t("explain.no_length"),
         (None, None) => String::new(),
-    };
-    EquivalentView {
-        title: capital(&title(kind, words)),
-        signature: text(EffectText::Signature),
-        told_by: text(EffectText::Distinguishing),
-        confirm: text(EffectText::Confirm),
-        longer,
     }
 }
 
@@ -171,42 +140,26 @@ fn rounded(v: f64) -> f64 {
     format!("{v:.1e}").parse().unwrap_or(v)
 }
 
-/// A value that the claim states, with what the recording says of it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct StatedRow {
-    /// In words.
-    pub name: String,
-    /// Unit.
-    pub unit: String,
-    /// As claimed.
-    pub claimed: String,
-    /// Stated standard deviation; empty for an exact value.
-    pub uncertainty: String,
-    /// Fitted with the claim.
-    pub baseline: String,
-    /// Fitted with the augmented claim.
-    pub augmented: String,
-    /// How far it moved, in stated standard deviations; empty for an exact or free one.
-    pub moved: String,
-}
-
-/// Prints the values that a claim states.
-pub fn stated_rows(all: &Explanation, words: Translator) -> Vec<StatedRow> {
+/// Values that the claim states, each with what the recording says of it; `None` without any.
+pub(super) fn stated_values(all: &Explanation, words: Translator) -> Option<Table> {
     let shown = |v: f64| limit_digits(v, 4, words.lang);
-    all.nuisances
-        .iter()
-        .map(|n| StatedRow {
-            name: stated(&n.name, words),
-            unit: words.unit(&n.unit),
-            claimed: limit_digits(n.claimed, 6, words.lang),
-            uncertainty: if n.uncertainty > 0.0 { shown(n.uncertainty) } else { String::new() },
-            baseline: shown(n.baseline),
-            augmented: shown(n.augmented),
-            moved: if n.uncertainty > 0.0 {
-                difference((n.augmented - n.claimed) / n.uncertainty, words)
-            } else {
-                String::new()
-            },
-        })
-        .collect()
+    let each = || all.nuisances.iter();
+    // An exact value has no standard deviation to move by.
+    let of_uncertain = |uncertainty: f64, text: String| if uncertainty > 0.0 { text } else { String::new() };
+    let moved = |claimed: f64, augmented: f64, uncertainty: f64| {
+        of_uncertain(uncertainty, difference((augmented - claimed) / uncertainty, words))
+    };
+    let number = |key: &str| words.number_column(key);
+    let table = Table::new("cards", all.nuisances.len())
+        .column(words.column("explain.stated.value"), each().map(|n| stated(&n.name, words)))
+        .column(words.column("report.unit").class("unit"), each().map(|n| words.unit(&n.unit)))
+        .column(number("explain.stated.claimed"), each().map(|n| limit_digits(n.claimed, 6, words.lang)))
+        .column(
+            number("explain.stated.uncertainty"),
+            each().map(|n| of_uncertain(n.uncertainty, shown(n.uncertainty))),
+        )
+        .column(number("explain.stated.baseline"), each().map(|n| shown(n.baseline)))
+        .column(number("explain.stated.augmented"), each().map(|n| shown(n.augmented)))
+        .column(number("explain.stated.moved"), each().map(|n| moved(n.claimed, n.augmented, n.uncertainty)));
+    (!table.rows.is_empty()).then_some(table)
 }

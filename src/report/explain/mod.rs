@@ -1,4 +1,4 @@
-//! The view of an explanation: words and printed numbers, ready for the templates and for the terminal.
+//! The document of an explanation: where the mismatch is, what causes it and how large that is, what was gained.
 
 mod effect;
 mod method;
@@ -7,28 +7,28 @@ pub(in crate::report) mod print;
 mod sentence;
 mod tables;
 
-pub use effect::{EffectView, EquivalentView, ParameterRow, StatedRow};
-pub use method::MethodView;
-pub use noticeable::{NotComputedRow, NoticeableRow};
-pub(super) use tables::fit_table;
-pub use tables::{CandidateRow, ColumnRow, FitRow, TestRow};
+pub(super) use tables::{fit, fit_summary};
 
+use super::document::{Documented, Record};
+use super::generator;
 use super::number::{count, date_time, digits, duration};
-use super::translator::{Field, Translator};
+use super::page::{Block, Head, Lead, Page, State, Table};
+use super::translator::Translator;
 use super::view::FigureView;
 use crate::figure::Figure;
 use crate::i18n::{Lang, LocalText, Note};
+use crate::output::Kind;
 use crate::record::ExplainedRecord;
-use crate::record::explanation::{Explanation, MismatchVerdict};
+use crate::record::explanation::Explanation;
 use serde::{Deserialize, Serialize};
 
-/// What `explain.json` holds.
+/// Contents of `explain.json`.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ExplainFile {
-    /// The findings.
+    /// The explanation.
     #[serde(flatten)]
     pub explanation: Explanation,
-    /// What its page shows besides.
+    /// Facts that its page shows besides.
     pub context: Context,
 }
 
@@ -54,68 +54,6 @@ pub struct Context {
     pub notes: Vec<Note>,
 }
 
-/// A file of the folder.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct FileView {
-    /// Name.
-    pub name: String,
-    /// What it is.
-    pub what: String,
-}
-
-/// Everything that an explanation shows.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ExplainView {
-    /// The verdict.
-    pub verdict: MismatchVerdict,
-    /// Class of the verdict, for colours.
-    pub verdict_class: &'static str,
-    /// The verdict in a word.
-    pub verdict_word: String,
-    /// Case and description.
-    pub title: String,
-    /// The verdict in sentences.
-    pub summary: Vec<String>,
-    /// Recording and claim.
-    pub identity: Vec<Field>,
-    /// What must be known of the recording.
-    pub remarks: Vec<String>,
-    /// Family-wise probability, before and after.
-    pub family: [String; 2],
-    /// Significance asked for.
-    pub alpha: String,
-    /// Tests of the residual, the most significant first.
-    pub tests: Vec<TestRow>,
-    /// The candidates tried.
-    pub candidates: Vec<CandidateRow>,
-    /// Columns of the recording.
-    pub columns: Vec<ColumnRow>,
-    /// Sizes of effects that would have been noticed, the most useful first.
-    pub noticeable: Vec<NoticeableRow>,
-    /// Kinds without such a size.
-    pub not_computed: Vec<NotComputedRow>,
-    /// Causes.
-    pub effects: Vec<EffectView>,
-    /// The fit before and after.
-    pub fit: Vec<FitRow>,
-    /// What adding the effects does to the fit, in a sentence.
-    pub fit_summary: String,
-    /// True when nothing was added.
-    pub unchanged: bool,
-    /// What the claim states.
-    pub stated: Vec<StatedRow>,
-    /// How it was found.
-    pub methods: Vec<MethodView>,
-    /// Figures.
-    pub figures: Vec<FigureView>,
-    /// Files of the folder.
-    pub files: Vec<FileView>,
-    /// Line at the foot of every page.
-    pub footer: String,
-    /// The program with its version.
-    pub generator: String,
-}
-
 /// What a report says of a recording that was set against the model of its family: the verdict in a word and in
 /// sentences, or why there is none.
 pub fn explained_summary(explained: &ExplainedRecord, lang: Lang) -> Vec<String> {
@@ -127,50 +65,146 @@ pub fn explained_summary(explained: &ExplainedRecord, lang: Lang) -> Vec<String>
     }
 }
 
-impl ExplainView {
-    /// Builds the view.
-    pub fn new(all: &Explanation, figures: &[Figure], context: &Context, lang: Lang) -> ExplainView {
-        let words = Translator { lang };
-        let (verdict_class, verdict_word) = print::verdict(all.verdict, words);
-        let generator = super::generator();
-        let title = if all.case.is_empty() { context.recording.clone() } else { all.case.clone() };
-        let effects = all.effects.iter().enumerate();
-        let footer = [date_time(&context.explained_at), generator.clone()];
-        ExplainView {
-            verdict: all.verdict,
-            verdict_class,
-            verdict_word,
-            title,
-            summary: sentence::verdict(all, words),
-            identity: identity(all, context, words),
-            remarks: context.notes.iter().map(|n| words.say(n)).collect(),
-            family: [all.family_p_value, all.family_p_value_after].map(|p| print::chance(p, words)),
-            alpha: digits(all.alpha, 1, lang),
-            tests: tables::tests(all, words),
-            candidates: tables::candidates(all, words),
-            columns: tables::columns(all, words),
-            noticeable: noticeable::sizes(all, words),
-            not_computed: noticeable::not_computed(all, words),
-            effects: effects.map(|(i, f)| EffectView::new(i + 1, f, all, words)).collect(),
-            fit: tables::fit(all, words),
-            fit_summary: tables::fit_summary(all, words),
-            unchanged: all.effects.iter().all(|f| f.is_unnamed()),
-            stated: effect::stated_rows(all, words),
-            methods: method::all(words),
-            figures: figures.iter().enumerate().map(|(i, f)| FigureView::of(f, i + 1, words)).collect(),
-            files: files(all, context, words),
-            footer: footer.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" · "),
-            generator,
-        }
+impl Documented for ExplainFile {
+    fn record(&self) -> Record<'_> {
+        Record::Explanation(self)
+    }
+
+    fn kind(&self) -> Kind {
+        Kind::Explanation
+    }
+
+    fn subject(&self) -> Option<&str> {
+        Some(self.explanation.case.as_str()).filter(|c| !c.is_empty())
+    }
+
+    fn made_at(&self) -> &str {
+        &self.context.explained_at
+    }
+
+    fn page(&self, figures: &[Figure], lang: Lang) -> Page {
+        page(self, figures, Translator { lang })
+    }
+
+    fn on_terminal(&self, lang: Lang) -> Vec<Block> {
+        on_terminal(&self.explanation, &self.context, lang)
     }
 }
 
-fn identity(all: &Explanation, context: &Context, words: Translator) -> Vec<Field> {
+/// An explanation on a terminal: the verdict in sentences, each effect with its parameters, what was gained, the sizes that
+/// would have been noticed.
+pub fn on_terminal(all: &Explanation, context: &Context, lang: Lang) -> Vec<Block> {
+    let words = Translator { lang };
+    let effects = all.effects.iter().flat_map(|f| {
+        let heading = Block::heading(effect::name(f, words));
+        std::iter::once(heading).chain(effect::parameters(f, all, words).map(Block::Table))
+    });
+    let gained = fit_summary(all, words);
+    let is_gained = all.effects.iter().any(|f| !f.is_unnamed()) && !gained.is_empty();
+    let gained = is_gained.then(|| [Block::heading(words.t("terminal.gained")), Block::Paragraph(gained)]);
+    [Block::Head(head(all, context, words)), Block::Lead(lead(all, words))]
+        .into_iter()
+        .chain(effects)
+        .chain(gained.into_iter().flatten())
+        .chain(noticeable::on_terminal(all, words))
+        .collect()
+}
+
+fn page(file: &ExplainFile, figures: &[Figure], words: Translator) -> Page {
+    let ExplainFile { explanation: all, context } = file;
+    let head = head(all, context, words);
+    let footer = [date_time(&context.explained_at), generator()];
+    let hint = |key: &str| Block::Hint(words.t(key));
+    let section = |key: &str, below: Vec<Block>| Block::section("", words.t(key), below);
+    let filled = |table: Table| (!table.rows.is_empty()).then_some(table);
+    let remarks = Block::remarks(context.notes.iter().map(|n| words.say(n)));
+    let facts = std::iter::once(Block::identity(identity(all, context, words))).chain(remarks).collect();
+    let drawn = figures.iter().zip(1..);
+    let drawn: Vec<Block> =
+        drawn.map(|(f, number)| Block::Figure(Box::new(FigureView::of(f, number, words)))).collect();
+    let drawn =
+        (!drawn.is_empty()).then(|| Block::section("figures", words.t("explain.step.figures"), drawn));
+    let tried = match filled(tables::candidates(all, words)) {
+        Some(table) => vec![hint("explain.step.what_hint"), Block::Table(table)],
+        None => vec![Block::Paragraph(words.t("explain.step.what_none"))],
+    };
+    let columns = filled(tables::columns(all, words)).map(|table| {
+        section("explain.columns.title", vec![hint("explain.columns.hint"), Block::Table(table)])
+    });
+    let stated = effect::stated_values(all, words)
+        .map(|table| section("explain.stated.title", vec![hint("explain.stated.hint"), Block::Table(table)]));
+    let gained = vec![
+        Block::Paragraph(fit_summary(all, words)),
+        hint("explain.step.better_hint"),
+        Block::Table(fit("compact cards", all, words)),
+    ];
+    Page {
+        title: format!("{} · {}", head.kind, head.title),
+        generator: generator(),
+        footer: footer.into_iter().filter(|p| !p.is_empty()).collect::<Vec<_>>().join(" · "),
+        blocks: [
+            Block::Head(head),
+            Block::Lead(lead(all, words)),
+            Block::section("identity", words.t("explain.fact.title"), facts),
+            Block::SummaryEnd,
+            section(
+                "explain.step.where",
+                vec![hint("explain.step.where_hint"), Block::Table(tables::tests(all, words))],
+            ),
+        ]
+        .into_iter()
+        .chain(drawn)
+        .chain([section("explain.step.what", tried)])
+        .chain(columns)
+        .chain([section("explain.step.which", causes(all, words))])
+        .chain(noticeable::section(all, words))
+        .chain([section("explain.step.better", gained)])
+        .chain(stated)
+        .chain([
+            Block::section("methods", words.t("explain.step.how"), method::blocks(words)),
+            section("explain.step.files", vec![Block::files(files(all, context, words))]),
+        ])
+        .collect(),
+    }
+}
+
+fn head(all: &Explanation, context: &Context, words: Translator) -> Head {
+    let title = if all.case.is_empty() { &context.recording } else { &all.case };
+    Head {
+        kind: words.t("explain.kind"),
+        title: title.clone(),
+        label: words.t("explain.verdict.title"),
+        verdict: verdict(all, words),
+        ..Head::default()
+    }
+}
+
+/// Verdict of an explanation.
+pub(super) fn verdict(all: &Explanation, words: Translator) -> State {
+    let (id, word) = print::verdict(all.verdict, words);
+    State { id: id.to_owned(), word }
+}
+
+/// The verdict in sentences.
+pub(super) fn lead(all: &Explanation, words: Translator) -> Lead {
+    Lead { id: verdict(all, words).id, sentences: sentence::verdict(all, words) }
+}
+
+/// The causes, a section each.
+fn causes(all: &Explanation, words: Translator) -> Vec<Block> {
+    if all.effects.is_empty() {
+        return vec![Block::Paragraph(words.t("explain.step.which_none"))];
+    }
+    let sections = all.effects.iter().zip(1..).map(|(f, number)| effect::section(number, f, all, words));
+    std::iter::once(Block::Hint(words.t("explain.step.which_hint"))).chain(sections).collect()
+}
+
+fn identity(all: &Explanation, context: &Context, words: Translator) -> Vec<(String, String)> {
     let r = &all.recording;
     let mut out = vec![];
     let mut put = |key: &str, value: String| {
         if !value.trim().is_empty() {
-            out.push(Field { label: words.t(key), value });
+            out.push((words.t(key), value));
         }
     };
     put("explain.fact.recording", context.recording.clone());
@@ -196,7 +230,7 @@ fn identity(all: &Explanation, context: &Context, words: Translator) -> Vec<Fiel
     out
 }
 
-fn files(all: &Explanation, context: &Context, words: Translator) -> Vec<FileView> {
+fn files(all: &Explanation, context: &Context, words: Translator) -> Vec<(String, String)> {
     let mut names = vec![("explain.json", "explain.wrote.for_programs")];
     if context.correction {
         names.push(("correction.csv", "explain.wrote.correction"));
@@ -208,6 +242,5 @@ fn files(all: &Explanation, context: &Context, words: Translator) -> Vec<FileVie
     names.push(("report.html", "explain.wrote.page"));
     names.push(("report.md", "explain.wrote.markdown"));
     names.push(("figures/*.svg", "explain.wrote.figures"));
-    let row = |(name, key): (&str, &str)| FileView { name: name.to_owned(), what: words.t(key) };
-    names.into_iter().map(row).collect()
+    names.into_iter().map(|(name, key)| (name.to_owned(), words.t(key))).collect()
 }

@@ -5,7 +5,7 @@ mod sentence;
 
 pub use super::files::{JointContext, JointFile};
 
-use super::document::{Contents, Documented, Record};
+use super::document::{Documented, Record};
 use super::explain::print::{capital, difference, parameter, title, value, verdict};
 use super::generator;
 use super::number::{date_time, digits};
@@ -35,8 +35,8 @@ impl Documented for JointFile {
         &self.context.explained_at
     }
 
-    fn contents(&self, _: &[Figure], lang: Lang) -> Contents {
-        Contents::Page(pages(self, Translator { lang }))
+    fn page(&self, _: &[Figure], lang: Lang) -> Page {
+        pages(self, Translator { lang })
     }
 
     /// The verdict in sentences, each shared effect with its parameters, and the recordings.

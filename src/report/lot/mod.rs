@@ -5,7 +5,7 @@ mod reasons;
 
 pub(super) use reasons::{condition_reason, measurand_reason, reasons, several_channels};
 
-use super::document::{Contents, Documented, Record};
+use super::document::{Documented, Record};
 use super::number::date_time;
 use super::page::{self, Block, Column, Head, OnTerminal, Page, State, Table, Value};
 use super::translator::Translator;
@@ -36,8 +36,8 @@ impl Documented for LotRecord {
         Some(&self.program.version)
     }
 
-    fn contents(&self, _: &[Figure], lang: Lang) -> Contents {
-        Contents::Page(pages(self, Translator { lang }))
+    fn page(&self, _: &[Figure], lang: Lang) -> Page {
+        pages(self, Translator { lang })
     }
 
     /// The worst verdict and how many units have which, the units, and the reasons of those that do not pass.

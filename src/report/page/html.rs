@@ -22,6 +22,10 @@ impl Markup for Html {
         format!("<code>{}</code>", escape(name))
     }
 
+    fn formula(&self, text: &str) -> String {
+        format!("<span class=\"formula\">{}</span>", prose::html_formula(text))
+    }
+
     fn digest(&self, digest: &str) -> String {
         format!("<span class=\"hash\">{}</span>", escape(digest))
     }

@@ -29,6 +29,10 @@ impl Markup for Markdown {
         format!("{fence} {name} {fence}")
     }
 
+    fn formula(&self, text: &str) -> String {
+        self.text(text)
+    }
+
     fn digest(&self, digest: &str) -> String {
         self.code(digest)
     }

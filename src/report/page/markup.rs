@@ -14,6 +14,8 @@ pub trait Markup {
     fn sentence(&self, text: &str) -> String;
     /// A name as files have it.
     fn code(&self, name: &str) -> String;
+    /// A formula, in which letters behind an underscore stand below the line.
+    fn formula(&self, text: &str) -> String;
     /// A digest of a file.
     fn digest(&self, digest: &str) -> String;
     /// A text, and the id that files have for it.
@@ -40,6 +42,7 @@ pub trait Markup {
             Value::Text(text) => self.text(text),
             Value::Sentence(text) => self.sentence(text),
             Value::Code(name) => self.code(name),
+            Value::Formula(text) => self.formula(text),
             Value::Digest(digest) => self.digest(digest),
             Value::Named { text, id } => self.named(text, id),
             Value::Link { text, to } => self.link(text, to),

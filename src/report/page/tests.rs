@@ -367,6 +367,7 @@ fn nothing_in_a_text_is_markup() {
             Value::Text(text()),
             Value::Sentence(text()),
             Value::Code(text()),
+            Value::Formula(text()),
             Value::Digest(text()),
             named.clone(),
             Value::Link { text: text(), to: text() },

@@ -12,6 +12,8 @@ pub enum Value {
     Sentence(String),
     /// A name as files have it.
     Code(String),
+    /// A formula, in which letters behind an underscore stand below the line.
+    Formula(String),
     /// A digest of a file, such as its SHA-256.
     Digest(String),
     /// A text, and the id that files have for it. A terminal shows the text alone.
@@ -172,7 +174,7 @@ impl Value {
         match self {
             Value::Empty => String::new(),
             Value::Text(text) | Value::Sentence(text) => text.clone(),
-            Value::Code(text) | Value::Digest(text) => text.clone(),
+            Value::Code(text) | Value::Formula(text) | Value::Digest(text) => text.clone(),
             Value::Named { text, .. } | Value::Link { text, .. } => text.clone(),
             Value::State(state) => state.word.clone(),
             Value::Quantity(quantity) => quantity.whole(),

@@ -7,7 +7,7 @@ pub use super::files::{PlanContext, PlanFile};
 
 use sentence::step;
 
-use super::document::{Contents, Documented, Record};
+use super::document::{Documented, Record};
 use super::generator;
 use super::number::{date_time, digits, limit_digits, percent};
 use super::page::{Block, Column, Head, Lead, OnTerminal, Page, State, Step, Steps, Table, Value};
@@ -36,8 +36,8 @@ impl Documented for PlanFile {
         &self.context.planned_at
     }
 
-    fn contents(&self, _: &[Figure], lang: Lang) -> Contents {
-        Contents::Page(pages(self, Translator { lang }))
+    fn page(&self, _: &[Figure], lang: Lang) -> Page {
+        pages(self, Translator { lang })
     }
 
     /// The outcome in sentences, the schedule step by step, the explanations of each cause with what decides between

@@ -1,7 +1,7 @@
 //! The document of a proof: what was hidden, what was said, what was true, side by side.
 
-use super::document::{Contents, Documented, Record};
-use super::explain::{ExplainView, fit_table};
+use super::document::{Documented, Record};
+use super::explain::{fit, fit_summary, lead as lead_of, verdict as verdict_of};
 use super::generator;
 use super::number::{count, date_time, digits, duration, limit_digits, percent};
 use super::page::{
@@ -17,7 +17,6 @@ use crate::record::{
     ClaimOrigin, CourseRecord, Hidden, HiddenKind, KnownRecord, ProofOutcome, ProofRecord, ProtocolStep,
     RuleRecord,
 };
-use crate::report::explain::Context;
 
 /// Figures of the explanation while something was concealed begin so.
 pub const CONCEALED: &str = "concealed_";
@@ -51,8 +50,8 @@ impl Documented for ProofRecord {
         Some(&self.program.version)
     }
 
-    fn contents(&self, figures: &[Figure], lang: Lang) -> Contents {
-        Contents::Page(pages(self, figures, Translator { lang }))
+    fn page(&self, figures: &[Figure], lang: Lang) -> Page {
+        pages(self, figures, Translator { lang })
     }
 
     /// The outcome, what the engine said each time, and each rule with what was found.
@@ -62,8 +61,9 @@ impl Documented for ProofRecord {
         let lead = Lead { id: head.verdict.id.clone(), sentences: vec![summary(self, words)] };
         let mut out = vec![Block::Head(head), Block::Lead(lead)];
         for said in Said::all(self, words) {
+            let sentences = lead_of(said.of, words).sentences;
             out.push(Block::heading(said.title));
-            out.extend(said.view.summary.into_iter().map(Block::Paragraph));
+            out.extend(sentences.into_iter().map(Block::Paragraph));
         }
         out.push(Block::heading(words.t("prove.heading.rules")));
         out.push(Block::Table(rules(&self.rules, words)));
@@ -141,16 +141,16 @@ fn summary(record: &ProofRecord, words: Translator) -> String {
     words.with(&format!("prove.summary.{outcome}"), &[("n", &rules), ("failed", &failed)])
 }
 
-/// Hidden quantities, answers, and facts known from elsewhere.
-fn beside(record: &ProofRecord, said: &[Said], words: Translator) -> Vec<Block> {
+/// What was hidden, what was said, and what is known from elsewhere.
+fn beside(record: &ProofRecord, said: &[Said<'_>], words: Translator) -> Vec<Block> {
     let is_hidden = !record.hidden.is_empty();
     let hint = if is_hidden { "prove.hint.hidden" } else { "prove.hint.nothing_hidden" };
     let hidden = is_hidden.then(|| Block::Table(hidden(&record.hidden, words)));
     let hidden = hidden.into_iter().chain([Block::Hint(words.t(hint))]).collect();
     let verdict = |s: &Said| {
-        let state = State { id: s.view.verdict_class.to_owned(), word: s.view.verdict_word.clone() };
-        let heading = Heading { level: 3, text: s.title.clone().into(), verdict: Some(state) };
-        let sentences = s.view.summary.iter().cloned().map(Block::Paragraph);
+        let verdict = Some(verdict_of(s.of, words));
+        let heading = Heading { level: 3, text: s.title.clone().into(), verdict };
+        let sentences = lead_of(s.of, words).sentences.into_iter().map(Block::Paragraph);
         std::iter::once(Block::Heading(heading)).chain(sentences).collect::<Vec<_>>()
     };
     let references = || {
@@ -166,25 +166,18 @@ fn beside(record: &ProofRecord, said: &[Said], words: Translator) -> Vec<Block> 
     .collect()
 }
 
-/// What an explanation said.
-struct Said {
+/// An explanation of the proof.
+struct Said<'a> {
     title: String,
     /// Figures of it begin so.
     before: &'static str,
-    view: ExplainView,
+    of: &'a Explanation,
 }
 
-impl Said {
-    /// Answers while something was concealed, and with it shown.
-    fn all(record: &ProofRecord, words: Translator) -> Vec<Said> {
-        let said = |key: &str, explanation: &Explanation, before| {
-            let context = Context { explained_at: record.proved_at.clone(), ..Context::default() };
-            Said {
-                title: words.t(key),
-                before,
-                view: ExplainView::new(explanation, &[], &context, words.lang),
-            }
-        };
+impl<'a> Said<'a> {
+    /// What was said while something was concealed, and with it shown.
+    fn all(record: &'a ProofRecord, words: Translator) -> Vec<Said<'a>> {
+        let said = |key: &str, of: &'a Explanation, before| Said { title: words.t(key), before, of };
         let first = if record.hidden.is_empty() { "prove.when.only" } else { "prove.when.concealed" };
         let concealed = said(first, &record.concealed, CONCEALED);
         let unveiled = record.unveiled.as_ref().map(|u| said("prove.when.unveiled", u, UNVEILED));
@@ -194,8 +187,8 @@ impl Said {
     /// Its figures, and the fit before and after.
     fn section(&self, figures: &[Figure], words: Translator) -> Block {
         let mut below = drawn(figures, |f| f.id.starts_with(self.before), words);
-        below.push(Block::Table(fit_table(&self.view.fit, words)));
-        below.push(Block::Paragraph(self.view.fit_summary.clone()));
+        below.push(Block::Table(fit("cards", self.of, words)));
+        below.push(Block::Paragraph(fit_summary(self.of, words)));
         Block::section("figures", self.title.clone(), below)
     }
 }

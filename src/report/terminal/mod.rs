@@ -2,14 +2,12 @@
 //!
 //! Texts from files are made visible before they are styled, so that only this module writes control sequences.
 
-mod explanation;
 mod results;
 mod run;
 mod screen;
 pub(super) mod table;
 mod wrap;
 
-pub use explanation::explanation;
 pub use results::{results, verdict};
 pub use screen::Terminal;
 pub(super) use screen::verdict_style;

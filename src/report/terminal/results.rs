@@ -1,10 +1,9 @@
 //! Results of any kind as text.
 
+use super::Terminal;
 use super::run::run;
-use super::{Terminal, explanation};
 use crate::estimate::Verdict;
 use crate::i18n::Lang;
-use crate::report::explain::ExplainView;
 use crate::report::translator::Translator;
 use crate::report::view::{Part, Phase};
 use crate::report::{Record, Results, RunResults, page};
@@ -15,10 +14,6 @@ pub fn results(results: &Results, lang: Lang, terminal: Terminal) -> String {
         return run_with_phases(of, lang, terminal);
     }
     match results.record().record() {
-        Record::Explanation(of) => {
-            let view = ExplainView::new(&of.explanation, &[], &of.context, lang);
-            explanation(&view, lang, terminal)
-        }
         // The units of a lot were told before, a line each.
         Record::Lot(_) => format!("\n{}", page::terminal(&results.record().on_terminal(lang), terminal)),
         _ => page::terminal(&results.record().on_terminal(lang), terminal),

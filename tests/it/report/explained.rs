@@ -6,9 +6,10 @@ use sagnac::figure::Figure;
 use sagnac::i18n::{EffectText, Lang, effect_text, table};
 use sagnac::mismatch::figures::{TimeSeries, time_course};
 use sagnac::mismatch::finding::Explanation;
-use sagnac::report::Renderer;
-use sagnac::report::explain::{Context, ExplainView};
-use sagnac::report::terminal::{Terminal, explanation};
+use sagnac::report::explain::{Context, ExplainFile};
+use sagnac::report::page::{Block, Value, terminal};
+use sagnac::report::terminal::Terminal;
+use sagnac::report::{Document, Documented, PageForm, Renderer};
 use std::collections::BTreeSet;
 
 fn context() -> Context {
@@ -23,8 +24,36 @@ fn context() -> Context {
     }
 }
 
-fn view(all: &Explanation, lang: Lang) -> ExplainView {
-    ExplainView::new(all, &[], &context(), lang)
+fn file(all: &Explanation) -> ExplainFile {
+    ExplainFile { explanation: all.clone(), context: context() }
+}
+
+/// All blocks of a page, those within sections too.
+fn flat(blocks: &[Block]) -> Vec<&Block> {
+    let each = blocks.iter().flat_map(|block| match block {
+        Block::Section(_, below) | Block::Fold(_, below) => flat(below),
+        other => vec![other],
+    });
+    each.collect()
+}
+
+/// The verdict in sentences.
+fn verdict(all: &Explanation, lang: Lang) -> Vec<String> {
+    let page = file(all).page(&[], lang);
+    let lead =
+        page.blocks.into_iter().find_map(|b| if let Block::Lead(lead) = b { Some(lead) } else { None });
+    lead.unwrap().sentences
+}
+
+/// Names of the parameters of the effects.
+fn parameters(all: &Explanation, lang: Lang) -> Vec<String> {
+    let names = |block: &Block| match block {
+        Block::Table(table) => {
+            table.only(&["parameter"]).rows.iter().flat_map(|r| &r.cells).map(Value::plain).collect()
+        }
+        _ => Vec::new(),
+    };
+    flat(&file(all).page(&[], lang).blocks).into_iter().flat_map(names).collect()
 }
 
 fn figure() -> Figure {
@@ -40,26 +69,25 @@ fn figure() -> Figure {
 }
 
 fn pages(all: &Explanation, lang: Lang) -> [String; 2] {
-    let view = ExplainView::new(all, &[figure()], &context(), lang);
-    let renderer = Renderer::new();
-    ["explain.html", "explain.md"].map(|name| renderer.render_view(name, &view, lang).unwrap())
+    let (file, figures) = (file(all), [figure()]);
+    let document = Document::new(&file, &figures, &[], lang);
+    [PageForm::Html, PageForm::Markdown].map(|form| document.text(form, &Renderer::new()).unwrap())
 }
 
 #[test]
 fn every_kind_is_said_with_its_parameters() {
     assert_eq!(fixture::KINDS.len(), 42, "the kinds of the contract but `unknown`");
     for lang in Lang::ALL {
-        for (kind, parameters) in fixture::KINDS {
+        for (kind, ids) in fixture::KINDS {
             let all = fixture::explained(vec![fixture::of_kind(kind)]);
-            let said = &view(&all, *lang).summary[0];
+            let said = &verdict(&all, *lang)[0];
             assert!(!said.contains(['{', '}']) && !said.contains("explain."), "{kind}: {said}");
             assert!(!said.contains(kind) || !kind.contains('_'), "{kind} has no words: {said}");
             // Of each kind the sentence gives at least one number, and every parameter has a name.
             assert!(said.contains('3'), "{kind}: {said}");
-            for row in &view(&all, *lang).effects[0].parameters {
-                assert_ne!(row.name, row.id, "{kind}: a parameter without a name");
-            }
-            assert_eq!(view(&all, *lang).effects[0].parameters.len(), parameters.len());
+            let names = parameters(&all, *lang);
+            assert!(names.iter().all(|n| !ids.contains(&n.as_str())), "{kind}: a parameter without a name");
+            assert_eq!(names.len(), ids.len());
         }
     }
 }
@@ -70,7 +98,7 @@ fn a_parameter_that_could_not_be_estimated_is_not_invented() {
         let mut finding = fixture::of_kind(kind);
         finding.parameters.clear();
         for lang in Lang::ALL {
-            let said = view(&fixture::explained(vec![finding.clone()]), *lang).summary.join(" ");
+            let said = verdict(&fixture::explained(vec![finding.clone()]), *lang).join(" ");
             assert!(!said.contains(['{', '}']) && !said.contains("NaN"), "{kind}: {said}");
             if find(kind).is_some() {
                 assert!(said.contains(effect_text(kind, EffectText::Title, *lang)), "{kind}: {said}");
@@ -85,7 +113,12 @@ fn every_domain_of_the_contract_has_its_phrase() {
         for lang in Lang::ALL {
             let mut finding = fixture::of_kind("rate_ramp");
             finding.places = vec![fixture::place(domain, 2.0, 3.0)];
-            let shown = view(&fixture::explained(vec![finding]), *lang).effects[0].places[0].clone();
+            let page = file(&fixture::explained(vec![finding])).page(&[], *lang);
+            let about = flat(&page.blocks).into_iter().find_map(|b| match b {
+                Block::Facts(facts) if facts.class == "about" => facts.rows.first(),
+                _ => None,
+            });
+            let shown = about.unwrap().1.plain();
             assert!(shown.contains('2') && !shown.contains(['{', '_']), "{domain}: {shown}");
         }
     }
@@ -96,7 +129,8 @@ fn what_the_verdicts_say() {
     let mut out = String::new();
     for lang in Lang::ALL {
         for all in [fixture::consistent(), fixture::bias_step(), fixture::two(), fixture::unknown()] {
-            out.push_str(&explanation(&view(&all, *lang), *lang, Terminal { width: 100, colour: false }));
+            let blocks = file(&all).on_terminal(*lang);
+            out.push_str(&terminal(&blocks, Terminal { width: 100, colour: false }));
             out.push('\n');
         }
     }
