@@ -1,7 +1,7 @@
-//! Reports: HTML and Markdown as views of the run record, figures as SVG.
+//! Documents: a record as a page of blocks, shown as HTML, Markdown, PDF and text for a terminal; figures as SVG.
 //!
-//! The way through: [`view`] turns the record into words and printed numbers, [`render`] puts them through the
-//! templates, [`svg`] draws the figures. Nothing is measured or decided here, and no recording is needed.
+//! A module for each document turns its record into blocks ([`view`] that of a run), [`page`] lays them out in each form,
+//! [`render`] has the templates, [`svg`] draws the figures. Nothing is measured or decided here, and no recording is needed.
 
 pub mod compare;
 pub mod datasheet;

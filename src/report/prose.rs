@@ -172,8 +172,8 @@ mod tests {
 
     #[test]
     fn letters_behind_an_underscore_stand_below_the_line() {
-        assert_eq!(subscripted("θ_x² < Ω_max·V_1"), "θ<sub>x</sub>² &lt; Ω<sub>max</sub>·V<sub>1</sub>");
-        assert_eq!(subscripted("y = x"), "y = x");
+        assert_eq!(html_formula("θ_x² < Ω_max·V_1"), "θ<sub>x</sub>² &lt; Ω<sub>max</sub>·V<sub>1</sub>");
+        assert_eq!(html_formula("y = x"), "y = x");
     }
 
     #[test]

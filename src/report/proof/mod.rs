@@ -147,7 +147,7 @@ fn beside(record: &ProofRecord, said: &[Said<'_>], words: Translator) -> Vec<Blo
     let hint = if is_hidden { "prove.hint.hidden" } else { "prove.hint.nothing_hidden" };
     let hidden = is_hidden.then(|| Block::Table(hidden(&record.hidden, words)));
     let hidden = hidden.into_iter().chain([Block::Hint(words.t(hint))]).collect();
-    let verdict = |s: &Said| {
+    let verdict = |s: &Said<'_>| {
         let verdict = Some(verdict_of(s.of, words));
         let heading = Heading { level: 3, text: s.title.clone().into(), verdict };
         let sentences = lead_of(s.of, words).sentences.into_iter().map(Block::Paragraph);
