@@ -47,7 +47,7 @@ impl From<String> for Cell {
 pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> String {
     let rows: Vec<Vec<Cell>> = rows
         .iter()
-        .map(|row| row.iter().map(|c| Cell { text: visible(&c.text).into_owned(), style: c.style }).collect())
+        .map(|row| row.iter().map(|c| Cell { text: one_line(&c.text), style: c.style }).collect())
         .collect();
     let cell = |row: &[Cell], c: usize| row.get(c).cloned().unwrap_or_default();
     let filled = |c: &usize| rows.iter().any(|row| !cell(row, *c).text.is_empty());
@@ -155,6 +155,11 @@ fn stacked(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> String
         }
     }
     out
+}
+
+/// A text of a cell as one line. Its line breaks become blanks at which it is not wrapped: none of them begins a line anew.
+fn one_line(text: &str) -> String {
+    visible(&text.replace(['\n', '\r'], "\u{a0}")).into_owned()
 }
 
 #[cfg(test)]
