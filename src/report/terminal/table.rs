@@ -49,8 +49,62 @@ pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Stri
         .iter()
         .map(|row| row.iter().map(|c| Cell { text: one_line(&c.text), style: c.style }).collect())
         .collect();
-    let cell = |row: &[Cell], c: usize| row.get(c).cloned().unwrap_or_default();
-    let filled = |c: &usize| rows.iter().any(|row| !cell(row, *c).text.is_empty());
+    let Some(Fitted { shown, widths }) = fitted(columns, &rows, terminal) else {
+        return stacked(columns, &rows, terminal);
+    };
+    let width_of = |c: usize| widths.get(c).copied().unwrap_or(0);
+    let line = |texts: &[(usize, Cell)]| {
+        let mut out = String::new();
+        for (c, cell) in texts {
+            let padding = " ".repeat(width_of(*c).saturating_sub(cell.text.width()));
+            let text = terminal.styled(&cell.text, cell.style);
+            let right = columns.get(*c).is_some_and(|column| column.align == Align::Right);
+            out.push_str("  ");
+            out.push_str(&if right { padding + &text } else { text + &padding });
+        }
+        format!("{}\n", out.trim_end())
+    };
+    let heads: Vec<(usize, Cell)> = shown
+        .iter()
+        .filter_map(|c| {
+            Some((*c, Cell { text: columns.get(*c)?.head.clone(), style: Style::new().dimmed() }))
+        })
+        .collect();
+    let mut out = line(&heads);
+    for row in &rows {
+        let texts: Vec<(usize, Style, Vec<String>)> = shown
+            .iter()
+            .map(|c| {
+                let of = row.get(*c).cloned().unwrap_or_default();
+                let fits = of.text.width() <= width_of(*c);
+                (*c, of.style, if fits { vec![of.text] } else { wrapped(&of.text, width_of(*c)) })
+            })
+            .collect();
+        for n in 0..texts.iter().map(|(_, _, lines)| lines.len()).max().unwrap_or(0) {
+            let cells: Vec<(usize, Cell)> = texts
+                .iter()
+                .map(|(c, style, lines)| {
+                    // The rest of a name is indented.
+                    let indent = if *c == 0 && n > 0 { "  " } else { "" };
+                    let text = lines.get(n).map(|text| format!("{indent}{text}"));
+                    (*c, text.map(|text| Cell { text, style: *style }).unwrap_or_default())
+                })
+                .collect();
+            out.push_str(&line(&cells));
+        }
+    }
+    out
+}
+
+/// Which columns a table shows, and how wide each of all columns is.
+struct Fitted {
+    shown: Vec<usize>,
+    widths: Vec<usize>,
+}
+
+/// The columns that fit the terminal and their widths, `None` where not even wrapped texts fit.
+fn fitted(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Option<Fitted> {
+    let filled = |c: &usize| rows.iter().any(|row| row.get(*c).is_some_and(|cell| !cell.text.is_empty()));
     let mut shown: Vec<usize> = (0..columns.len()).filter(filled).collect();
     // Looked at once: a line of a table must not look through all of it.
     let mut widths: Vec<usize> = columns
@@ -83,54 +137,13 @@ pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Stri
         let is_text = |c: &usize| *c != 0 && columns.get(*c).is_some_and(|of| of.align == Align::Left);
         let widest = shown.iter().copied().filter(is_text).max_by_key(|c| widths.get(*c));
         let least = LEAST_NAME_WIDTH.max(widest.map_or(0, longest_word));
-        let Some(width) = widest.and_then(|c| widths.get_mut(c)).filter(|width| **width > least) else {
-            return stacked(columns, &rows, terminal);
-        };
+        let width = widest.and_then(|c| widths.get_mut(c)).filter(|width| **width > least)?;
         *width -= 1;
     };
-    let name_width = names.min(name_width);
-    let widest = |c: usize| if c == 0 { name_width } else { widths.get(c).copied().unwrap_or(0) };
-    let line = |texts: &[(usize, Cell)]| {
-        let mut out = String::new();
-        for (c, cell) in texts {
-            let padding = " ".repeat(widest(*c).saturating_sub(cell.text.width()));
-            let text = terminal.styled(&cell.text, cell.style);
-            let right = columns.get(*c).is_some_and(|column| column.align == Align::Right);
-            out.push_str("  ");
-            out.push_str(&if right { padding + &text } else { text + &padding });
-        }
-        format!("{}\n", out.trim_end())
-    };
-    let heads: Vec<(usize, Cell)> = shown
-        .iter()
-        .filter_map(|c| {
-            Some((*c, Cell { text: columns.get(*c)?.head.clone(), style: Style::new().dimmed() }))
-        })
-        .collect();
-    let mut out = line(&heads);
-    for row in &rows {
-        let texts: Vec<(usize, Style, Vec<String>)> = shown
-            .iter()
-            .map(|c| {
-                let of = cell(row, *c);
-                let fits = of.text.width() <= widest(*c);
-                (*c, of.style, if fits { vec![of.text] } else { wrapped(&of.text, widest(*c)) })
-            })
-            .collect();
-        for n in 0..texts.iter().map(|(_, _, lines)| lines.len()).max().unwrap_or(0) {
-            let cells: Vec<(usize, Cell)> = texts
-                .iter()
-                .map(|(c, style, lines)| {
-                    // The rest of a name is indented.
-                    let indent = if *c == 0 && n > 0 { "  " } else { "" };
-                    let text = lines.get(n).map(|text| format!("{indent}{text}"));
-                    (*c, text.map(|text| Cell { text, style: *style }).unwrap_or_default())
-                })
-                .collect();
-            out.push_str(&line(&cells));
-        }
+    if let Some(width) = widths.first_mut() {
+        *width = names.min(name_width);
     }
-    out
+    Some(Fitted { shown, widths })
 }
 
 /// Each row as a paragraph: the first and the last cell, below them the others behind their heads.
