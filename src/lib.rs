@@ -75,8 +75,8 @@ pub use library::{
 pub use record::UnitUnderTest;
 pub use report::export;
 pub use sagnac_core::{
-    claim, criticism, effect, estimate, evidence, figure, influence, lot, measurand, mismatch, numeric, plan,
-    rate_table, schedule, temperature, units,
+    claim, criticism, effect, estimate, evidence, figure, formula, influence, lot, measurand, mismatch,
+    numeric, plan, rate_table, schedule, temperature, units,
 };
 
 /// Noise of a gyro at rest: [`allan`](fn@allan) and [`identify`](fn@identify) for samples in memory, and the methods that it is made of.

@@ -32,7 +32,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
     (
         CORE,
         &[
-            &["lot"],
+            &["formula", "lot"],
             &["rate_table", "temperature"],
             &["influence"],
             &["evidence"],
@@ -66,6 +66,7 @@ const FACADE: &[&str] = &[
     "estimate",
     "evidence",
     "figure",
+    "formula",
     "influence",
     "lot",
     "measurand",

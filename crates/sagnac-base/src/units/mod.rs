@@ -15,6 +15,7 @@
 //!
 //! Other units exist at the edges only: in files that are read and in numbers that are shown.
 
+mod arithmetic;
 mod describe;
 mod dimension;
 mod error;
