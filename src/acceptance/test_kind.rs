@@ -162,6 +162,11 @@ pub(super) trait Evidence {
     /// The estimates of a measurand on every channel; channels asked for and limits are applied by the pipeline.
     fn estimates(&self, reading: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate>;
 
+    /// The correlation of two estimates from one fit; `None` where they are not of one, or where it is not known.
+    fn correlation(&self, _one: &Estimate, _other: &Estimate) -> Option<f64> {
+        None
+    }
+
     /// The figures that the report asks for.
     fn figures(&self, reading: &Reading<'_>) -> Vec<Figure>;
 

@@ -1,5 +1,6 @@
 //! Limits, reference values and typical values as data, in the units of their measurands.
 
+use super::derived::DerivedLimit;
 use super::diagnostics::Span;
 use crate::estimate::Limit;
 use crate::i18n::LocalText;
@@ -11,12 +12,21 @@ use crate::record::ReferenceRecord;
 pub struct LimitSet {
     /// Limits.
     pub limits: Vec<LimitSpec>,
+    /// Limits of quantities by a formula.
+    pub derived: Vec<DerivedLimit>,
     /// Published values, in the order of the file.
     pub references: Vec<Reference>,
     /// Typical values of the family.
     pub expected: Vec<Expected>,
     /// Limits that are written per second or in radians.
     pub fast_units: Vec<FastUnit>,
+}
+
+impl LimitSet {
+    /// Number of limits, of measurands and of formulas.
+    pub fn count(&self) -> usize {
+        self.limits.len() + self.derived.len()
+    }
 }
 
 /// A limit and what it is for.

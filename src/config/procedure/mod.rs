@@ -3,6 +3,7 @@
 
 pub(crate) mod channel;
 pub mod check;
+pub mod derived;
 pub mod guide;
 mod instrument;
 pub mod limit_set;

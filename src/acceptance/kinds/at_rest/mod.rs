@@ -22,7 +22,8 @@ use crate::config::procedure::model::MeasurandSpec;
 use crate::estimate::{Estimate, Verdict};
 use crate::figure::Figure;
 use crate::i18n::note;
-use crate::measurand::GyroEvidence;
+use crate::measurand::{self, GyroEvidence, PowerModel};
+use crate::noise::composite::Parameter;
 use crate::noise::tails::Deviations;
 use crate::noise::tau_grid::TauGrid;
 use crate::record::RunRecord;
@@ -112,6 +113,17 @@ impl Evidence for RestEvidence {
             estimates.into_iter().map(move |e| if moves { without_noise(e, spec) } else { e })
         };
         self.gyros.iter().flat_map(of).collect()
+    }
+
+    fn correlation(&self, one: &Estimate, other: &Estimate) -> Option<f64> {
+        let gyro = self.gyros.iter().find(|g| g.channel == one.channel && g.channel == other.channel)?;
+        let fitted = |e: &Estimate| match measurand::find(e.id)?.power? {
+            PowerModel::NoiseTerm(term) if e.method == gyro.identification.method => {
+                Some(Parameter::Coefficient(term))
+            }
+            _ => None,
+        };
+        gyro.identification.described.correlation(fitted(one)?, fitted(other)?)
     }
 
     fn figures(&self, reading: &Reading<'_>) -> Vec<Figure> {
