@@ -13,6 +13,7 @@ pub mod exit;
 mod explain;
 mod explain_args;
 mod explain_jointly;
+mod export;
 mod help;
 mod history;
 mod init;
@@ -105,6 +106,10 @@ enum Verb {
         Examples:\n  sagnac report reports/SN-0042 --lang ru --out reports/SN-0042-ru\n  \
         sagnac report result.json --format html --templates templates")]
     Report(report::ReportArgs),
+    /// Write the parameters of a unit for an estimator, an autopilot or a simulator
+    #[command(after_help = "Examples:\n  sagnac export reports/SN-0042 --for kalibr --out imu0.yaml\n  \
+        sagnac export reports/SN-0042 --for gazebo --channels gyro_x,gyro_y,gyro_z")]
+    Export(export::ExportArgs),
     /// Find where a recording differs from its simulation, and why
     #[command(
         after_help = "Exit codes: 0 consistent, 1 mismatch explained, 2 could not run, 3 unknown mismatch.\n\n\
@@ -231,6 +236,7 @@ pub fn main() -> ExitCode {
         Verb::Init(args) => init::main(&args, lang),
         Verb::Analyze(args) => analyze::main(&args, lang),
         Verb::Report(args) => report::main(&args, lang),
+        Verb::Export(args) => export::main(&args, lang),
         Verb::Compare(args) => compare::main(&args, lang),
         Verb::Datasheet(args) => datasheet::main(&args, lang),
         Verb::Model(args) => model::main(&args, lang),

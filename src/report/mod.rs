@@ -16,6 +16,7 @@ pub mod lot;
 pub mod methods;
 pub mod number;
 pub mod page;
+pub mod parameters;
 pub mod pdf;
 pub mod plan;
 pub mod proof;

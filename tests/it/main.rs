@@ -32,6 +32,7 @@ mod model;
 mod noise;
 mod noticeable;
 mod oracles_sp1065;
+mod parameters;
 mod plan;
 mod power;
 mod procedures;

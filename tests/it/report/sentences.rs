@@ -69,6 +69,7 @@ const LITERALS: &[(&str, &str, &str)] = &[
         "a fault of the reader of JSON, quoted as it says it",
     ),
     ("src/cli/demo.rs", "sagnac run static-bias", "a command line"),
+    ("src/report/parameters/formats.rs", "import numpy as np", "a line of Python"),
     (
         "crates/sagnac-ingest/src/column_inference.rs",
         "the inside units are units",
