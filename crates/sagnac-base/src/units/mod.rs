@@ -215,6 +215,21 @@ mod tests {
             ("м/с²", "m/s^2"),
             ("об/мин", "rpm"),
             ("град/√ч", "deg/sqrt(h)"),
+            ("rad s^-1", "rad/s"),
+            ("rad.s-1", "rad/s"),
+            ("rad s-1", "rad/s"),
+            ("rad*s**-1", "rad/s"),
+            ("deg s-1", "deg/s"),
+            ("deg·s⁻¹", "deg/s"),
+            ("Degrees/s", "deg/s"),
+            ("DPS", "dps"),
+            ("Deg/Sec", "deg/s"),
+            ("radps", "rad/s"),
+            ("degrees/second", "deg/s"),
+            ("m s^-2", "m/s^2"),
+            ("m/s2", "m/s^2"),
+            ("m.s-2", "m/s^2"),
+            ("°F", "degF"),
         ] {
             assert!((factor(a, b) - 1.0).abs() < 1e-14, "{a} {b}");
         }
@@ -233,6 +248,22 @@ mod tests {
         }
         assert!((f.convert(68.0, &c).unwrap() - 20.0).abs() < 1e-12);
         assert_eq!(factor("ppm/K", "ppm/degC"), 1.0);
+    }
+
+    #[test]
+    fn prefixes_count_and_no_suggestion_leaves_one_out() {
+        for (a, b, by) in
+            [("mdps", "dps", 1e-3), ("udps", "dps", 1e-6), ("kHz", "Hz", 1e3), ("mradps", "rad/s", 1e-3)]
+        {
+            assert!((factor(a, b) / by - 1.0).abs() < 1e-12, "{a}");
+        }
+        for odd in ["cdps", "xdps", "zrad"] {
+            assert!(
+                matches!(Unit::parse(odd), Err(UnitError::Unknown { suggestion: None, .. })),
+                "{odd}: {:?}",
+                Unit::parse(odd)
+            );
+        }
     }
 
     #[test]

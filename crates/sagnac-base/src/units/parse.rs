@@ -2,7 +2,7 @@
 
 use super::dimension::{BASES, Dimension};
 use super::error::UnitError;
-use super::symbols::{SUGGESTED, symbol};
+use super::symbols::{SUGGESTED, differ_by_prefix, symbol};
 
 pub(super) struct Parser<'a> {
     pub text: &'a str,
@@ -37,9 +37,13 @@ impl Parser<'_> {
         }
         let (mut factor, mut dimension) = self.power()?;
         loop {
+            let blank = self.rest.starts_with([' ', '\t', '\u{a0}']);
             let divide = if self.take('/') {
                 true
-            } else if ['*', '·', '⋅', '∙', '×'].into_iter().any(|sign| self.take(sign)) {
+            } else if ['*', '·', '⋅', '∙', '×', '.'].into_iter().any(|sign| self.take(sign)) {
+                false
+            } else if blank && self.rest.starts_with(char::is_alphabetic) {
+                // A blank multiplies, as in `rad s^-1`.
                 false
             } else {
                 break;
@@ -57,7 +61,18 @@ impl Parser<'_> {
 
     fn power(&mut self) -> Result<(f64, Dimension), UnitError> {
         let (factor, dimension) = self.atom()?;
-        let halves: i8 = if self.take('^') {
+        let signed = |rest: &str| {
+            let digits = rest.strip_prefix('-').unwrap_or(rest);
+            digits.starts_with(|c: char| ('1'..='6').contains(&c))
+        };
+        let halves: i8 = if self.take('^')
+            || self.rest.strip_prefix("**").is_some_and(|r| {
+                self.rest = r;
+                true
+            }) {
+            self.exponent()?
+        } else if signed(self.rest) && dimension != [0; BASES] {
+            // Without a sign of a power: `s-1`, `s2`.
             self.exponent()?
         } else {
             let sign = if self.take('⁻') { -1 } else { 1 };
@@ -114,6 +129,7 @@ impl Parser<'_> {
             return self.raise(factor, dimension, 1);
         }
         let end = self.rest.find(|c: char| "/*·⋅∙×^¹²³⁻() \t\u{a0}√".contains(c)).unwrap_or(self.rest.len());
+        let end = self.split(end);
         let (name, rest) = self.rest.split_at(end);
         if name.is_empty() {
             return Err(self.grammar("unit_error.reason.symbol"));
@@ -128,9 +144,21 @@ impl Parser<'_> {
             suggestion: SUGGESTED
                 .iter()
                 .map(|s| (strsim::damerau_levenshtein(&name.to_lowercase(), &s.to_lowercase()), *s))
-                .filter(|(distance, s)| *distance <= 1 + s.len() / 4)
+                .filter(|(distance, s)| *distance <= 1 + s.len() / 4 && !differ_by_prefix(name, s))
                 .min_by_key(|(distance, _)| *distance)
                 .map(|(_, s)| s.to_owned()),
         })
+    }
+    /// The end of the symbol that begins the rest, at most at `end`: before a point that multiplies, or before an exponent.
+    fn split(&self, end: usize) -> usize {
+        let whole = self.rest.get(..end).unwrap_or_default();
+        if symbol(whole).is_some() {
+            return end;
+        }
+        let ends = whole
+            .char_indices()
+            .filter(|(_, c)| *c == '.' || *c == '-' || c.is_ascii_digit())
+            .map(|(i, _)| i);
+        ends.filter(|&i| whole.get(..i).is_some_and(|head| symbol(head).is_some())).last().unwrap_or(end)
     }
 }
