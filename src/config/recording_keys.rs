@@ -5,8 +5,8 @@ use crate::config::reader::{Reader, shorten};
 use crate::config::section::Section;
 use crate::config::spec::Word;
 use crate::config::table::Table;
-use crate::i18n::note;
-use sagnac_ingest::{Encoding, FORMATS, ReadOptions, TextOptions};
+use crate::i18n::{Note, note};
+use sagnac_ingest::{Encoding, FORMATS, ReadOptions, RowMatch, TextOptions};
 
 /// How a recording is to be read.
 #[derive(Table)]
@@ -35,6 +35,12 @@ pub(crate) struct RecordingKeys {
     /// Part of a container that holds the recording: a dataset, a variable, a topic.
     #[key(example = "/imu/gyro")]
     part: Option<String>,
+    /// Only the rows in which a column has this value, where several sensors share a table.
+    #[key(name = "where", example = "sensor=0")]
+    only: Option<String>,
+    /// First and last row to read, counted from 1; all if omitted.
+    #[key(example = "1-600")]
+    rows: Option<String>,
 }
 
 impl RecordingKeys {
@@ -73,7 +79,16 @@ impl RecordingKeys {
             let help = Some("reading.comma_quotes".into());
             reader.error(&section.span_of("decimal"), "reading.comma_twice", help);
         }
-        ReadOptions { format: self.format, text, part: self.part, layout: None }
+        let mut known = |key: &str, text: &Option<String>, is_read: bool, message: &'static str| {
+            if let Some(text) = text.as_deref().filter(|_| !is_read) {
+                reader.error(&section.span_of(key), Note::new(message).with("given", shorten(text)), None);
+            }
+        };
+        let (only, rows) =
+            (self.only.as_deref().and_then(RowMatch::parse), self.rows.as_deref().and_then(rows));
+        known("where", &self.only, only.is_some(), "reading.where");
+        known("rows", &self.rows, rows.is_some(), "reading.rows");
+        ReadOptions { format: self.format, text, part: self.part, only, rows, ..ReadOptions::default() }
     }
 }
 
@@ -130,4 +145,12 @@ pub fn decimal(word: &str) -> Option<u8> {
         "comma" | "," => Some(b','),
         _ => None,
     }
+}
+
+/// First and last row of a range such as `1-600`; `257-` has no end.
+pub fn rows(text: &str) -> Option<(u64, u64)> {
+    let (first, last) = text.trim().split_once('-')?;
+    let first: u64 = first.trim().parse().ok()?;
+    let last = if last.trim().is_empty() { u64::MAX } else { last.trim().parse().ok()? };
+    (first > 0 && first <= last).then_some((first, last))
 }

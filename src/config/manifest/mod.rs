@@ -79,6 +79,9 @@ impl Manifest {
             },
             part: own.part.or_else(|| other.part.clone()),
             layout: own.layout.or_else(|| other.layout.clone()),
+            time_unit: own.time_unit.or_else(|| other.time_unit.clone()),
+            only: own.only.or_else(|| other.only.clone()),
+            rows: own.rows.or(other.rows),
         }
     }
 }
