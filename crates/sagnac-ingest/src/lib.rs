@@ -152,6 +152,8 @@ pub use system::io_reason;
 const HEAD: usize = 256 << 10;
 
 #[cfg(all(test, feature = "all"))]
+mod log_layout_tests;
+#[cfg(all(test, feature = "all"))]
 mod reading_tests;
 #[cfg(all(test, feature = "text"))]
 mod tests;
