@@ -33,10 +33,10 @@ pub(crate) struct Judgement {
 }
 
 /// Fewest values from which a column is judged.
-const ENOUGH: usize = 8;
+const MIN_JUDGED_VALUES: usize = 8;
 
 /// Share of steps backwards from which a column is no clock.
-const FALLING: f64 = 0.1;
+const MAX_SHARE_BACKWARDS: f64 = 0.1;
 
 /// Judges the columns of a file. `labels`: words in the first rows of columns of text.
 pub(crate) fn judge(
@@ -98,14 +98,14 @@ fn finite(values: &[f64]) -> impl Iterator<Item = f64> + '_ {
 fn is_constant(values: &[f64]) -> bool {
     let mut of = finite(values);
     let Some(first) = of.next() else { return false };
-    values.len() >= ENOUGH && of.all(|v| v == first)
+    values.len() >= MIN_JUDGED_VALUES && of.all(|v| v == first)
 }
 
 /// True unless the values show that they count nothing: whole numbers that grow by the same small step nearly always.
 fn counts(values: &[f64]) -> bool {
     let of: Vec<f64> = finite(values).collect();
-    if of.len() < ENOUGH {
-        return values.len() < ENOUGH || !of.is_empty();
+    if of.len() < MIN_JUDGED_VALUES {
+        return values.len() < MIN_JUDGED_VALUES || !of.is_empty();
     }
     if of.iter().any(|v| v.fract() != 0.0) {
         return false;
@@ -136,7 +136,7 @@ fn time(
     }
     let of: Vec<f64> = finite(values).collect();
     let is_bare = column.name.chars().filter(|c| c.is_alphanumeric()).count() == 1 && !guess.unit_is_named;
-    if is_bare && of.len() >= ENOUGH && !goes_forward(&of) {
+    if is_bare && of.len() >= MIN_JUDGED_VALUES && !goes_forward(&of) {
         // `T` is a temperature where it does not run.
         let like_degrees = of.iter().all(|v| (-100.0..200.0).contains(v));
         let role = if like_degrees { Role::Temperature } else { Role::Auxiliary };
@@ -149,7 +149,7 @@ fn time(
             ..guess
         });
     }
-    if values.len() >= ENOUGH && of.is_empty() && stated.rate_hz.is_some() {
+    if values.len() >= MIN_JUDGED_VALUES && of.is_empty() && stated.rate_hz.is_some() {
         return Some(demoted(column, guess, "guess.no_value"));
     }
     let by_user = stated.time_unit.as_ref();
@@ -223,12 +223,13 @@ fn goes_forward(values: &[f64]) -> bool {
     let all = values.len().saturating_sub(1).max(1) as f64;
     let growing = steps().filter(|d| *d > 0.0).count() as f64;
     let falling = steps().filter(|d| *d < 0.0).count() as f64;
-    growing > 0.0 && falling / all <= FALLING && growing / all > 0.02
+    growing > 0.0 && falling / all <= MAX_SHARE_BACKWARDS && growing / all > 0.02
 }
 
 /// A temperature without a unit: in kelvins where the values are those.
 fn kelvins(column: &Column, guess: InferredColumn, values: &[f64]) -> Option<InferredColumn> {
-    let warm = finite(values).count() >= ENOUGH && finite(values).all(|v| (200.0..420.0).contains(&v));
+    let warm =
+        finite(values).count() >= MIN_JUDGED_VALUES && finite(values).all(|v| (200.0..420.0).contains(&v));
     let unit = Unit::parse("K").ok().filter(|_| warm)?;
     let reason = note!("guess.kelvin", name = column.name.as_str());
     Some(InferredColumn { unit, reason, ..guess })
@@ -253,7 +254,7 @@ fn quaternions(columns: &[Column], values: &[FirstValues]) -> Vec<usize> {
         let norm = |row: usize| -> f64 {
             parts.iter().filter_map(|i| values.get(*i)?.get(row)).map(|v| v * v).sum()
         };
-        if rows >= ENOUGH && (0..rows).all(|row| (norm(row) - 1.0).abs() < 0.01) {
+        if rows >= MIN_JUDGED_VALUES && (0..rows).all(|row| (norm(row) - 1.0).abs() < 0.01) {
             found.extend(parts);
         }
     }
@@ -272,7 +273,7 @@ fn unsigned(columns: &[Column], values: &[FirstValues]) -> Vec<(usize, f64)> {
         let size =
             sizes.into_iter().find(|size| of.iter().all(|v| v.fract() == 0.0 && (0.0..*size).contains(v)))?;
         let (low, high) = (|v: f64| v < 0.25 * size, |v: f64| v >= 0.75 * size);
-        let apart = of.len() >= ENOUGH && of.iter().all(|v| low(*v) || high(*v));
+        let apart = of.len() >= MIN_JUDGED_VALUES && of.iter().all(|v| low(*v) || high(*v));
         let crossings = of.iter().zip(of.get(1..)?).filter(|(a, b)| low(**a) != low(**b)).count();
         (apart && crossings >= 3).then_some(size)
     };
@@ -283,7 +284,9 @@ fn unsigned(columns: &[Column], values: &[FirstValues]) -> Vec<(usize, f64)> {
     // half the range.
     let like = |i: &usize| {
         let of = values.get(*i).map(Vec::as_slice).unwrap_or_default();
-        numeric(*i) && of.len() >= ENOUGH && finite(of).all(|v| v.fract() == 0.0 && (0.0..size).contains(&v))
+        numeric(*i)
+            && of.len() >= MIN_JUDGED_VALUES
+            && finite(of).all(|v| v.fract() == 0.0 && (0.0..size).contains(&v))
     };
     (0..columns.len()).filter(like).map(|i| (i, size)).collect()
 }

@@ -23,13 +23,13 @@ pub struct Sensors {
 }
 
 /// Most sensors in one table.
-const MOST: usize = 16;
+const MAX_SENSORS: usize = 16;
 
 /// Fewest rows from which turns are told.
-const ENOUGH: usize = 16;
+const MIN_ROWS_OF_TURNS: usize = 16;
 
 /// Words of names of columns that tell sensors apart.
-const NAMES: &[&str] = &[
+const SENSOR_COLUMN_WORDS: &[&str] = &[
     "i",
     "id",
     "imu",
@@ -77,19 +77,21 @@ pub(crate) fn find(columns: &[Column], values: &[Vec<f64>], labels: &[Labels]) -
     let mut candidates: Vec<(usize, Vec<String>)> = Vec::new();
     for (index, of) in values.iter().enumerate() {
         let whole = of.iter().all(|v| v.is_finite() && v.fract() == 0.0 && v.abs() < 1e9);
-        if whole && of.len() >= ENOUGH {
+        if whole && of.len() >= MIN_ROWS_OF_TURNS {
             candidates.push((index, of.iter().map(f64::to_string).collect()));
         }
     }
-    candidates.extend(labels.iter().filter(|l| l.rows.len() >= ENOUGH).map(|l| (l.column, l.rows.clone())));
+    candidates.extend(
+        labels.iter().filter(|l| l.rows.len() >= MIN_ROWS_OF_TURNS).map(|l| (l.column, l.rows.clone())),
+    );
     let time = columns.iter().position(|c| c.numeric && c.inferred().role == Role::Time);
     let stamps = time.and_then(|t| values.get(t)).map(Vec::as_slice).unwrap_or_default();
     candidates.into_iter().find_map(|(index, rows)| {
         let column =
             columns.get(index).filter(|c| matches!(c.inferred().role, Role::Auxiliary | Role::Counter))?;
         let of = turns(&rows)?;
-        let named =
-            NAMES.contains(&column.name.to_lowercase().replace(|c: char| !c.is_alphanumeric(), "").as_str());
+        let named = SENSOR_COLUMN_WORDS
+            .contains(&column.name.to_lowercase().replace(|c: char| !c.is_alphanumeric(), "").as_str());
         let together = shared_stamps(stamps, of.len()) > 0.5;
         let text = labels.iter().any(|l| l.column == index);
         let tells = named || together || (text && is_periodic(&rows, of.len()));
@@ -103,7 +105,7 @@ fn turns(rows: &[String]) -> Option<Vec<String>> {
     for row in rows {
         match of.iter().position(|(v, _)| v == row) {
             Some(place) => of.iter_mut().skip(place).take(1).for_each(|(_, n)| *n += 1),
-            None if of.len() < MOST => of.push((row.clone(), 1)),
+            None if of.len() < MAX_SENSORS => of.push((row.clone(), 1)),
             None => return None,
         }
     }

@@ -16,14 +16,14 @@ use std::ops::ControlFlow;
 use std::path::Path;
 
 /// Rows that are looked at.
-const ROWS: usize = 4096;
+const MAX_ROWS_LOOKED_AT: usize = 4096;
 
 /// Most columns that are looked at.
-const COLUMNS: usize = 256;
+const MAX_COLUMNS_LOOKED_AT: usize = 256;
 
 /// Distance from the middle of the later values, in their robust standard deviations, from which a value at the start is
 /// no measurement of the same output.
-const JUNK: f64 = 30.0;
+const JUNK_DISTANCE_SD: f64 = 30.0;
 
 /// Fewest rows of a bad block at the start.
 const MIN_BLOCK: usize = 8;
@@ -48,7 +48,7 @@ pub(crate) fn settle(path: &Path, mut opened: Opened, options: &ReadOptions) -> 
     let mut table = SelectedRows { inner: opened.table, selection };
     let numeric: Vec<usize> = (0..opened.columns.len())
         .filter(|&i| opened.columns.get(i).is_some_and(|c| c.numeric))
-        .take(COLUMNS)
+        .take(MAX_COLUMNS_LOOKED_AT)
         .collect();
     // What keeps the file from being read is told when it is read.
     let read = guarded(path, || first_rows(&table, &numeric)).unwrap_or_default();
@@ -95,9 +95,9 @@ fn first_rows(table: &SelectedRows, columns: &[usize]) -> Result<Vec<FirstValues
     }
     table.read(columns, &mut |block| {
         for (of, column) in values.iter_mut().zip(&block.columns) {
-            of.extend(column.iter().take(ROWS.saturating_sub(of.len())));
+            of.extend(column.iter().take(MAX_ROWS_LOOKED_AT.saturating_sub(of.len())));
         }
-        if values.first().is_some_and(|v| v.len() >= ROWS) {
+        if values.first().is_some_and(|v| v.len() >= MAX_ROWS_LOOKED_AT) {
             ControlFlow::Break(())
         } else {
             ControlFlow::Continue(())
@@ -140,7 +140,7 @@ fn shown(column: &ColumnRef) -> String {
 fn junk_at_start(values: &[f64]) -> Option<usize> {
     let later = values.get(values.len() / 2..)?;
     let (middle, spread) = middle_and_spread(later)?;
-    let far = |v: &f64| (v - middle).abs() > JUNK * spread;
+    let far = |v: &f64| (v - middle).abs() > JUNK_DISTANCE_SD * spread;
     let last = values.iter().rposition(far)? + 1;
     let share = values.get(..last)?.iter().filter(|v| far(v)).count() as f64 / last as f64;
     // The values that follow at once are as the later ones: a unit that settles comes nearer little by little.
@@ -155,7 +155,7 @@ fn junk_at_start(values: &[f64]) -> Option<usize> {
 /// True where values jump about by far more than noise does, as junk does and a unit that is turned or settles does not.
 fn jumps(values: &[f64], spread: f64) -> bool {
     let steps = values.iter().zip(values.get(1..).unwrap_or_default());
-    let large = steps.filter(|(a, b)| (*b - *a).abs() > JUNK * spread).count();
+    let large = steps.filter(|(a, b)| (*b - *a).abs() > JUNK_DISTANCE_SD * spread).count();
     8 * large >= values.len()
 }
 

@@ -89,7 +89,7 @@ struct Mean {
 
 impl Sink for Mean {
     fn push(&mut self, block: &SampleBlock<'_>) {
-        for v in block.columns.first().into_iter().flat_map(|c| c.iter()).filter(|v| v.is_finite()) {
+        for v in block.values.first().into_iter().flat_map(|c| c.iter()).filter(|v| v.is_finite()) {
             self.sum += v;
             self.count += 1.0;
         }

@@ -8,7 +8,7 @@ use sagnac_core::recording::Role;
 use sagnac_core::units::Unit;
 
 /// Words of entries that give the size of a count.
-const SCALE: &[&str] = &[
+const SCALE_WORDS: &[&str] = &[
     "scale",
     "scalefactor",
     "sensitivity",
@@ -22,12 +22,12 @@ const SCALE: &[&str] = &[
     "коэффициент",
 ];
 /// Words of entries that give a unit.
-const UNIT: &[&str] = &["unit", "units", "единица", "единицы", "размерность"];
+const UNIT_WORDS: &[&str] = &["unit", "units", "единица", "единицы", "размерность"];
 /// Words of entries about a gyro.
-const GYRO: &[&str] =
+const GYRO_WORDS: &[&str] =
     &["gyro", "gyroscope", "rate", "gyr", "angular", "fog", "гироскоп", "гироскопа", "вог", "скорость"];
 /// Words of entries about other sensors.
-const OTHER: &[&str] =
+const OTHER_SENSOR_WORDS: &[&str] =
     &["accel", "acc", "accelerometer", "mag", "magnetometer", "temperature", "temp", "pressure"];
 
 /// Gives columns the units and scales that entries state; tells each.
@@ -44,9 +44,9 @@ pub(crate) fn apply(
         let stated = match () {
             () if gyroflow && key == "tscale" => scale(value, "s").map(|s| (Role::Time, s)),
             () if gyroflow && key == "gscale" => scale(value, "rad/s").map(|s| (Role::Rate, s)),
-            () if has(OTHER) => None,
-            () if has(SCALE) && has(GYRO) => size_of_count(value),
-            () if has(UNIT) => unit(value, has(GYRO) || words.len() == 1),
+            () if has(OTHER_SENSOR_WORDS) => None,
+            () if has(SCALE_WORDS) && has(GYRO_WORDS) => size_of_count(value),
+            () if has(UNIT_WORDS) => unit(value, has(GYRO_WORDS) || words.len() == 1),
             () => None,
         };
         let Some((role, stated)) = stated else { continue };
@@ -125,7 +125,7 @@ fn takes(guess: &InferredColumn, role: Role, stated: &Stated, name: &str, values
         return guess.role == Role::Time && !guess.unit_is_named;
     }
     let is_count = Unit::parse("count").is_ok_and(|c| c.same_dimension(&guess.unit));
-    let of_gyro = stem(name).iter().any(|w| GYRO.contains(&w.as_str()));
+    let of_gyro = stem(name).iter().any(|w| GYRO_WORDS.contains(&w.as_str()));
     let whole = values.iter().all(|v| !v.is_finite() || v.fract() == 0.0);
     let counts = is_count && guess.unit_is_named && of_gyro;
     let unnamed = guess.role.is_gyro() && !guess.unit_is_named;

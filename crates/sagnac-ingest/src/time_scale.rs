@@ -70,10 +70,10 @@ impl Epoch {
 const DAY_S: f64 = 86_400.0;
 
 /// Dates of recordings, s since 1970: from 2000 to 2045.
-const DATES_S: std::ops::Range<f64> = 946_684_800.0..2_366_841_600.0;
+const DATES_OF_RECORDINGS_S: std::ops::Range<f64> = 946_684_800.0..2_366_841_600.0;
 
 /// Longest time since a clock was started, s: ten years.
-const LONGEST_S: f64 = 3.2e8;
+const MAX_UPTIME_S: f64 = 3.2e8;
 
 /// Sample rates at which stamps whose unit nobody states count in s, Hz.
 const IN_SECONDS_HZ: std::ops::RangeInclusive<f64> = 0.22..=2e5;
@@ -168,18 +168,19 @@ pub(crate) fn find(stamps: &[f64], hints: Hints<'_>) -> Option<TimeScale> {
     let dated = DATED.iter().filter(|(epoch, unit, _)| named(*epoch) && fits(unit)).filter_map(
         |(epoch, unit, scale)| {
             let seconds = unit_s(unit) * scale;
-            let is_date = DATES_S.contains(&(epoch.zero_s() + first * seconds));
+            let is_date = DATES_OF_RECORDINGS_S.contains(&(epoch.zero_s() + first * seconds));
             let found = TimeScale { unit, scale: *scale, epoch: Some(*epoch) };
             let gain = if *unit == "d" { DAY_GAIN } else { DATE_GAIN };
             is_date.then(|| (rate_score(seconds) + gain, found))
         },
     );
-    let relative = RELATIVE.iter().filter(|u| fits(u.unit) && first.abs() * u.seconds < LONGEST_S).map(|u| {
-        let stands = u.unit == "s" && IN_SECONDS_HZ.contains(&(1.0 / step));
-        let scored = u.usual + rate_score(u.seconds);
-        let score = if stands { scored.max(0.0) } else { scored };
-        (score, TimeScale { unit: u.unit, scale: 1.0, epoch: None })
-    });
+    let relative =
+        RELATIVE.iter().filter(|u| fits(u.unit) && first.abs() * u.seconds < MAX_UPTIME_S).map(|u| {
+            let stands = u.unit == "s" && IN_SECONDS_HZ.contains(&(1.0 / step));
+            let scored = u.usual + rate_score(u.seconds);
+            let score = if stands { scored.max(0.0) } else { scored };
+            (score, TimeScale { unit: u.unit, scale: 1.0, epoch: None })
+        });
     // Ticks of a tenth of a millisecond, as some inertial units count, where the stated rate tells them.
     let tick = TimeScale { unit: "ms", scale: 0.1, epoch: None };
     let ticks = hints.rate_hz.filter(|_| hints.unit.is_none()).map(|_| (rate_score(1e-4) - 3.0, tick));

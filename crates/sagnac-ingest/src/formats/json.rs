@@ -11,7 +11,7 @@ use std::collections::BTreeMap;
 pub(super) struct JsonObjects;
 
 /// Most columns.
-const COLUMNS: usize = 1024;
+const MAX_JSON_COLUMNS: usize = 1024;
 
 /// Deepest value that is read.
 const DEPTH: usize = 6;
@@ -104,7 +104,7 @@ impl Columns {
     fn set(&mut self, path: &str, value: f64, date: Option<(f64, f64)>) {
         let place = match self.places.get(path) {
             Some(place) => *place,
-            None if self.names.len() < COLUMNS => {
+            None if self.names.len() < MAX_JSON_COLUMNS => {
                 self.places.insert(path.to_owned(), self.names.len());
                 self.names.push(path.to_owned());
                 self.values.push(vec![f64::NAN; self.rows]);

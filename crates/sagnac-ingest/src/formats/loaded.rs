@@ -10,7 +10,7 @@ use std::path::PathBuf;
 const BLOCK_ROWS: usize = 8192;
 
 /// Largest content, bytes.
-const LARGEST: usize = 512 << 20;
+const MAX_LOADED_BYTES: usize = 512 << 20;
 
 /// Columns in memory with the file they come from.
 struct Loaded {
@@ -139,8 +139,8 @@ pub(super) fn bytes(file: &Candidate) -> Result<Vec<u8>, IngestError> {
             break;
         }
         all.extend_from_slice(buffer.get(..n).unwrap_or_default());
-        if all.len() > LARGEST {
-            let note = note!("ingest.loaded.too_large", mebibytes = LARGEST >> 20);
+        if all.len() > MAX_LOADED_BYTES {
+            let note = note!("ingest.loaded.too_large", mebibytes = MAX_LOADED_BYTES >> 20);
             return Err(IngestError::new(IngestErrorKind::UnknownFormat, &file.path, note)
                 .hint("ingest.loaded.hint_split"));
         }

@@ -15,7 +15,7 @@ const GPS_EPOCH_S: f64 = 315_964_800.0;
 const WEEK_S: f64 = 604_800.0;
 
 /// Columns behind the time, in the order of the log: the y axis is written with the other sign.
-const COLUMNS: [(&str, f64); 6] = [
+const RAWIMU_COLUMNS: [(&str, f64); 6] = [
     ("accel_z_counts", 1.0),
     ("accel_y_counts", -1.0),
     ("accel_x_counts", 1.0),
@@ -43,7 +43,7 @@ impl Format for RawImu {
         let text = loaded::text(file)?;
         let mut first_week = None;
         let mut stamps = Vec::new();
-        let mut values: Vec<Vec<f64>> = vec![Vec::new(); COLUMNS.len()];
+        let mut values: Vec<Vec<f64>> = vec![Vec::new(); RAWIMU_COLUMNS.len()];
         let logs = (1u64..).zip(text.lines()).filter(|(_, l)| is_raw_imu(l.as_bytes()));
         for (number, line) in logs {
             let damaged = || {
@@ -56,18 +56,18 @@ impl Format for RawImu {
             let body = body.split('*').next().unwrap_or_default();
             let fields: Vec<&str> = body.split(',').map(str::trim).collect();
             // The extended logs have two fields about the unit before.
-            let week_at = fields.len().checked_sub(COLUMNS.len() + 3).ok_or_else(damaged)?;
+            let week_at = fields.len().checked_sub(RAWIMU_COLUMNS.len() + 3).ok_or_else(damaged)?;
             let field = |i: usize| fields.get(i).and_then(|f| f.parse::<f64>().ok());
             let (week, seconds) = field(week_at).zip(field(week_at + 1)).ok_or_else(damaged)?;
             let zero = *first_week.get_or_insert(week);
             stamps.push((week - zero) * WEEK_S + seconds);
-            for (i, (column, (_, sign))) in values.iter_mut().zip(COLUMNS).enumerate() {
+            for (i, (column, (_, sign))) in values.iter_mut().zip(RAWIMU_COLUMNS).enumerate() {
                 column.push(field(week_at + 3 + i).map_or(f64::NAN, |v| sign * v));
             }
         }
         let epoch_s = GPS_EPOCH_S + first_week.unwrap_or(0.0) * WEEK_S;
         let mut columns = vec![LoadedColumn::new("time_gps", Some("s"), stamps).since(epoch_s)];
-        let counts = COLUMNS.iter().zip(values);
+        let counts = RAWIMU_COLUMNS.iter().zip(values);
         columns.extend(counts.map(|((name, _), values)| LoadedColumn::new(*name, Some("count"), values)));
         let notes = vec![note!("ingest.rawimu.read")];
         loaded::opened(file, columns, About { notes, ..About::default() })

@@ -4,7 +4,6 @@ use super::loaded::{self, About, LoadedColumn};
 use crate::error::{IngestError, IngestErrorKind};
 use crate::part_selection::{Part, choose};
 use crate::{Candidate, Format, Opened};
-use sagnac_core::message::Note;
 use std::collections::BTreeMap;
 
 /// A ULog file.

@@ -7,16 +7,16 @@ use sagnac_core::message::note;
 use std::io::{Read, Seek, SeekFrom};
 
 /// Bytes at the end that are looked at before the whole file is.
-const TAIL: u64 = 16 << 10;
+const TAIL_BYTES: u64 = 16 << 10;
 
 /// Fewest equal lines at the end that are none of the recording.
-const LEAST: u64 = 32;
+const MIN_EQUAL_LINES: u64 = 32;
 
 /// Largest file that is looked at, bytes: it is read into memory.
-const LARGEST: u64 = 256 << 20;
+const MAX_FILE_BYTES: u64 = 256 << 20;
 
 /// Longest line that is looked at, bytes.
-const LONGEST: usize = 1 << 10;
+const MAX_LINE_BYTES: usize = 1 << 10;
 
 /// Equal lines at the end of a file.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -45,14 +45,14 @@ impl VoidRows {
 /// Looks for lines at the end of a plain file that are all the same. `data_line`: line of the first row, counted from 1.
 /// Nothing is looked for where the user says which rows are read.
 pub(super) fn look(file: &Candidate, data_line: u64) -> Result<Option<VoidRows>, IngestError> {
-    if file.packing != Packing::Plain || file.options.rows.is_some() || file.bytes > LARGEST {
+    if file.packing != Packing::Plain || file.options.rows.is_some() || file.bytes > MAX_FILE_BYTES {
         return Ok(None);
     }
     let io = |e| io_error(&file.path, &e);
     let mut handle = open_file(&file.path).map_err(io)?;
-    handle.seek(SeekFrom::Start(file.bytes.saturating_sub(TAIL))).map_err(io)?;
+    handle.seek(SeekFrom::Start(file.bytes.saturating_sub(TAIL_BYTES))).map_err(io)?;
     let mut tail = Vec::new();
-    handle.by_ref().take(TAIL).read_to_end(&mut tail).map_err(io)?;
+    handle.by_ref().take(TAIL_BYTES).read_to_end(&mut tail).map_err(io)?;
     if tail.contains(&0) || at_end(&tail, 0).is_none() {
         return Ok(None);
     }
@@ -65,11 +65,11 @@ pub(super) fn look(file: &Candidate, data_line: u64) -> Result<Option<VoidRows>,
 /// The equal lines at the end of a text, with `above` lines before its first row.
 fn at_end(text: &[u8], above: u64) -> Option<VoidRows> {
     let lines = || text.rsplit(|c| *c == b'\n').filter(|l| !l.trim_ascii().is_empty());
-    let line = lines().next().filter(|l| l.len() < LONGEST)?.trim_ascii_end();
+    let line = lines().next().filter(|l| l.len() < MAX_LINE_BYTES)?.trim_ascii_end();
     let rows = lines().take_while(|l| l.trim_ascii_end() == line).count() as u64;
     let before = lines().count() as u64 - rows;
     let first_row = (before + 1).checked_sub(above)?;
-    (rows >= LEAST).then(|| VoidRows { line: line.to_vec(), first_row, rows })
+    (rows >= MIN_EQUAL_LINES).then(|| VoidRows { line: line.to_vec(), first_row, rows })
 }
 
 #[cfg(test)]
