@@ -408,7 +408,7 @@ fn nothing_in_a_text_is_markup() {
     // Bars end no cell but where the table has them.
     let bars = |line: &str| line.replace("\\|", "").matches('|').count();
     let rows: Vec<&str> = page.lines().filter(|l| l.starts_with('|')).collect();
-    assert_eq!(rows.iter().map(|r| bars(r)).collect::<Vec<_>>(), [11, 11, 11], "{page}");
+    assert_eq!(rows.iter().map(|r| bars(r)).collect::<Vec<_>>(), [12, 12, 12], "{page}");
     let steers = Block::heading(Value::Text("\u{1b}[2Jx".into()));
     assert!(!on_terminal(&[steers]).contains('\u{1b}'));
 }
