@@ -64,5 +64,5 @@ fn an_error_that_is_stated_to_be_common_widens_the_sheet() {
         all.iter().find(|b| b["of"] == "true" && b["side"] == side).unwrap()["value"].as_f64().unwrap()
     };
     assert!(bound(&found, "upper") > bound(&plain, "upper") + 0.5);
-    assert!(page.contains("common"), "{page}");
+    assert!(page.contains("share an error"), "{page}");
 }
