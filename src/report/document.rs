@@ -1,7 +1,6 @@
 //! What is exported: a record with its figures and tables, in one language.
 
-use super::explain::ExplainFile;
-use super::files::{JointFile, PlanFile};
+use super::files::{ExplainFile, JointFile, PlanFile};
 use super::page::{self, Block, Page};
 use super::render::{page_context, paper_context, run_context};
 use super::translator::Translator;

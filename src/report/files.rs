@@ -1,10 +1,42 @@
-//! What the record files of a plan and of recordings that are explained together hold: what was found, and what their
-//! pages show besides.
+//! Contents of the record files of explanations and of plans: findings, and facts that their pages show besides.
 
-use crate::i18n::Note;
+use crate::i18n::{LocalText, Note};
 use crate::mismatch::joint::record::JointExplanation;
 use crate::plan::Plan;
+use crate::record::explanation::Explanation;
 use serde::{Deserialize, Serialize};
+
+/// Contents of `explain.json`.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ExplainFile {
+    /// The explanation.
+    #[serde(flatten)]
+    pub explanation: Explanation,
+    /// Facts that its page shows besides.
+    pub context: Context,
+}
+
+/// Where an explanation comes from and goes to.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Context {
+    /// The recording, as named by the user.
+    pub recording: String,
+    /// The claim, as named by the user.
+    pub claim: String,
+    /// True when the claim was identified from a simulated recording.
+    pub identified: bool,
+    /// What the claim says of itself.
+    #[serde(flatten, with = "crate::record::local::description")]
+    pub description: Option<LocalText>,
+    /// RFC 3339.
+    pub explained_at: String,
+    /// True when `correction.csv` is written.
+    pub correction: bool,
+    /// What must be known of the recording.
+    #[serde(with = "crate::record::message::notes")]
+    pub notes: Vec<Note>,
+}
 
 /// What `plan.json` holds.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]

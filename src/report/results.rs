@@ -1,9 +1,8 @@
 //! Everything that a run or an explanation gives, in memory or read back from its folder.
 
 use super::document::{Document, Documented};
-use super::explain::{Context, ExplainFile};
 use super::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
-use super::files::{JointFile, PlanFile};
+use super::files::{Context, ExplainFile, JointFile, PlanFile};
 use super::{compare, lot};
 use crate::acceptance::Outcome;
 use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, figures};

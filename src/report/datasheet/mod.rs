@@ -12,7 +12,7 @@ use crate::figure::Figure;
 use crate::i18n::{Lang, Localize};
 use crate::output::Kind;
 use crate::record::{DataSheet, SheetCondition, SheetPair, SheetResult};
-use quantity::Printed;
+use quantity::{Printed, several_channels};
 
 impl Documented for DataSheet {
     fn record(&self) -> Record<'_> {
@@ -107,11 +107,6 @@ fn pages(sheet: &DataSheet, figures: &[Figure], words: Translator) -> Page {
             .collect(),
         generator,
     }
-}
-
-/// True where rows must name their channel.
-fn several_channels(sheet: &DataSheet) -> bool {
-    sheet.quantities.iter().any(|q| Some(&q.channel) != sheet.quantities.first().map(|f| &f.channel))
 }
 
 /// The title that a sheet file gives, or the model, or the procedure where none is named.

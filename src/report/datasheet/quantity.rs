@@ -1,6 +1,5 @@
 //! A quantity of a data sheet: its row, and what the row means.
 
-use super::several_channels;
 use crate::i18n::Localize;
 use crate::record::{
     DataSheet, SheetBound, SheetOf, SheetQuantity, SheetRisk, SheetScale, SheetShare, SheetSide,
@@ -276,4 +275,9 @@ fn risk(risk: &SheetRisk, words: Translator) -> String {
     }
     let length = percent(risk.length);
     words.with("datasheet.meaning.risk_shorter", &[both[0], both[1], ("length", &length)])
+}
+
+/// True where rows must name their channel.
+pub(super) fn several_channels(sheet: &DataSheet) -> bool {
+    sheet.quantities.iter().any(|q| Some(&q.channel) != sheet.quantities.first().map(|f| &f.channel))
 }

@@ -7,52 +7,21 @@ pub(in crate::report) mod print;
 mod sentence;
 mod tables;
 
+pub use super::files::Context;
 pub(super) use tables::{fit, fit_summary};
 
 use super::document::{Documented, Record};
+use super::files::ExplainFile;
 use super::generator;
 use super::number::{count, date_time, digits, duration};
 use super::page::{Block, Head, Lead, Page, State, Table};
 use super::translator::Translator;
 use super::view::FigureView;
 use crate::figure::Figure;
-use crate::i18n::{Lang, LocalText, Note};
+use crate::i18n::Lang;
 use crate::output::Kind;
 use crate::record::ExplainedRecord;
 use crate::record::explanation::Explanation;
-use serde::{Deserialize, Serialize};
-
-/// Contents of `explain.json`.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct ExplainFile {
-    /// The explanation.
-    #[serde(flatten)]
-    pub explanation: Explanation,
-    /// Facts that its page shows besides.
-    pub context: Context,
-}
-
-/// Where an explanation comes from and goes to.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-#[serde(default)]
-pub struct Context {
-    /// The recording, as named by the user.
-    pub recording: String,
-    /// The claim, as named by the user.
-    pub claim: String,
-    /// True when the claim was identified from a simulated recording.
-    pub identified: bool,
-    /// What the claim says of itself.
-    #[serde(flatten, with = "crate::record::local::description")]
-    pub description: Option<LocalText>,
-    /// RFC 3339.
-    pub explained_at: String,
-    /// True when `correction.csv` is written.
-    pub correction: bool,
-    /// What must be known of the recording.
-    #[serde(with = "crate::record::message::notes")]
-    pub notes: Vec<Note>,
-}
 
 /// What a report says of a recording that was set against the model of its family: the verdict in a word and in
 /// sentences, or why there is none.
