@@ -132,7 +132,7 @@ fn a_lot_says_what_its_units_say() {
     let args = ["run", "supply-sensitivity", &units[0], &units[1], "--each", "--out", "lot"];
     assert_eq!(sagnac(at, &args).code, 1);
     let (code, said) = verified(at, &["lot"]);
-    assert!(code == 0 && said.contains("what the results of its units say: 2 units"), "{said}");
+    assert!(code == 0 && said.contains("agrees with the results of its units (2)"), "{said}");
     let index: Value = serde_json::from_slice(&fs::read(at.join("lot/index.json")).unwrap()).unwrap();
     let failed = index["units"].as_array().unwrap().iter().position(|u| u["verdict"] == "fail").unwrap();
     let folder = index["units"][failed]["folder"].as_str().unwrap().to_owned();
