@@ -28,7 +28,7 @@ pub use error::UnitError;
 use parse::Parser;
 pub use rate::RateUnit;
 use std::fmt;
-use symbols::{CELSIUS, FAHRENHEIT};
+use symbols::{CELSIUS_SYMBOLS, FAHRENHEIT_SYMBOLS};
 
 /// A conversion of values: `value * factor + offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -90,8 +90,8 @@ impl Unit {
             return Err(parser.grammar("unit_error.reason.rest"));
         }
         let offset = match trimmed {
-            name if CELSIUS.contains(&name) => 273.15,
-            name if FAHRENHEIT.contains(&name) => 459.67 * 5.0 / 9.0,
+            name if CELSIUS_SYMBOLS.contains(&name) => 273.15,
+            name if FAHRENHEIT_SYMBOLS.contains(&name) => 459.67 * 5.0 / 9.0,
             _ => 0.0,
         };
         Ok(Unit { text: trimmed.to_owned(), factor, offset, dimension })

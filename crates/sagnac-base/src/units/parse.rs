@@ -1,8 +1,8 @@
 //! The grammar of units: products, powers, roots.
 
-use super::dimension::{BASES, Dimension};
+use super::dimension::{BASE_COUNT, Dimension};
 use super::error::UnitError;
-use super::symbols::{SUGGESTED, differ_by_prefix, symbol};
+use super::symbols::{SUGGESTED_SYMBOLS, differ_by_prefix, symbol};
 
 pub(super) struct Parser<'a> {
     pub text: &'a str,
@@ -86,7 +86,7 @@ impl Parser<'_> {
     }
 
     fn raise(&self, factor: f64, dimension: Dimension, halves: i8) -> Result<(f64, Dimension), UnitError> {
-        let mut out = [0; BASES];
+        let mut out = [0; BASE_COUNT];
         for (o, d) in out.iter_mut().zip(dimension) {
             let twice = i16::from(d) * i16::from(halves);
             if twice % 2 != 0 {
@@ -141,7 +141,7 @@ impl Parser<'_> {
         }
         symbol(name).ok_or_else(|| UnitError::Unknown {
             symbol: name.to_owned(),
-            suggestion: SUGGESTED
+            suggestion: SUGGESTED_SYMBOLS
                 .iter()
                 .map(|s| (strsim::damerau_levenshtein(&name.to_lowercase(), &s.to_lowercase()), *s))
                 .filter(|(distance, s)| *distance <= 1 + s.len() / 4 && !differ_by_prefix(name, s))
