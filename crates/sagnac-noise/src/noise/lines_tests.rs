@@ -147,6 +147,6 @@ fn the_floor_of_nearest_bins_of_a_level_spectrum_is_its_level() {
     assert!((spread * 20.0 - 1.0).abs() < 0.01, "{spread}");
     // The bins of a line do not count.
     let mut density = vec![2.0; 400];
-    density[200 - LOBE..=200 + LOBE].fill(1e6);
+    density[200 - HALF_LOBE_BINS..=200 + HALF_LOBE_BINS].fill(1e6);
     assert_eq!(nearest(&density, 200, 50.0), (floor, spread));
 }

@@ -6,7 +6,7 @@
 //! said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
 //! root of the misfit (Birge ratio), and that is said too.
 
-use super::claims::{LIMIT_COVERAGE, METHOD};
+use super::claims::{LIMIT_COVERAGE, WHITTLE_METHOD};
 use super::entrance::{complete, describe};
 use super::joint::{Plateau, expected_power};
 use super::misfit::{Misfit, WhitenedBand};
@@ -160,7 +160,7 @@ fn without_unseen(mut ranged: RangedIdentification, tau0_s: f64) -> RangedIdenti
     if found.quantization.value.is_some() && !rises {
         let q = &found.quantization;
         let limit = q.interval95().map(|i| UpperLimit { value: i.high, coverage: LIMIT_COVERAGE });
-        found.quantization = Estimate::not_identifiable(q.id, &q.channel, limit, q.unit, METHOD);
+        found.quantization = Estimate::not_identifiable(q.id, &q.channel, limit, q.unit, WHITTLE_METHOD);
         found.claimed.retain(|t| *t != NoiseType::Quantization);
         found.model.q = 0.0;
     }
