@@ -50,13 +50,13 @@ pub struct Fitted {
 
 /// Σ aᵢbᵢwᵢ, in lanes: a single sum waits for every addition before.
 fn weighted_dot(a: &[f64], b: &[f64], w: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let mut sums = [0.0; LANES];
-    let (ca, cb, cw) = (a.chunks_exact(LANES), b.chunks_exact(LANES), w.chunks_exact(LANES));
+    const SIMD_LANES: usize = 8;
+    let mut sums = [0.0; SIMD_LANES];
+    let (ca, cb, cw) = (a.chunks_exact(SIMD_LANES), b.chunks_exact(SIMD_LANES), w.chunks_exact(SIMD_LANES));
     let rest: f64 =
         ca.remainder().iter().zip(cb.remainder()).zip(cw.remainder()).map(|((x, y), w)| x * y * w).sum();
     for ((x, y), w) in ca.zip(cb).zip(cw) {
-        for i in 0..LANES {
+        for i in 0..SIMD_LANES {
             sums[i] += x[i] * y[i] * w[i];
         }
     }

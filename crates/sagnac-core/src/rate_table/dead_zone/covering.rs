@@ -1,7 +1,9 @@
 //! One curve for a quantity whose form is not known: it holds what each of the forms that fit holds.
 
-/// Normal scores at which curves are put together.
-const SCORES: (f64, usize) = (4.0, 81);
+/// Normal score up to which curves are put together.
+const MAX_SCORE: f64 = 4.0;
+/// Number of scores at which they are.
+const SCORE_COUNT: usize = 81;
 
 /// The value at a normal score of (normal score, value), ascending; beyond the ends the ends.
 fn at(curve: &[(f64, f64)], z: f64) -> f64 {
@@ -24,9 +26,8 @@ pub fn covering(curves: &[Vec<(f64, f64)>]) -> Vec<(f64, f64)> {
         return first.clone();
     }
     let middle = at(first, 0.0);
-    let (most, count) = SCORES;
-    (0..count)
-        .map(|i| most * (2.0 * i as f64 / (count - 1) as f64 - 1.0))
+    (0..SCORE_COUNT)
+        .map(|i| MAX_SCORE * (2.0 * i as f64 / (SCORE_COUNT - 1) as f64 - 1.0))
         .map(|z| {
             let values = curves.iter().map(|c| at(c, z));
             // A hair apart, for no stretch of a curve is level.

@@ -15,7 +15,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 pub const FITS_FROM: f64 = 0.01;
 
 /// Share of the confidence below which a noise does not count.
-const NEGLIGIBLE: f64 = 0.01;
+const NEGLIGIBLE_CONFIDENCE: f64 = 0.01;
 
 /// One of the noises.
 struct Noise {
@@ -52,7 +52,11 @@ impl Fits {
         };
         let likely = noises(design, &free, strength)?;
         Some(Fits {
-            noises: likely.into_iter().filter(|l| l.share > NEGLIGIBLE).map(of).collect::<Option<_>>()?,
+            noises: likely
+                .into_iter()
+                .filter(|l| l.share > NEGLIGIBLE_CONFIDENCE)
+                .map(of)
+                .collect::<Option<_>>()?,
             dof: (free.nrows() - free.ncols()) as f64,
             told: levels as f64 + if slope_known { 1.0 } else { 0.0 },
         })

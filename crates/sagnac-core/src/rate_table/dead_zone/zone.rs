@@ -7,7 +7,7 @@ use super::fits::{FITS_FROM, Fits};
 use super::points::{Left, Points};
 use super::rounded::{self, Rounded, SHOWN_FROM};
 use super::shape::{Kind, Shape};
-use super::widths::{FORMS, WITH_NOISE, Widths};
+use super::widths::{FORM_COUNT, WITH_NOISE, Widths};
 use crate::estimate::Spread;
 use crate::numeric::order::SortByNumber;
 use crate::rate_table::design::Design;
@@ -180,7 +180,7 @@ struct Form {
 impl Form {
     /// The curve of the threshold from that of the half width.
     fn threshold(&self, curve: &[(f64, f64)], closer: Option<&Rounded>) -> Vec<(f64, f64)> {
-        match (Kind::CLEAN.get(self.number), closer) {
+        match (Kind::NOISE_FREE.get(self.number), closer) {
             (None, Some(r)) => r.threshold.clone(),
             (kind, _) => {
                 let times = kind.map_or(2.0, |k| k.threshold_over_width());
@@ -197,7 +197,7 @@ fn forms(widths: &Widths, closer: Option<&Rounded>, fits: &Fits) -> Vec<Form> {
         closer.map(|r| r.best).into_iter().chain(coarse).min_by(|a, b| a.least.total_cmp(&b.least))
     };
     let left = |form: usize| if form == WITH_NOISE { of_noise() } else { widths.best(form).copied() };
-    let mut all: Vec<(usize, Left)> = (0..FORMS).filter_map(|form| Some((form, left(form)?))).collect();
+    let mut all: Vec<(usize, Left)> = (0..FORM_COUNT).filter_map(|form| Some((form, left(form)?))).collect();
     all.sort_ascending_by(|a| a.1.least);
     let least = all.first().map_or(f64::INFINITY, |f| f.1.least);
     all.retain(|f| f.1.least <= least + SHOWN_FROM);
