@@ -24,11 +24,11 @@ use std::sync::Arc;
 use url::Url;
 
 /// Columns that say what was asked; they come before those of an outcome.
-const ASKED: [&str; 5] = ["key", "uri", "procedure_path", "limits_path", "model_path"];
+const REQUEST_COLUMNS: [&str; 5] = ["key", "uri", "procedure_path", "limits_path", "model_path"];
 
 /// The schema of a result file.
 pub fn schema() -> SchemaRef {
-    let asked = ASKED.iter().map(|n| Arc::new(Field::new(*n, DataType::Utf8, true)));
+    let asked = REQUEST_COLUMNS.iter().map(|n| Arc::new(Field::new(*n, DataType::Utf8, true)));
     Arc::new(Schema::new(asked.chain(outcome::fields().iter().cloned()).collect::<Vec<_>>()))
 }
 

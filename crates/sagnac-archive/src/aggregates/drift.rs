@@ -31,11 +31,11 @@ impl Default for Drift {
     }
 }
 
-const NAMES: [&str; 6] =
+const FIELD_NAMES: [&str; 6] =
     ["change", "change_half_width", "slope", "slope_half_width", "steady_probability", "count"];
 
 fn fields() -> Fields {
-    NAMES.iter().map(|name| Field::new(*name, DataType::Float64, true)).collect()
+    FIELD_NAMES.iter().map(|name| Field::new(*name, DataType::Float64, true)).collect()
 }
 
 impl AggregateUDFImpl for Drift {

@@ -69,9 +69,9 @@ impl AggregateUDFImpl for Tolerance {
 
 /// The factor of a sample of some size. It costs 1.5 ms, and a sheet of many lots asks for the same few sizes.
 fn factor(size: usize, promise: Promise) -> Option<f64> {
-    static KNOWN: Mutex<BTreeMap<[u64; 3], Option<f64>>> = Mutex::new(BTreeMap::new());
+    static KNOWN_FACTORS: Mutex<BTreeMap<[u64; 3], Option<f64>>> = Mutex::new(BTreeMap::new());
     let key = [size as u64, promise.proportion.to_bits(), promise.confidence.to_bits()];
-    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = || KNOWN_FACTORS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(factor) = known().get(&key) {
         return *factor;
     }

@@ -21,14 +21,14 @@ pub struct Key {
 }
 
 /// Arguments that name a file whose contents count.
-const FILES: std::ops::RangeInclusive<usize> = 3..=5;
+const FILE_ARGUMENTS: std::ops::RangeInclusive<usize> = 3..=5;
 /// Arguments in all.
-const ARGUMENTS: usize = 7;
+const ARGUMENT_COUNT: usize = 7;
 
 impl Key {
     /// The function.
     pub fn new() -> Key {
-        Key { signature: Signature::exact(vec![DataType::Utf8; ARGUMENTS], Volatility::Stable) }
+        Key { signature: Signature::exact(vec![DataType::Utf8; ARGUMENT_COUNT], Volatility::Stable) }
     }
 }
 
@@ -63,10 +63,10 @@ impl ScalarUDFImpl for Key {
         let mut keys = Vec::with_capacity(rows);
         for row in 0..rows {
             let mut hash = Sha256::new().chain_update(ENGINE);
-            for argument in 0..ARGUMENTS {
+            for argument in 0..ARGUMENT_COUNT {
                 let text = texts.get(argument, row);
                 let part = match text {
-                    Some(name) if FILES.contains(&argument) => {
+                    Some(name) if FILE_ARGUMENTS.contains(&argument) => {
                         read.entry(name).or_insert_with(|| contents(name)).as_str()
                     }
                     other => other.unwrap_or_default(),
