@@ -161,7 +161,7 @@ fn nameless_instruments<'a>(procedures: impl IntoIterator<Item = &'a Loaded<Proc
     (!list.is_empty()).then(|| note!("check.no_serial", names = Arg::Several(list, ", ".into())))
 }
 
-/// What is worth knowing of a phase: what its own files say, and that no verdict can come from them.
+/// Warnings about a phase: what its own files say, and that no verdict can come from them.
 fn of_phase(phase: &Phase) -> Vec<Problem> {
     let mut found = phase.procedure.warnings.clone();
     let effective = effective(&phase.procedure, phase.limits.as_ref());
