@@ -31,16 +31,16 @@ pub(super) trait Test {
 
 impl<K: TestKind> Test for K {
     fn checks(&self) -> &'static [&'static str] {
-        K::CHECKS
+        K::OWN_CHECKS
     }
 
     fn run(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Outcome> {
         let options = self.options(request);
         let (reading, evidence) = collect(*self, request, progress)?;
         let conditions = judge(&reading, &evidence);
-        let rows = measure(&reading, &evidence, K::MISSING);
+        let rows = measure(&reading, &evidence, K::MISSING_REASON);
         let figures = evidence.figures(&reading);
-        let mut record = build_record(&reading, K::CHECKS, conditions, rows, &figures, options);
+        let mut record = build_record(&reading, K::OWN_CHECKS, conditions, rows, &figures, options);
         let tables = evidence.complete(&reading, &mut record);
         Ok(Outcome { record, figures, tables })
     }

@@ -107,9 +107,9 @@ pub(super) trait TestKind: Sized {
     /// What the collected data show.
     type Evidence: Evidence;
     /// Ids of the checks that the test could make, apart from those of every test.
-    const CHECKS: &'static [&'static str];
+    const OWN_CHECKS: &'static [&'static str];
     /// Key of the reason for a measurand that has no estimate at all.
-    const MISSING: &'static str;
+    const MISSING_REASON: &'static str;
 
     /// The test of a procedure; `None` for a procedure of another kind.
     fn of(procedure: &Procedure) -> Option<Self>;

@@ -1,7 +1,9 @@
 //! Options that say how a recording is to be read.
 
 use super::place::for_shell;
-use crate::config::recording_keys::{DECIMALS, DELIMITERS, ENCODINGS, decimal, delimiter, encoding, rows};
+use crate::config::recording_keys::{
+    DECIMAL_WORDS, DELIMITER_WORDS, ENCODING_WORDS, decimal, delimiter, encoding, rows,
+};
 use crate::ingest::layout::LayoutFile;
 use crate::ingest::{ReadOptions, RowMatch, TextOptions};
 use clap::Args;
@@ -16,13 +18,13 @@ pub struct ReadArgs {
     #[arg(long = "input-format", value_name = "ID")]
     input_format: Option<String>,
     /// Character encoding of a text file [default: detected]
-    #[arg(long, value_parser = PossibleValuesParser::new(words(ENCODINGS)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(words(ENCODING_WORDS)))]
     encoding: Option<String>,
     /// Field delimiter of a text file [default: detected]
-    #[arg(long, value_parser = PossibleValuesParser::new(words(DELIMITERS)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(words(DELIMITER_WORDS)))]
     delimiter: Option<String>,
     /// Decimal mark of a text file [default: detected]
-    #[arg(long, value_parser = PossibleValuesParser::new(words(DECIMALS)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(words(DECIMAL_WORDS)))]
     decimal: Option<String>,
     /// Line with the column names of a text file, counted from 1; 0: none
     #[arg(long, value_name = "LINE")]

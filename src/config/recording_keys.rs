@@ -15,13 +15,13 @@ pub(crate) struct RecordingKeys {
     #[key(example = "csv")]
     format: Option<String>,
     /// Character encoding of a text file; detected if omitted.
-    #[key(choice = ENCODINGS, example = "windows-1251")]
+    #[key(choice = ENCODING_WORDS, example = "windows-1251")]
     encoding: Option<&'static str>,
     /// Field delimiter of a text file; detected if omitted.
-    #[key(choice = DELIMITERS, example = "semicolon")]
+    #[key(choice = DELIMITER_WORDS, example = "semicolon")]
     delimiter: Option<&'static str>,
     /// Decimal mark of a text file; detected if omitted.
-    #[key(choice = DECIMALS, example = "comma")]
+    #[key(choice = DECIMAL_WORDS, example = "comma")]
     decimal: Option<&'static str>,
     /// Line with the column names of a text file, counted from 1; 0: none; detected if omitted.
     #[key(min = 0, max = 1e6, example = 4)]
@@ -93,7 +93,7 @@ impl RecordingKeys {
 }
 
 /// Character encodings of text files.
-pub const ENCODINGS: &[Word] = &[
+pub const ENCODING_WORDS: &[Word] = &[
     ("utf-8", "UTF-8, with or without byte-order mark"),
     ("utf-16le", "UTF-16, little endian"),
     ("utf-16be", "UTF-16, big endian"),
@@ -101,7 +101,7 @@ pub const ENCODINGS: &[Word] = &[
 ];
 
 /// Separators of fields, as words and as characters.
-pub const DELIMITERS: &[Word] = &[
+pub const DELIMITER_WORDS: &[Word] = &[
     ("comma", "`,`"),
     ("semicolon", "`;`"),
     ("tab", "a tab"),
@@ -113,7 +113,7 @@ pub const DELIMITERS: &[Word] = &[
 ];
 
 /// Decimal signs.
-pub const DECIMALS: &[Word] = &[("point", "`.`"), ("comma", "`,`")];
+pub const DECIMAL_WORDS: &[Word] = &[("point", "`.`"), ("comma", "`,`")];
 
 /// The encoding of a word.
 pub fn encoding(word: &str) -> Option<Encoding> {

@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 use tables::{FileKeys, MANIFEST_FILE, ManifestTables, ReadingKeys, UnitKeys};
 
 /// Messages for a manifest that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
+const READ_MESSAGES: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
 
 /// A manifest.
 #[derive(Debug, Clone, PartialEq)]
@@ -104,7 +104,7 @@ pub fn load(path: &Path) -> Result<Manifest, Problems> {
     parse(
         path,
         &path.display().to_string(),
-        &text_file::bytes(path, &WORDING)?,
+        &text_file::bytes(path, &READ_MESSAGES)?,
         contained_files::folder_of(path),
     )
 }

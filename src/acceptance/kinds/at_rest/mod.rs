@@ -40,8 +40,8 @@ pub struct AtRest;
 impl TestKind for AtRest {
     type Collector = RateDigests;
     type Evidence = RestEvidence;
-    const CHECKS: &'static [&'static str] = &["earth_rate", "noise_level", "warm_up", "distribution"];
-    const MISSING: &'static str = "unshown.nothing";
+    const OWN_CHECKS: &'static [&'static str] = &["earth_rate", "noise_level", "warm_up", "distribution"];
+    const MISSING_REASON: &'static str = "unshown.nothing";
 
     fn of(_: &Procedure) -> Option<AtRest> {
         Some(AtRest)
