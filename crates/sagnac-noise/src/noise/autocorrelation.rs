@@ -72,11 +72,7 @@ pub fn of_series(series: &[f64], max_lag: usize) -> Option<Autocorrelation> {
 
 /// Sums of products of values `k` apart, k = 0 to `max_lag`; `length` of the transform, at least the values and the lags
 /// together. `None` where a transform fails.
-pub fn lagged_products(
-    values: impl Iterator<Item = f64>,
-    length: usize,
-    max_lag: usize,
-) -> Option<Vec<f64>> {
+pub fn lagged_products(values: impl Iterator<Item = f64>, length: usize, max_lag: usize) -> Option<Vec<f64>> {
     let (forward, inverse) = (real_forward(length), real_inverse(length));
     let (mut time, mut frequency) = (forward.make_input_vec(), forward.make_output_vec());
     time.iter_mut().zip(values).for_each(|(t, v)| *t = v);

@@ -6,8 +6,11 @@
 //! floor being an average of limited number itself. The rate is shared among all bins searched (Šidák). What stands out
 //! from the wide floor must stand out from its nearest neighbours as well: beside the zeros of an averaging filter the
 //! spectrum bends more than a power law over many bins can.
+//!
+//! A line is coherent where its power lies within the few modes that a sinusoid fills ([`is_coherent`]).
 
 use super::data::WelchSpectrum;
+use super::evidence::{Evidence, FineBin};
 use crate::estimate::normal_probability;
 use statrs::function::beta::beta_reg;
 
@@ -319,6 +322,45 @@ fn upper_f(ratio: f64, numerator: f64, denominator: f64) -> f64 {
 
 fn corrected(probability: f64, family: usize) -> f64 {
     -(family as f64 * (-probability).ln_1p()).exp_m1()
+}
+
+/// Share of the power over the floor that a line has in its core.
+const CORE_SHARE: f64 = 0.7;
+/// Half width of the core in modes, where a line of any phase and frequency keeps nine tenths of its power, and in
+/// bins of a windowed periodogram.
+const CORE_HALF_WIDTH: [usize; 2] = [3, 2];
+/// Bins of the periodogram to each side that a disturbance may fill.
+const WINDOW_BINS: f64 = 8.0;
+/// Excess, in standard deviations of noise, that is needed to tell.
+const MIN_SCORE: f64 = 6.0;
+
+/// True for a line that keeps its phase over the record: its power lies within the few modes that a sinusoid fills. False where
+/// it is spread over more of them, as that of a disturbance that decays; true where the evidence cannot tell.
+pub fn is_coherent(evidence: &Evidence, line: &SpectralLine) -> bool {
+    let near = |bin: &&FineBin, reach: f64| (bin.frequency_hz - line.frequency_hz).abs() <= reach;
+    let reach_hz = WINDOW_BINS * line.resolution_hz;
+    let ring: Vec<f64> = evidence
+        .fine()
+        .iter()
+        .filter(|b| near(b, 3.0 * reach_hz) && !near(b, reach_hz))
+        .map(|b| b.power)
+        .collect();
+    let window: Vec<&FineBin> = evidence.fine().iter().filter(|b| near(b, reach_hz)).collect();
+    let single = window.windows(2).all(|w| w[0].precedes(w[1]));
+    if ring.len() < 8 || window.len() < 5 || !single {
+        return true;
+    }
+    let floor = ring.iter().sum::<f64>() / ring.len() as f64;
+    let dof = window.first().map_or(1.0, |b| b.dof);
+    let excess: f64 = window.iter().map(|b| b.power - floor).sum();
+    let sigma = floor * (2.0 * window.len() as f64 / dof).sqrt();
+    if excess < MIN_SCORE * sigma {
+        return true;
+    }
+    let peak = (0..window.len()).max_by(|a, b| window[*a].power.total_cmp(&window[*b].power)).unwrap_or(0);
+    let half = if dof > 1.5 { CORE_HALF_WIDTH[1] } else { CORE_HALF_WIDTH[0] };
+    let core = window.get(peak.saturating_sub(half)..(peak + half + 1).min(window.len())).unwrap_or(&[]);
+    core.iter().map(|b| b.power - floor).sum::<f64>() >= CORE_SHARE * excess
 }
 
 #[cfg(test)]

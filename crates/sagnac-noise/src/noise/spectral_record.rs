@@ -4,7 +4,6 @@
 //! averaged periodogram, whose segments are short, cannot tell them apart; the modes of the whole record can.
 
 use super::coarse;
-use super::coherence::is_coherent;
 use super::composite::{Damped, Described, Line, Parameter, Sampling};
 use super::data::{BlockSeries, WelchSpectrum};
 use super::digest::RateDigest;
@@ -13,7 +12,7 @@ use super::family::Estimator;
 use super::identification::{
     Options, RangedIdentification, describe_in_range, identify_in_range, identify_over,
 };
-use super::lines::{SpectralLine, find_lines, retain};
+use super::lines::{SpectralLine, find_lines, is_coherent, retain};
 use super::sinusoids;
 use crate::numeric::order::SortByNumber;
 use std::borrow::Cow;
