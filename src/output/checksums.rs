@@ -14,7 +14,7 @@ pub fn sha256(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
-/// What stands for the hash of a file that cannot be read: opening it says why.
+/// Stand-in for the hash of a file that cannot be read: opening it says why.
 pub const UNREAD_HASH: &str = "unread";
 
 /// SHA-256 of a file, hexadecimal; `None` for what is no file or cannot be read.

@@ -10,7 +10,7 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// How long others may hold the lock, or a transaction of the database.
+/// Time for which others may hold the lock, or a transaction of the database.
 pub(super) const LOCK_TIMEOUT: Duration = Duration::from_secs(60);
 /// Time after which an entry that a process listed and did not finish is forgotten, where no lock tells: none takes as long.
 pub(super) const FORGOTTEN_AFTER: Duration = Duration::from_secs(24 * 3600);

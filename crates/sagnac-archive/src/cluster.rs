@@ -26,7 +26,7 @@ pub const WORKER_SILENCE_S: u64 = 20;
 pub const NO_WORKER_S: u64 = 20;
 /// A run ends when there has been no scheduler or no worker for this time, s; workers count as lost some time before it begins.
 pub const LOST_S: u64 = 15;
-/// How often the client asks the scheduler, and how long it waits for the answer.
+/// Interval at which the client asks the scheduler, and for which it waits for the answer.
 const POLL_INTERVAL: Duration = Duration::from_secs(2);
 /// How often a worker tells that it lives, s.
 const HEARTBEAT_S: u64 = 5;

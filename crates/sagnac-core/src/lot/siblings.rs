@@ -25,8 +25,9 @@ const MIN_OWN_VARIANCE_SHARE: f64 = 1e-3;
 const ROUNDING_DEVIATION: f64 = 1e-12;
 /// Concentration steps at most.
 const MAX_CONCENTRATION_STEPS: usize = 20;
-/// Draws that are as far at which drawing ends, and draws at most.
+/// Draws as far as the unit after which drawing ends.
 const MAX_EXCEEDANCES: usize = 200;
+/// Draws at most.
 const MAX_DRAWS: usize = 19_999;
 /// Seed of the draws: a report is a function of its inputs alone.
 const DRAWS_SEED: u64 = 0x5a67_6e61_6320_0031;

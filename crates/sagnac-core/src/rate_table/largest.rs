@@ -19,7 +19,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// Draws of the errors.
 const ERROR_DRAWS: usize = 2000;
 
-/// Normal scores at which the confidence distribution is tabled.
+/// Quarters of a normal score at which the confidence distribution is tabled.
 const SCORE_QUARTERS: std::ops::RangeInclusive<i32> = -12..=12;
 
 /// The largest magnitude as far as it is known.

@@ -43,8 +43,9 @@ pub struct Sine {
     pub rows: Vec<(usize, f64)>,
 }
 
-/// Position of the columns.
+/// Position of the column of the slope.
 pub const SLOPE_COLUMN: usize = 1;
+/// Position of the column of κ.
 const KAPPA_COLUMN: usize = 3;
 /// Position of the change of the amplitude with temperature, 1e-6/degC times the slope.
 pub const GAIN_OVER_TEMPERATURE: usize = 5;

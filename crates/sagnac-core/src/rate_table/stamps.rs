@@ -1,14 +1,14 @@
-//! What the angle of the table, from sample to sample, says of the unit of the stamps.
+//! The unit of the stamps by the angle of the table from sample to sample.
 
 use super::blocks::TURN_ARCSEC;
 use super::steps::TableRun;
 use crate::numeric::order::SortNumbers;
 
-/// Rates, as shares of the largest, that tell.
+/// Share of the largest rate from which on a step tells the unit.
 const MIN_RATE_SHARE: f64 = 0.05;
-/// Steps that must tell the same.
+/// Share of the steps that must tell the same unit.
 const MIN_AGREEING_SHARE: f64 = 0.8;
-/// Relative difference within which they do.
+/// Relative difference of time factors within which steps tell the same unit.
 const MAX_RELATIVE_DIFFERENCE: f64 = 0.02;
 
 /// The time that passes by angle and rate of the table over the time by the stamps, where it is the same at most steps.

@@ -28,8 +28,11 @@ const MAX_STRENGTHS: usize = 40;
 /// Log-likelihood below the best of its kind from which no greater strength is tried.
 const MAX_LOG_LIKELIHOOD_LOSS: f64 = 12.0;
 
-/// Share of the confidence below which a noise is left out.
+/// Share of the confidence of all noises together below which one is left out.
 const NEGLIGIBLE_CONFIDENCE: f64 = 1e-3;
+
+/// Share of the confidence below which a noise does not count where a zone is tested.
+pub const MIN_COUNTED_CONFIDENCE: f64 = 0.01;
 
 /// Half widths tried, in parts of half the range of the rates.
 const WIDTH_COUNT: usize = 40;

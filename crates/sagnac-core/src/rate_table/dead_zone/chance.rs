@@ -4,7 +4,7 @@
 //! may have. In every draw of a line the steps tell the noise anew: what looks like a zone where drift is believed to be
 //! none does not where the draw shows its drift.
 
-use super::about::Means;
+use super::about::{MIN_COUNTED_CONFIDENCE, Means};
 use super::points::{Points, Ratios};
 use crate::numeric::cholesky::inverse;
 use crate::numeric::cholesky::log_determinant;
@@ -25,9 +25,6 @@ const CERTAIN_GAIN: f64 = 40.0;
 
 /// Tests without a zone that have to reach the ratio for a zone not to be claimed.
 const REFUTING_EXCEEDANCES: usize = 10;
-
-/// Share of the confidence below which a noise does not count.
-const NEGLIGIBLE_CONFIDENCE: f64 = 0.01;
 
 /// One of the noises that the steps may have.
 struct Noise<'a> {
@@ -110,7 +107,7 @@ fn averaged(noises: &[Noise], apart: &DVector<f64>, data: impl Fn(&Noise) -> DVe
     noises
         .iter()
         .zip(shares)
-        .filter(|(_, p)| *p > NEGLIGIBLE_CONFIDENCE)
+        .filter(|(_, p)| *p > MIN_COUNTED_CONFIDENCE)
         .map(|(k, p)| p * k.ratio(&data(k)))
         .sum()
 }

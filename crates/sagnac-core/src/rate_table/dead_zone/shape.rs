@@ -3,7 +3,7 @@
 use crate::estimate::normal_probability;
 use std::sync::LazyLock;
 
-/// Beyond so many deviations noise rounds nothing off.
+/// Standard deviations beyond which noise rounds nothing off.
 const MAX_ROUNDED_DEVIATIONS: f64 = 8.0;
 
 /// Kind of a dead zone.

@@ -22,7 +22,7 @@ pub const FORM_COUNT: usize = Kind::NOISE_FREE.len() + 1;
 /// Number of the form with noise inside the loop.
 pub const WITH_NOISE: usize = FORM_COUNT - 1;
 
-/// Number of the gap.
+/// Number of the gap among the forms.
 const GAP_FORM: usize = 1;
 
 /// The half widths tried, and what they leave.

@@ -23,7 +23,7 @@ pub const B: SlowSet = 1;
 pub const K: SlowSet = 2;
 /// Ramp.
 pub const R: SlowSet = 4;
-/// How many sets there are.
+/// Number of sets of slow terms.
 pub const SLOW_SET_COUNT: usize = 8;
 
 /// Prices in 2 ln L.

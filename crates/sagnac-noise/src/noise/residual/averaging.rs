@@ -24,7 +24,7 @@ const MIN_NEIGHBOUR_SCORE: f64 = 2.0;
 const PER_TAU: f64 = 16.0;
 /// Averaging times up to which covariances are summed.
 const COVARIANCE_SPAN_TAUS: f64 = 12.0;
-/// Decay times of the slowest process up to which they are.
+/// Decay times of the slowest process up to which covariances are summed.
 const COVARIANCE_SPAN_DECAYS: f64 = 3.0;
 /// Most lags summed for such a process.
 const MOST_LAGS: f64 = 20_000.0;
