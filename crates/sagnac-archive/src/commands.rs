@@ -21,7 +21,7 @@ const ALL_DONE: u8 = 0;
 /// Some recordings have an error instead.
 const WITH_ERRORS: u8 = 1;
 /// The command could not be carried out.
-pub const FAILED: u8 = 2;
+pub const COMMAND_FAILED: u8 = 2;
 /// Recordings that could not be reached and are named one by one.
 const MAX_NAMED_RECORDINGS: usize = 20;
 /// Stack of a thread that plans queries, bytes: plans are trees that are walked by recursion.

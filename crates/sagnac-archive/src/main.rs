@@ -29,7 +29,7 @@ fn main() -> ExitCode {
             let text = text.trim_end();
             let head = if text.starts_with("error: ") { "" } else { "error: " };
             eprintln!("{head}{text}");
-            ExitCode::from(commands::FAILED)
+            ExitCode::from(commands::COMMAND_FAILED)
         }
     }
 }

@@ -3,7 +3,7 @@
 //! `<folder>/procedure=<name>/engine=<version>/part-<run>-<portion>.parquet`, one row a recording: `key`, `uri`, `procedure_path`,
 //! `limits_path`, `model_path`, then the fields of an outcome.
 
-use crate::ENGINE;
+use crate::ENGINE_VERSION;
 use crate::functions::Function;
 use crate::job_list::{compressed, parquet, put};
 use crate::outcome;
@@ -118,7 +118,7 @@ impl Writer {
             .set_column_dictionary_enabled(json(), false)
             .set_column_statistics_enabled(json(), EnabledStatistics::None);
         let file = format!("part-{}-{portion:06}.parquet", self.run);
-        let parts = [format!("procedure={name}"), format!("engine={ENGINE}"), file];
+        let parts = [format!("procedure={name}"), format!("engine={ENGINE_VERSION}"), file];
         let path = parts.into_iter().fold(self.folder.clone(), |path, part| path.join(part));
         put(self.store.as_ref(), &path, parquet(batch, properties)?).await
     }

@@ -6,7 +6,7 @@
 
 use crate::cluster;
 use crate::job_list::{self, compressed, parquet, parquet_table, put};
-use crate::query::{PENDING, RowQuery};
+use crate::query::{PENDING_COLUMNS, RowQuery};
 use crate::results::{self, Counts, Writer};
 use crate::session;
 use crate::stores;
@@ -244,7 +244,7 @@ impl Runner {
                 ListingTableUrl::try_new(url, None)
             })
             .collect();
-        let table = parquet_table(urls?, job_list::texts(&PENDING), PENDING_ENDING)?;
+        let table = parquet_table(urls?, job_list::texts(&PENDING_COLUMNS), PENDING_ENDING)?;
         let batches = self.outcomes(self.context.read_table(table)?)?.collect().await?;
         let rows: usize = batches.iter().map(RecordBatch::num_rows).sum();
         if rows != portion.num_rows() {

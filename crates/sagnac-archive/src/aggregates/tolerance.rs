@@ -1,6 +1,6 @@
 //! `sagnac_tolerance_upper`, `sagnac_tolerance_lower`: what the values of some units promise of all.
 
-use super::numbers::{Finish, Kept, Row, WIDTH, state_fields};
+use super::numbers::{ARGUMENT_COUNT, Finish, Kept, Row, state_fields};
 use datafusion::arrow::datatypes::{DataType, FieldRef};
 use datafusion::common::{DataFusionError, Result, ScalarValue};
 use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
@@ -30,7 +30,10 @@ pub struct Tolerance {
 impl Tolerance {
     /// The function for one side.
     pub fn new(side: Side) -> Tolerance {
-        Tolerance { side, signature: Signature::exact(vec![DataType::Float64; WIDTH], Volatility::Immutable) }
+        Tolerance {
+            side,
+            signature: Signature::exact(vec![DataType::Float64; ARGUMENT_COUNT], Volatility::Immutable),
+        }
     }
 }
 

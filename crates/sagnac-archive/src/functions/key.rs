@@ -1,7 +1,7 @@
 //! `sagnac_key`: the identity of a job with this engine.
 
 use super::texts::Texts;
-use crate::ENGINE;
+use crate::ENGINE_VERSION;
 use crate::evaluate::{hash_of_file, hexadecimal};
 use crate::stores::fetch;
 use datafusion::arrow::array::StringArray;
@@ -62,7 +62,7 @@ impl ScalarUDFImpl for Key {
         let mut read: HashMap<&str, String> = HashMap::new();
         let mut keys = Vec::with_capacity(rows);
         for row in 0..rows {
-            let mut hash = Sha256::new().chain_update(ENGINE);
+            let mut hash = Sha256::new().chain_update(ENGINE_VERSION);
             for argument in 0..ARGUMENT_COUNT {
                 let text = texts.get(argument, row);
                 let part = match text {

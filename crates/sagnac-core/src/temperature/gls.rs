@@ -14,7 +14,8 @@ use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 
 /// Terms of the noise: N in deg/sqrt(h), B in deg/h, K in deg/h/sqrt(h).
-pub const TERMS: [NoiseType; 3] = [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk];
+pub const COURSE_NOISE_TERMS: [NoiseType; 3] =
+    [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk];
 
 /// Unit variances of the modes 1, 2, ... of a series of block means.
 #[derive(Debug, Clone)]
@@ -74,7 +75,7 @@ impl Solved {
 impl Modes {
     /// For `blocks` means over `block_s`.
     pub fn new(blocks: usize, block_s: f64) -> Modes {
-        let unit = |k: usize| TERMS.map(|t| unit_mode_variance(t, k, blocks, block_s));
+        let unit = |k: usize| COURSE_NOISE_TERMS.map(|t| unit_mode_variance(t, k, blocks, block_s));
         Modes { block_s, units: (1..blocks.max(1)).map(unit).collect() }
     }
 
