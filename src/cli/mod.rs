@@ -8,6 +8,7 @@ mod datasheet;
 mod demo;
 mod each;
 mod effects;
+pub mod ending;
 mod evaluate;
 pub mod exit;
 mod explain;
@@ -49,6 +50,8 @@ mod stdout;
 mod store;
 mod test_setup;
 mod verify;
+mod watch;
+mod watch_pass;
 mod writer;
 
 #[cfg(feature = "schema")]
@@ -101,6 +104,13 @@ enum Verb {
         sagnac run static-bias 'lot-7/*.csv' --each --limits sample-unit --out reports/lot-7"
     )]
     Run(run_args::RunArgs),
+    /// Test every recording that appears in a folder, once, when it is complete
+    #[command(
+        after_help = "Exit codes: 0 ended when asked; with --once as run --each: 0 pass (or nothing new), 1 fail, 2 could not run or tell, 3 indeterminate.\n\n\
+        Examples:\n  sagnac watch /data/bench-2 --rules watch.toml --out /srv/reports\n  \
+        sagnac watch /data/bench-2 --procedure static-bias --limits sample-unit --once"
+    )]
+    Watch(watch::WatchArgs),
     /// Render the report of a result again, without its recording: in another language, with other templates
     #[command(after_help = "Exit codes: 0 written, 2 could not.\n\n\
         Examples:\n  sagnac report reports/SN-0042 --lang ru --out reports/SN-0042-ru\n  \
@@ -231,6 +241,7 @@ pub fn main() -> ExitCode {
         Verb::Run(args) if args.each.each => each::main(&args, lang),
         Verb::Run(args) if is_phased(&args.procedure) => run_phases::main(&args, lang),
         Verb::Run(args) => run::main(&args, lang),
+        Verb::Watch(args) => watch::main(&args, lang),
         Verb::Check(args) => check::main(&args, lang),
         Verb::Inspect(args) => inspect::main(&args, lang),
         Verb::Init(args) => init::main(&args, lang),

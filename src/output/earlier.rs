@@ -88,7 +88,7 @@ impl Earlier {
             Kind::Explanation | Kind::Joint => {
                 described.with("verdict", text("/verdict").unwrap_or_default())
             }
-            Kind::Comparison | Kind::Plan | Kind::DataSheet | Kind::Proof => described,
+            Kind::Comparison | Kind::Plan | Kind::DataSheet | Kind::Proof | Kind::Day => described,
         }
     }
 

@@ -5,6 +5,7 @@
 
 pub mod compare;
 pub mod datasheet;
+mod day;
 mod document;
 pub mod explain;
 pub mod export;

@@ -52,7 +52,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
             &["simulate"],
             &["acceptance", "selftest"],
             &["report"],
-            &["library", "prove", "verify"],
+            &["library", "prove", "verify", "watch"],
             &["cli"],
         ],
     ),

@@ -49,3 +49,4 @@ mod terminal;
 mod terminal_output;
 mod thermal_study;
 mod tutorial;
+mod watch;
