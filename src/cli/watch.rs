@@ -32,6 +32,7 @@ const REQUEST_POLL: Duration = Duration::from_millis(50);
 #[derive(Debug, Args)]
 pub struct WatchArgs {
     /// Folder in which recordings appear
+    #[arg(value_name = "DIR")]
     folder: PathBuf,
     /// Rules (TOML): which files are recordings of which test
     #[arg(long, value_name = "FILE", conflicts_with_all = ["procedure", "limits"])]

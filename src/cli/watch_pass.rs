@@ -163,8 +163,9 @@ fn one(
             (record, code.is_some_and(|code| code != i32::from(exit::ERROR)))
         }
     };
-    if !is_kept && active.keeper.keep(&place, frame.printer).is_err() {
-        return Err("watch.not_kept".into());
+    if !is_kept {
+        let kept = active.keeper.keep(&place, frame.printer);
+        kept.map_err(|reason| note!("watch.not_kept", reason = reason.trim()))?;
     }
     let unit = lot::of_record(&record, unit.from, found.name.clone(), folder);
     let hook = if rule.hook.is_empty() { HookState::None } else { HookState::Pending };

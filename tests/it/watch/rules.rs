@@ -35,6 +35,21 @@ fn the_schema_of_rules_has_every_key_with_its_description() {
 }
 
 #[test]
+fn the_example_of_the_guide_is_taken() {
+    let page = fs::read_to_string(crate::support::root().join("docs/guide/watch.md")).unwrap();
+    let blocks = page.split("```toml\n").skip(1).map(|rest| rest.split("```").next().unwrap());
+    let example = blocks.into_iter().find(|block| block.contains("watch/1")).unwrap();
+    let dir = tempfile::tempdir().unwrap();
+    for name in ["unit-limits.toml", "temperature.toml"] {
+        fs::write(dir.path().join(name), "").unwrap();
+    }
+    let rules = sagnac::config::watch::parse("watch.md", example.as_bytes(), dir.path());
+    let rules = rules.unwrap_or_else(|problems| panic!("{problems}"));
+    assert_eq!(rules.rules.len(), 2);
+    assert_eq!(rules.rules[0].hook, ["python3", "to_mes.py"]);
+}
+
+#[test]
 fn the_serial_number_is_from_the_name_the_header_or_a_column() {
     let text = fs::read_to_string(Quick::new("pass").recording).unwrap();
     let with_column = |serial: &str| {
