@@ -30,7 +30,7 @@ const RUNS: &[(&str, &str, &[&str])] = &[
 ];
 
 /// Pages that the report of a test at rest may have.
-const STATIC_PAGES: usize = 8;
+const STATIC_PAGES: usize = 6;
 
 /// Where a copy of a page is marked; a link of a page is an annotation of the printed one.
 const MARK: &str = "https://mark.invalid/";
