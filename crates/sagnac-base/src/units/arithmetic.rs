@@ -1,12 +1,12 @@
 //! Units of products, quotients and powers.
 
 use super::Unit;
-use super::dimension::{BASES, Dimension};
+use super::dimension::{BASE_COUNT, Dimension};
 
 impl Unit {
     /// The unit of a pure number.
     pub fn pure() -> Unit {
-        Unit { text: "1".to_owned(), factor: 1.0, offset: 0.0, dimension: [0; BASES] }
+        Unit { text: "1".to_owned(), factor: 1.0, offset: 0.0, dimension: [0; BASE_COUNT] }
     }
 
     /// Factor to the base units; the offset of a temperature scale is left out.
@@ -16,7 +16,7 @@ impl Unit {
 
     /// True for the unit of a pure number, such as `%`.
     pub fn is_pure(&self) -> bool {
-        self.dimension == [0; BASES]
+        self.dimension == [0; BASE_COUNT]
     }
 
     /// The unit of a product; `None` where an exponent is too large.
@@ -54,7 +54,7 @@ fn factor_text(text: &str) -> String {
 }
 
 fn combined(a: Dimension, b: Dimension, of: impl Fn(i16, i16) -> i16) -> Option<Dimension> {
-    let mut out = [0; BASES];
+    let mut out = [0; BASE_COUNT];
     for ((o, a), b) in out.iter_mut().zip(a).zip(b) {
         *o = i8::try_from(of(i16::from(a), i16::from(b))).ok()?;
     }

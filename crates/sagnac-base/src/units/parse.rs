@@ -71,7 +71,7 @@ impl Parser<'_> {
                 true
             }) {
             self.exponent()?
-        } else if signed(self.rest) && dimension != [0; BASES] {
+        } else if signed(self.rest) && dimension != [0; BASE_COUNT] {
             // Without a sign of a power: `s-1`, `s2`.
             self.exponent()?
         } else {
