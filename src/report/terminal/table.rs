@@ -41,8 +41,9 @@ impl From<String> for Cell {
 }
 
 /// The rows under their heads, two columns indented; the first column names the row. Columns without any text are left
-/// out. Where the others do not fit, names are wrapped, then columns are left out by their ranks. Where not even the
-/// rest fits, each row is a paragraph: its name, and below it the other cells with their heads.
+/// out. Where the others do not fit, names are wrapped, then columns are left out by their ranks, then the widest text of
+/// the rest is wrapped too. Where not even that fits, each row is a paragraph: its name, and below it the other cells with
+/// their heads.
 pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> String {
     let rows: Vec<Vec<Cell>> = rows
         .iter()
@@ -52,7 +53,7 @@ pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Stri
     let filled = |c: &usize| rows.iter().any(|row| !cell(row, *c).text.is_empty());
     let mut shown: Vec<usize> = (0..columns.len()).filter(filled).collect();
     // Looked at once: a line of a table must not look through all of it.
-    let widths: Vec<usize> = columns
+    let mut widths: Vec<usize> = columns
         .iter()
         .enumerate()
         .map(|(c, column)| {
@@ -60,23 +61,35 @@ pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Stri
             texts.max().unwrap_or(0).max(column.head.width())
         })
         .collect();
-    let needed = |c: usize| widths.get(c).copied().unwrap_or(0);
-    let room = |shown: &[usize]| {
-        let others: usize = shown.iter().filter(|c| **c != 0).map(|c| needed(*c) + GAP).sum();
-        terminal.width.checked_sub(others + GAP)
+    let left_over = |shown: &[usize], widths: &[usize]| {
+        let others = shown.iter().filter(|c| **c != 0).filter_map(|c| widths.get(*c));
+        terminal.width.checked_sub(others.map(|width| width + GAP).sum::<usize>() + GAP)
     };
-    let names = needed(0).min(NAME_WIDTH);
+    let longest_word = |c: usize| {
+        let words = rows.iter().filter_map(|row| row.get(c)).flat_map(|cell| cell.text.split(' '));
+        words.map(UnicodeWidthStr::width).max().unwrap_or(0)
+    };
+    let names = widths.first().map_or(0, |width| *width.min(&NAME_WIDTH));
+    let least_names = names.min(LEAST_NAME_WIDTH);
     let rank = |c: usize| columns.get(c).and_then(|column| column.left_out);
     let name_width = loop {
-        if let Some(width) = room(&shown).filter(|room| *room >= names.min(LEAST_NAME_WIDTH)) {
+        if let Some(width) = left_over(&shown, &widths).filter(|width| *width >= least_names) {
             break width;
         }
-        let next = shown.iter().copied().filter_map(|c| Some((rank(c)?, c))).min();
-        let Some((_, next)) = next else { return stacked(columns, &rows, terminal) };
-        shown.retain(|c| *c != next);
+        if let Some((_, next)) = shown.iter().copied().filter_map(|c| Some((rank(c)?, c))).min() {
+            shown.retain(|c| *c != next);
+            continue;
+        }
+        let is_text = |c: &usize| *c != 0 && columns.get(*c).is_some_and(|of| of.align == Align::Left);
+        let widest = shown.iter().copied().filter(is_text).max_by_key(|c| widths.get(*c));
+        let least = LEAST_NAME_WIDTH.max(widest.map_or(0, longest_word));
+        let Some(width) = widest.and_then(|c| widths.get_mut(c)).filter(|width| **width > least) else {
+            return stacked(columns, &rows, terminal);
+        };
+        *width -= 1;
     };
     let name_width = names.min(name_width);
-    let widest = |c: usize| if c == 0 { name_width } else { needed(c) };
+    let widest = |c: usize| if c == 0 { name_width } else { widths.get(c).copied().unwrap_or(0) };
     let line = |texts: &[(usize, Cell)]| {
         let mut out = String::new();
         for (c, cell) in texts {
@@ -96,13 +109,26 @@ pub fn table(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> Stri
         .collect();
     let mut out = line(&heads);
     for row in &rows {
-        let name = cell(row, 0);
-        let mut names = wrapped(&name.text, name_width).into_iter();
-        let first = Cell { text: names.next().unwrap_or_default(), style: name.style };
-        let cells: Vec<(usize, Cell)> =
-            shown.iter().map(|c| (*c, if *c == 0 { first.clone() } else { cell(row, *c) })).collect();
-        out.push_str(&line(&cells));
-        names.for_each(|rest| out.push_str(&format!("    {rest}\n")));
+        let texts: Vec<(usize, Style, Vec<String>)> = shown
+            .iter()
+            .map(|c| {
+                let of = cell(row, *c);
+                let fits = of.text.width() <= widest(*c);
+                (*c, of.style, if fits { vec![of.text] } else { wrapped(&of.text, widest(*c)) })
+            })
+            .collect();
+        for n in 0..texts.iter().map(|(_, _, lines)| lines.len()).max().unwrap_or(0) {
+            let cells: Vec<(usize, Cell)> = texts
+                .iter()
+                .map(|(c, style, lines)| {
+                    // The rest of a name is indented.
+                    let indent = if *c == 0 && n > 0 { "  " } else { "" };
+                    let text = lines.get(n).map(|text| format!("{indent}{text}"));
+                    (*c, text.map(|text| Cell { text, style: *style }).unwrap_or_default())
+                })
+                .collect();
+            out.push_str(&line(&cells));
+        }
     }
     out
 }
@@ -113,16 +139,19 @@ fn stacked(columns: &[Column], rows: &[Vec<Cell>], terminal: Terminal) -> String
     for row in rows {
         let Some((name, rest)) = row.split_first() else { continue };
         let (last, between) = rest.split_last().unwrap_or((name, &[]));
-        let last_text = terminal.styled(&last.text, last.style);
         for (i, line) in wrapped(&name.text, terminal.width.saturating_sub(4)).iter().enumerate() {
             out.push_str(&format!("  {}{line}\n", if i > 0 { "  " } else { "" }));
         }
-        for (column, cell) in columns.iter().skip(1).zip(between).filter(|(_, c)| !c.text.is_empty()) {
-            out.push_str(&format!("    {}: {}\n", column.head, terminal.styled(&cell.text, cell.style)));
-        }
-        if !last.text.is_empty() && !rest.is_empty() {
-            let head = columns.last().map_or("", |column| column.head.as_str());
-            out.push_str(&format!("    {head}: {last_text}\n"));
+        let last_column = columns.last().filter(|_| !rest.is_empty()).map(|column| (column, last));
+        let below = columns.iter().skip(1).zip(between).chain(last_column);
+        for (column, cell) in below.filter(|(_, cell)| !cell.text.is_empty()) {
+            let room = terminal.width.saturating_sub(column.head.width() + 6);
+            let lines = wrapped(&cell.text, room);
+            for (i, text) in lines.iter().enumerate() {
+                let text = terminal.styled(text, cell.style);
+                let head = if i == 0 { format!("{}: ", column.head) } else { "  ".to_owned() };
+                out.push_str(&format!("    {head}{text}\n"));
+            }
         }
     }
     out
@@ -173,6 +202,20 @@ mod tests {
             "  Quantity                                Value  Margin  Verdict\n  \
              Drift of 100-s averages           0.01278 °/h    0.38  pass\n    \
              predicted by the noise model\n"
+        );
+    }
+
+    #[test]
+    fn texts_are_wrapped_before_a_row_becomes_a_paragraph() {
+        let column = |head: &str| Column { head: head.into(), align: Align::Left, left_out: None };
+        let columns = ["Unit", "Quantity", "Verdict"].map(column);
+        let row = ["SN-1", "Angle random walk from 10-s averages", "pass"];
+        let rows = [row.map(|text| Cell::from(text.to_owned())).to_vec()];
+        let shown = table(&columns, &rows, Terminal { width: 46, colour: false });
+        assert_eq!(
+            shown,
+            "  Unit  Quantity                       Verdict\n  SN-1  Angle random walk from 10-s    pass\n        \
+             averages\n"
         );
     }
 
