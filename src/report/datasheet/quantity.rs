@@ -135,7 +135,7 @@ impl<'a> Printed<'a> {
         });
         let below = Block::remarks(meaning.into_iter().chain(details));
         let below = below.into_iter().chain(Block::remarks(notes)).chain(drawn);
-        Block::section("figures", Value::Sentence(self.name.clone()), below.collect())
+        Block::section("figures quantity", Value::Sentence(self.name.clone()), below.collect())
     }
 
     /// What each bound promises, and how bounds and quantity were obtained.
