@@ -1,7 +1,7 @@
 //! The id of a test, by which it is made once: contents of recording, procedure and limits, and the version of the program.
 
 use crate::config::shipped;
-use crate::output::{UNREAD, sha256, sha256_of_file, sha256_of_several};
+use crate::output::{UNREAD_HASH, sha256, sha256_of_file, sha256_of_several};
 use crate::record::RunRecord;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
@@ -50,7 +50,7 @@ pub fn hash_of(files: &[PathBuf]) -> String {
     let shipped = |path: &Path| shipped::find(path).map(|s| sha256(s.text.as_bytes()));
     sha256_of_several(files.iter().map(|path| {
         let hash = sha256_of_file(path).or_else(|| shipped(path));
-        hash.unwrap_or_else(|| UNREAD.to_owned())
+        hash.unwrap_or_else(|| UNREAD_HASH.to_owned())
     }))
 }
 
