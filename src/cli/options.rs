@@ -70,15 +70,16 @@ fn form_ids() -> PossibleValuesParser {
 impl FormArgs {
     /// The options as they are given to another run of the program.
     pub fn arguments(&self) -> Vec<OsString> {
-        let mut out: Vec<OsString> = vec![];
+        let mut out = vec![];
+        let mut option = |name: &str, value: OsString| out.extend([OsString::from(name), value]);
         if !self.forms.is_empty() {
-            out.extend(["--format".into(), self.forms.join(",").into()]);
+            option("--format", self.forms.join(",").into());
         }
         if let Some(pages) = self.pages.and_then(|p| p.to_possible_value()) {
-            out.extend(["--pages".into(), pages.get_name().into()]);
+            option("--pages", pages.get_name().into());
         }
         if let Some(templates) = &self.templates {
-            out.extend(["--templates".into(), templates.into()]);
+            option("--templates", templates.into());
         }
         out
     }

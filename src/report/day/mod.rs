@@ -3,7 +3,7 @@
 use super::document::{Documented, Record};
 use super::lot::reasons;
 use super::number::date_time;
-use super::page::{Block, Column, Head, OnTerminal, Page, State, Table, Value};
+use super::page::{Block, Column, Head, Page, State, Table, Value};
 use super::translator::Translator;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
@@ -119,7 +119,7 @@ fn untested(day: &DayRecord, words: Translator) -> Table {
     let why = day.untested.iter().map(|u| words.say(&u.why));
     Table::new("cards", day.untested.len())
         .column(
-            Column::text("recording", words.t("report.recording")).on_terminal(OnTerminal::Shown),
+            Column::text("recording", words.t("report.recording")),
             day.untested.iter().map(|u| u.recording.clone()),
         )
         .column(Column::text("reason", words.t("report.reasons")).class("why"), why)

@@ -205,6 +205,7 @@ const LATIN: &[&str] = &[
     "ADAPT",
     "CI",
     "each",
+    "once",
     "from",
     "index",
     "init",

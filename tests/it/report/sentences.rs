@@ -29,6 +29,10 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/recording_keys.rs", "meanings of words of keys: documentation, as of procedures"),
     ("src/config/layout/tables.rs", "meanings of words of keys of layouts: documentation, as of procedures"),
     ("src/config/proof/tables.rs", "meanings of words of keys of proofs: documentation, as of procedures"),
+    (
+        "src/config/watch/tables.rs",
+        "meanings of words of keys of watch rules: documentation, as of procedures",
+    ),
     ("src/config/model/tables.rs", "meanings of words of keys of claims: documentation, as of procedures"),
     (
         "src/config/schedule/tables.rs",
@@ -62,6 +66,7 @@ const LITERALS: &[(&str, &str, &str)] = &[
     ),
     ("src/report/svg/mod.rs", "system-ui", "names of fonts"),
     ("src/report/lot/mod.rs", "units small cards", "classes of a table in HTML"),
+    ("src/report/day/mod.rs", "units small cards", "classes of a table in HTML"),
     ("src/report/lot/quantity.rs", "units small cards", "classes of a table in HTML"),
     (
         "src/record/message.rs",
