@@ -236,7 +236,7 @@ impl Block {
 
     /// The files of a folder: name, and what each is.
     pub fn files(rows: impl IntoIterator<Item = (String, String)>) -> Block {
-        let rows = rows.into_iter().map(|(name, what)| (Value::Code(name), what.into())).collect();
+        let rows = rows.into_iter().map(|(name, what)| (Value::Code(name), Value::Sentence(what))).collect();
         Block::Facts(Facts { class: "about", rows })
     }
 }

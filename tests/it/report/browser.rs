@@ -116,7 +116,9 @@ fn values_at_the_pointer_are_those_of_the_figure() {
     let seen: Vec<String> = serde_json::from_str(&seen.replace("&quot;", "\"")).unwrap();
     // The abscissa with its unit, then a line for each series.
     assert!(
-        seen[0].starts_with("Time\n") && seen[0].contains("\nrate\n") && seen[0].contains("°/h"),
+        seen[0].starts_with("Averaging time τ\n")
+            && seen[0].contains("\nfitted model\n")
+            && seen[0].contains("°/h"),
         "{seen:?}"
     );
     assert!(seen[1] != seen[0] && !seen[1].is_empty(), "{seen:?}");

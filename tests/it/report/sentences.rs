@@ -66,6 +66,8 @@ const LITERALS: &[(&str, &str, &str)] = &[
     ),
     ("src/report/svg/mod.rs", "system-ui", "names of fonts"),
     ("src/report/lot/mod.rs", "units small cards", "classes of a table in HTML"),
+    ("src/report/view/evidence.rs", "dense clauses cards", "classes of a table in HTML"),
+    ("src/report/view/further.rs", "measurands matrix cards", "classes of a table in HTML"),
     ("src/report/day/mod.rs", "units small cards", "classes of a table in HTML"),
     ("src/report/lot/quantity.rs", "units small cards", "classes of a table in HTML"),
     (
