@@ -126,8 +126,12 @@ fn analysed(
     lang: Lang,
 ) -> Result<(RunRecord, Option<f64>), String> {
     let say = |note: Note| place::error(&note, lang);
-    let prepared =
-        Prepared::new(channels.to_vec(), &args.columns.choice(args.start.warm_up.seconds), &args.recording, source);
+    let prepared = Prepared::new(
+        channels.to_vec(),
+        &args.columns.choice(args.start.warm_up.seconds),
+        &args.recording,
+        source,
+    );
     let prepared = prepared.map_err(say)?;
     let limits = EffectiveLimits::default();
     let request = prepared.request(source, &limits, moment::now());

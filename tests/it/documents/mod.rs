@@ -31,9 +31,12 @@ fn a_result_is_verified_from_its_hashes_to_its_figures() {
     let recording = sample("pass");
     let (code, said) = verified(dir.path(), &["r", "--recording", &recording]);
     assert_eq!(code, 0, "{said}");
-    for part in
-        ["hashes recomputed", "reproduce from the record", "pass; rows with a limit: 7", "same figures: 28 quantities"]
-    {
+    for part in [
+        "hashes recomputed",
+        "reproduce from the record",
+        "pass; rows with a limit: 7",
+        "same figures: 28 quantities",
+    ] {
         assert!(said.contains(part), "{part}: {said}");
     }
     assert!(!said.contains('✗') && said.ends_with("Nothing differs.\n"), "{said}");

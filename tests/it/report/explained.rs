@@ -86,7 +86,10 @@ fn every_kind_is_said_with_its_parameters() {
             // Of each kind the sentence gives at least one number, and every parameter has a name.
             assert!(said.contains('3'), "{kind}: {said}");
             let names = parameters(&all, *lang);
-            assert!(names.iter().all(|n| !ids.iter().any(|(id, _)| id == n)), "{kind}: a parameter without a name");
+            assert!(
+                names.iter().all(|n| !ids.iter().any(|(id, _)| id == n)),
+                "{kind}: a parameter without a name"
+            );
             assert_eq!(names.len(), ids.len());
         }
     }

@@ -194,11 +194,9 @@ fn turned(gyros: &[GyroEvidence]) -> Note {
         .filter(|g| g.motion.is_motion())
         .filter_map(|g| turned_from_to(&g.digest.blocks, g.tau0_s, g.digest.quietest_deg_h));
     match spans.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) {
-        Some((from_s, to_s)) => note!(
-            "note.moving_from_to",
-            from_s = Arg::decimals(from_s, 1),
-            to_s = Arg::decimals(to_s, 1)
-        ),
+        Some((from_s, to_s)) => {
+            note!("note.moving_from_to", from_s = Arg::decimals(from_s, 1), to_s = Arg::decimals(to_s, 1))
+        }
         None => note!("note.moving"),
     }
 }
