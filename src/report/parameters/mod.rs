@@ -144,7 +144,7 @@ mod tests {
         let order = Choices { channels: vec!["y".into(), "x".into()], ..Choices::default() };
         let text = exported("gnss-ins-sim", &order).unwrap().text;
         assert!(text.contains("'gyro_arw': np.array([0.3, 0.1, 0.3])"), "{text}");
-        assert!(!text.contains("gyro_b_stability"), "what is not stated is not written: {text}");
+        assert!(!text.contains("'gyro_b_stability'"), "what is not stated is not written: {text}");
     }
 
     #[test]

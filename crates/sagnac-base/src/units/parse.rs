@@ -4,6 +4,9 @@ use super::dimension::{BASE_COUNT, Dimension};
 use super::error::UnitError;
 use super::symbols::{SUGGESTED_SYMBOLS, differ_by_prefix, symbol};
 
+/// Characters between the symbols of a product.
+const BLANKS: [char; 3] = [' ', '\t', '\u{a0}'];
+
 pub(super) struct Parser<'a> {
     pub text: &'a str,
     pub rest: &'a str,
@@ -16,12 +19,12 @@ impl Parser<'_> {
     }
 
     fn skip_space(&mut self) {
-        self.rest = self.rest.trim_start_matches([' ', '\t', '\u{a0}']);
+        self.rest = self.rest.trim_start_matches(BLANKS);
     }
 
+    /// Takes the sign with the blanks before it; where it is another, the blanks stay.
     fn take(&mut self, c: char) -> bool {
-        self.skip_space();
-        match self.rest.strip_prefix(c) {
+        match self.rest.trim_start_matches(BLANKS).strip_prefix(c) {
             Some(rest) => {
                 self.rest = rest;
                 true
@@ -37,12 +40,12 @@ impl Parser<'_> {
         }
         let (mut factor, mut dimension) = self.power()?;
         loop {
-            let blank = self.rest.starts_with([' ', '\t', '\u{a0}']);
+            let next = self.rest.trim_start_matches(BLANKS);
             let divide = if self.take('/') {
                 true
             } else if ['*', '·', '⋅', '∙', '×', '.'].into_iter().any(|sign| self.take(sign)) {
                 false
-            } else if blank && self.rest.starts_with(char::is_alphabetic) {
+            } else if next.len() < self.rest.len() && next.starts_with(char::is_alphabetic) {
                 // A blank multiplies, as in `rad s^-1`.
                 false
             } else {
@@ -66,7 +69,7 @@ impl Parser<'_> {
             digits.starts_with(|c: char| ('1'..='6').contains(&c))
         };
         let halves: i8 = if self.take('^')
-            || self.rest.strip_prefix("**").is_some_and(|r| {
+            || self.rest.trim_start_matches(BLANKS).strip_prefix("**").is_some_and(|r| {
                 self.rest = r;
                 true
             }) {
@@ -159,6 +162,6 @@ impl Parser<'_> {
             .char_indices()
             .filter(|(_, c)| *c == '.' || *c == '-' || c.is_ascii_digit())
             .map(|(i, _)| i);
-        ends.filter(|&i| whole.get(..i).is_some_and(|head| symbol(head).is_some())).last().unwrap_or(end)
+        ends.filter(|&i| whole.get(..i).is_some_and(|head| symbol(head).is_some())).next_back().unwrap_or(end)
     }
 }
