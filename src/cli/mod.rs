@@ -51,7 +51,6 @@ mod store;
 mod test_setup;
 mod verify;
 mod watch;
-mod watch_pass;
 mod writer;
 
 #[cfg(feature = "schema")]

@@ -1,6 +1,6 @@
 //! Limits, reference values and typical values as data, in the units of their measurands.
 
-use super::derived::DerivedLimit;
+use super::derived_rows::DerivedLimit;
 use super::diagnostics::Span;
 use crate::estimate::Limit;
 use crate::i18n::LocalText;
@@ -94,4 +94,10 @@ pub struct FastUnit {
     pub value: Span,
     /// The unit as it is written.
     pub unit: String,
+}
+
+/// The gyro channel of a row: `rate` of `rate@-40`, `x` of `x<-y`.
+pub fn gyro_of(channel: &str) -> &str {
+    let end = channel.find('@').or_else(|| channel.find("<-")).unwrap_or(channel.len());
+    channel.get(..end).unwrap_or(channel)
 }

@@ -2,6 +2,7 @@
 
 use super::derived;
 use super::diagnostics::{Problem, SourceText};
+pub use super::limit_set::gyro_of;
 pub use super::limit_set::{Expected, LimitSet, LimitSpec, LimitsFile, Reference};
 use super::model::{Loaded, Procedure};
 use super::quantity::AS_RECORDED;
@@ -64,12 +65,6 @@ impl EffectiveLimits {
     pub fn expected(&self, measurand: &str) -> Option<f64> {
         self.set.expected.iter().find(|e| e.measurand.id == measurand).map(|e| e.value)
     }
-}
-
-/// The gyro channel of a row: `rate` of `rate@-40`, `x` of `x<-y`.
-pub fn gyro_of(channel: &str) -> &str {
-    let end = channel.find('@').or_else(|| channel.find("<-")).unwrap_or(channel.len());
-    channel.get(..end).unwrap_or(channel)
 }
 
 /// The first entry for the channel, or else the first for every channel.

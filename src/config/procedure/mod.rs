@@ -4,6 +4,7 @@
 pub(crate) mod channel;
 pub mod check;
 pub mod derived;
+pub mod derived_rows;
 pub mod guide;
 mod instrument;
 pub mod limit_set;

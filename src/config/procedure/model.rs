@@ -1,6 +1,6 @@
 //! A procedure after reading: plain values in inside units (deg/h, s, degC, Hz).
 
-use super::derived::DerivedSpec;
+use super::derived_rows::DerivedSpec;
 use super::diagnostics::{Problem, SourceText, Span};
 pub use super::instrument::Instrument;
 use super::limit_set::{LimitSet, LimitsFile};

@@ -1,7 +1,8 @@
 //! Watch rules from a TOML file, with every problem at its place.
 
+use super::rules::{SERIAL_PLACE, WatchRule, WatchRules};
 use super::tables::{RuleKeys, WATCH_FILE, WatchTables};
-use super::{SERIAL_PLACE, WatchRule, WatchRules};
+
 use crate::config::contained_files::{folder_of, joined};
 use crate::config::diagnostics::Problems;
 use crate::config::read_tables::checked;

@@ -1,6 +1,6 @@
 //! The tables of a file of watch rules.
 
-use super::{Completeness, WatchRule};
+use super::rules::{Completeness, WatchRule};
 use crate::config::section::Section;
 use crate::config::spec::{Kind, TableSpec, Word};
 use crate::config::table::{Table, empty, words};
@@ -97,5 +97,12 @@ pub(super) fn default_rule() -> WatchRule {
         unit_data: None,
         station: None,
         hook: vec![],
+    }
+}
+
+impl WatchRule {
+    /// The rule of every file of a folder by one procedure.
+    pub fn of_every_file(procedure: PathBuf, limits: Option<PathBuf>) -> WatchRule {
+        WatchRule { pattern: EVERY_FILE.to_owned(), procedure, limits, ..default_rule() }
     }
 }

@@ -194,27 +194,9 @@ pub fn gauss_markov(rms_deg_h: f64, correlation_time_s: f64) -> Damped {
 }
 
 #[cfg(test)]
-pub mod tests {
+mod tests {
+    use super::super::example::{record, row};
     use super::*;
-    use crate::record::RecordingFile;
-
-    /// A row of a channel, measured.
-    pub fn row(m: &Measurand, channel: &str, value: f64) -> MeasurandRecord {
-        MeasurandRecord {
-            id: m.id.to_owned(),
-            channel: channel.to_owned(),
-            value: Some(value),
-            unit: m.unit.to_owned(),
-            identifiable: true,
-            ..MeasurandRecord::default()
-        }
-    }
-
-    /// A result of 10 h at 10 Hz with some rows.
-    pub fn record(rows: Vec<MeasurandRecord>) -> RunRecord {
-        let file = RecordingFile { sample_interval_s: 0.1, duration_s: 36_000.0, ..RecordingFile::default() };
-        RunRecord { measurands: rows, recording: vec![file], ..RunRecord::default() }
-    }
 
     #[test]
     fn an_axis_holds_values_limits_and_gaps_of_its_channel() {

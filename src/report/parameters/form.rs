@@ -180,7 +180,7 @@ impl FormError {
 
 #[cfg(test)]
 mod tests {
-    use super::super::axis::tests::{record, row};
+    use super::super::example::{record, row};
     use super::*;
     use crate::measurand::{ANGLE_RANDOM_WALK, BIAS_INSTABILITY, RATE_RANDOM_WALK};
 

@@ -3,7 +3,7 @@
 use super::axis::{Axis, Level};
 use super::form::{FormError, RatioAt, one_process};
 use super::quantity::Source;
-use super::targets::Target;
+use super::target::Target;
 use crate::i18n::{Arg, Lang, Localize, Note, note};
 use crate::measurand::{BIAS_INSTABILITY, Measurand, QUANTIZATION, RATE_RAMP, RATE_RANDOM_WALK};
 use crate::record::RunRecord;

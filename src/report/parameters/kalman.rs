@@ -6,7 +6,7 @@
 
 use super::axis::Axis;
 use super::form::chain;
-use super::formats::{AXES, Sheet};
+use super::target::{AXES, Sheet};
 use serde_json::{Value, json};
 use std::f64::consts::PI;
 

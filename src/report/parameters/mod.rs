@@ -5,11 +5,14 @@
 //! what error the form leaves.
 
 mod axis;
+#[cfg(test)]
+mod example;
 mod form;
 mod formats;
 mod head;
 mod kalman;
 mod quantity;
+mod target;
 mod targets;
 
 pub use targets::{TARGETS, Target, find};
@@ -18,7 +21,7 @@ use crate::i18n::{Lang, Note, note};
 use crate::record::RunRecord;
 use axis::Axis;
 use form::FormError;
-use formats::{AXES, Sheet};
+use target::{AXES, Sheet};
 
 /// Choices of the user.
 #[derive(Debug, Clone, Default)]
@@ -108,7 +111,7 @@ fn chosen(axes: Vec<Axis>, channels: &[String]) -> Result<Vec<Axis>, Note> {
 
 #[cfg(test)]
 mod tests {
-    use super::axis::tests::{record, row};
+    use super::example::{record, row};
     use super::*;
     use crate::measurand::{ANGLE_RANDOM_WALK, BIAS_TEMPERATURE_SENSITIVITY, RATE_RANDOM_WALK};
 

@@ -209,7 +209,7 @@ pub const fn step_rate(name: &'static str) -> Quantity {
 #[cfg(test)]
 mod tests {
     use super::super::axis::gauss_markov;
-    use super::super::axis::tests::{record, row};
+    use super::super::example::{record, row};
     use super::*;
     use crate::units::Unit;
 

@@ -2,28 +2,10 @@
 //! `docs/guide/export.md` cites them.
 
 use super::form::{FlickerForm, Places};
-use super::formats::{self, Sheet};
+use super::formats;
 use super::kalman;
-use super::quantity::{self as q, Quantity};
-
-/// One program that takes the parameters of a gyro.
-#[derive(Debug, Clone, Copy)]
-pub struct Target {
-    /// Name on the command line.
-    pub id: &'static str,
-    /// Key of its conventions in the locale tables.
-    pub convention: &'static str,
-    /// What begins a line of a comment in its format.
-    pub comment: &'static str,
-    /// The noise that it has places for.
-    pub places: Places,
-    /// Step at which it uses the values, s; `None`: that of the recording.
-    pub step_s: Option<f64>,
-    /// Its quantities.
-    pub quantities: &'static [Quantity],
-    /// Writes its file.
-    pub write: fn(&Sheet<'_>) -> String,
-}
+use super::quantity as q;
+pub use super::target::Target;
 
 /// White noise and a random walk.
 const WHITE_AND_WALK: Places = Places { white: true, random_walk: true, flicker: FlickerForm::LeftOut };

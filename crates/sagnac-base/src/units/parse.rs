@@ -158,10 +158,10 @@ impl Parser<'_> {
         if symbol(whole).is_some() {
             return end;
         }
-        let ends = whole
+        let mut ends = whole
             .char_indices()
             .filter(|(_, c)| *c == '.' || *c == '-' || c.is_ascii_digit())
             .map(|(i, _)| i);
-        ends.filter(|&i| whole.get(..i).is_some_and(|head| symbol(head).is_some())).next_back().unwrap_or(end)
+        ends.rfind(|&i| whole.get(..i).is_some_and(|head| symbol(head).is_some())).unwrap_or(end)
     }
 }

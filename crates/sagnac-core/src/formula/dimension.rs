@@ -1,6 +1,6 @@
 //! The unit of each part of a formula, known without data.
 
-use super::{Expression, FormulaError, Function, Node, Sign};
+use super::expression::{Expression, FormulaError, Function, Node, Sign};
 use crate::message::{Note, note};
 use crate::units::Unit;
 

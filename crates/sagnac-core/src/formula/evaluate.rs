@@ -9,8 +9,8 @@
 //! An input without a value has the bounds that its limits give, or none. A formula then has those that remain: the largest of a
 //! value and an unknown is at least the value.
 
+use super::expression::{Expression, Function, Node, Sign};
 use super::interval::Ends;
-use super::{Expression, Function, Node, Sign};
 use crate::estimate::{Estimate, Holds, LowerLimit, Spread, UpperLimit, normal_probability};
 
 /// The correlation of two inputs, each by place of its reference and place among its channels; `None` where it is not known.

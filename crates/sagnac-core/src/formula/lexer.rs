@@ -1,6 +1,6 @@
 //! The symbols of a formula with their places.
 
-use super::FormulaError;
+use super::expression::FormulaError;
 use crate::message::{Note, note};
 use crate::units::Unit;
 use std::ops::Range;

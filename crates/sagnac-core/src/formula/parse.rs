@@ -1,7 +1,7 @@
 //! From symbols to the tree of a formula, by the binding powers of its operators (Pratt 1973).
 
+use super::expression::{Channels, Expression, Formula, FormulaError, Function, Node, Reference, Sign};
 use super::lexer::{Placed, Symbol, symbols};
-use super::{Channels, Expression, Formula, FormulaError, Function, Node, Reference, Sign};
 use crate::message::{Note, note};
 use std::ops::Range;
 
