@@ -7,7 +7,7 @@ use super::model::Procedure;
 use super::quantity;
 use super::reader::{Reader, meant, shorten};
 use super::tables::derived::{DerivedKeys, DerivedLimitKeys};
-use crate::estimate::{Limit, Rule};
+use crate::estimate::Rule;
 use crate::formula::{Channels, Formula, Reference};
 use crate::i18n::{Note, note};
 use crate::measurand;
