@@ -22,10 +22,10 @@ use std::sync::LazyLock;
 /// Dotted key to text with `{argument}` places.
 type Table = BTreeMap<String, String>;
 
-static TABLES: LazyLock<Vec<(Lang, Table)>> =
+static LOCALE_TABLES: LazyLock<Vec<(Lang, Table)>> =
     LazyLock::new(|| Lang::ALL.iter().map(|lang| (*lang, flatten(lang.source()))).collect());
 
-static EMPTY: Table = Table::new();
+static EMPTY_TABLE: Table = Table::new();
 
 /// Turns the nested tables of a locale file into dotted keys.
 fn flatten(source: &str) -> Table {
@@ -50,7 +50,7 @@ fn flatten(source: &str) -> Table {
 
 /// The table of a language: dotted key → text with `{argument}` places.
 pub fn table(lang: Lang) -> &'static BTreeMap<String, String> {
-    TABLES.iter().find(|(of, _)| *of == lang).map_or(&EMPTY, |(_, table)| table)
+    LOCALE_TABLES.iter().find(|(of, _)| *of == lang).map_or(&EMPTY_TABLE, |(_, table)| table)
 }
 
 /// The text of a key, in English where the table of the language lacks it; `None` when no table has it.

@@ -43,6 +43,7 @@
 //! | [`acceptance`] | conditions, the run, comparisons, inspection |
 //! | [`report`] | views of a record as HTML, Markdown and SVG |
 //! | [`prove`] | what the engine says of a recording of which something is concealed |
+//! | [`watch`] | a watched folder: what is complete, what was tested |
 //! | [`store`] | results that are kept, and their index |
 //! | [`i18n`] | sentences in English and Russian |
 //! | [`output`] | folders that appear complete or not at all |
@@ -66,6 +67,7 @@ pub mod signing;
 pub mod simulate;
 pub mod store;
 pub mod verify;
+pub mod watch;
 
 pub use i18n::Lang;
 pub use library::{
@@ -75,8 +77,8 @@ pub use library::{
 pub use record::UnitUnderTest;
 pub use report::export;
 pub use sagnac_core::{
-    claim, criticism, effect, estimate, evidence, figure, influence, lot, measurand, mismatch, numeric, plan,
-    rate_table, schedule, temperature, units,
+    claim, criticism, effect, estimate, evidence, figure, formula, influence, lot, measurand, mismatch,
+    numeric, plan, rate_table, schedule, temperature, units,
 };
 
 /// Noise of a gyro at rest: [`allan`](fn@allan) and [`identify`](fn@identify) for samples in memory, and the methods that it is made of.

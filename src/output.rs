@@ -22,7 +22,7 @@ mod transfer;
 
 pub use addressed::AddressedFolder;
 pub use checksums::{
-    CHECKSUMS_FILE, UNREAD, checksums, read_checksums, sha256, sha256_of_file, sha256_of_several,
+    CHECKSUMS_FILE, UNREAD_HASH, checksums, read_checksums, sha256, sha256_of_file, sha256_of_several,
 };
 pub use contained::{Found, NotRead, found_below, open_below, read_below, sha256_below};
 pub use csv::csv_line;
@@ -85,7 +85,7 @@ impl Order {
         for (name, paths) in std::mem::take(&mut self.files) {
             let hash = |path: &PathBuf| {
                 let read = path.canonicalize().ok().and_then(|p| known.get(&p).cloned());
-                read.or_else(|| sha256_of_file(path)).unwrap_or_else(|| UNREAD.to_owned())
+                read.or_else(|| sha256_of_file(path)).unwrap_or_else(|| UNREAD_HASH.to_owned())
             };
             self.inputs.insert(name, sha256_of_several(paths.iter().map(hash)));
         }

@@ -139,7 +139,7 @@ type Add<'a> = &'a mut dyn FnMut(Note, &'static str, f64, f64, f64);
 
 /// Deviations of the data sets of NIST SP 1065.
 fn deviations(add: Add<'_>) {
-    const SP1065: &str = "selftest.from.sp1065";
+    const SP1065_SOURCE: &str = "selftest.from.sp1065";
     let thousand = thousand();
     let family = [
         (Estimator::Allan, "selftest.allan", [91.22945, 85.95287], [2.922319e-1, 9.159953e-2, 3.241343e-2]),
@@ -159,10 +159,10 @@ fn deviations(add: Add<'_>) {
     ];
     for (estimator, name, nine, suite) in family {
         for (m, value) in [1, 2].into_iter().zip(nine) {
-            add(points(name, 9, m), SP1065, value, deviation(&SP1065_VALUES, m, estimator), 1e-7);
+            add(points(name, 9, m), SP1065_SOURCE, value, deviation(&SP1065_VALUES, m, estimator), 1e-7);
         }
         for (m, value) in [1, 10, 100].into_iter().zip(suite) {
-            add(points(name, 1000, m), SP1065, value, deviation(&thousand, m, estimator), 3e-7);
+            add(points(name, 1000, m), SP1065_SOURCE, value, deviation(&thousand, m, estimator), 3e-7);
         }
     }
 }

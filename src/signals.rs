@@ -4,12 +4,15 @@ use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
 use signal_hook::iterator::Signals;
 
 /// From now on, a signal that ends the program leaves no half-made folder or file behind. A signal that whoever started
-/// the program has it ignore (`nohup`) stays ignored.
+/// the program has it ignore (`nohup`) stays ignored. A verb that ends by itself is left to do so.
 pub fn tidy_up_on() {
     let wanted: Vec<i32> = [SIGHUP, SIGINT, SIGTERM].into_iter().filter(|s| !ignored(*s)).collect();
     let Ok(mut signals) = Signals::new(wanted) else { return };
     std::thread::spawn(move || {
-        if let Some(signal) = signals.forever().next() {
+        for signal in signals.forever() {
+            if sagnac::cli::ending::request() {
+                continue;
+            }
             sagnac::output::abandon_all();
             // The parent learns that it was the signal.
             let _ = signal_hook::low_level::emulate_default_handler(signal);

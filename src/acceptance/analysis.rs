@@ -45,7 +45,7 @@ impl Prepared {
         self.procedure.sample_rate_hz.filter(|_| !self.use_stamps)
     }
 
-    /// What is to be run: averaging times of octaves, a unit without a name.
+    /// Request of the analysis: averaging times of octaves, a unit without a name.
     pub fn request<'a>(
         &'a self,
         source: &'a Source,

@@ -12,7 +12,7 @@ pub fn unit(member: &Member, record: &RunRecord) -> LotUnit {
     of_record(record, member.serial_from, member.recording.display().to_string(), member.folder.clone())
 }
 
-/// What a lot has of the record of a unit whose recording was named so, in a folder of its own.
+/// Entry of a lot from the record of a unit whose recording was named so, in a folder of its own.
 pub fn of_record(
     record: &RunRecord,
     serial_from: SerialSource,

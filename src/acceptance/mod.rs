@@ -5,6 +5,7 @@
 //! | `pipeline` | the way from a recording to its record: collect, judge, measure, record |
 //! | `analysis`, `column_choice` | what stands in for a procedure where there is none |
 //! | `kinds` | what each kind of test adds to that way; one file or folder a kind, one list |
+//! | `derived` | rows by a formula over others |
 //! | `condition` | whether the test was done as required; one condition a file |
 //! | `figures` | plots as data |
 //! | `lot` | a lot from the records of its units |
@@ -19,6 +20,7 @@ pub mod column_choice;
 pub mod compare;
 pub mod condition;
 pub mod datasheet;
+mod derived;
 pub mod explained;
 pub mod figures;
 pub mod history;

@@ -4,6 +4,7 @@ use super::build_record::build_record;
 use super::condition::checks::CheckLog;
 use super::condition::thermometer::Thermometer;
 use super::condition::{ColumnFact, Facts, judge_all};
+use super::derived;
 use super::missing_rows;
 use super::reading::{self, tidy};
 use super::request::{Outcome, Request};
@@ -30,16 +31,16 @@ pub(super) trait Test {
 
 impl<K: TestKind> Test for K {
     fn checks(&self) -> &'static [&'static str] {
-        K::CHECKS
+        K::OWN_CHECKS
     }
 
     fn run(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Outcome> {
         let options = self.options(request);
         let (reading, evidence) = collect(*self, request, progress)?;
         let conditions = judge(&reading, &evidence);
-        let rows = measure(&reading, &evidence, K::MISSING);
+        let rows = measure(&reading, &evidence, K::MISSING_REASON);
         let figures = evidence.figures(&reading);
-        let mut record = build_record(&reading, K::CHECKS, conditions, rows, &figures, options);
+        let mut record = build_record(&reading, K::OWN_CHECKS, conditions, rows, &figures, options);
         let tables = evidence.complete(&reading, &mut record);
         Ok(Outcome { record, figures, tables })
     }
@@ -130,19 +131,24 @@ fn judge(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<ConditionRecord>
 /// for one without an estimate.
 fn measure(reading: &Reading<'_>, evidence: &dyn Evidence, missing: &'static str) -> Vec<MeasurandRecord> {
     let request = reading.request;
-    let mut rows = Vec::new();
-    for spec in &request.procedure.measurands {
+    let procedure = request.procedure;
+    let mut estimates = Vec::new();
+    for spec in &procedure.measurands {
         let asked = |channel: &str| spec.channel.as_deref().is_none_or(|c| c == gyro_of(channel));
-        let estimates = evidence.estimates(reading, spec);
-        rows.extend(
-            estimates
-                .iter()
-                .filter(|e| asked(&e.channel))
-                .map(|e| verdict::row(e, request.limits, request.procedure)),
-        );
+        estimates.extend(evidence.estimates(reading, spec).into_iter().filter(|e| asked(&e.channel)));
     }
+    let rows = estimates.iter().map(|e| verdict::row(e, request.limits, procedure)).collect();
     // An analysis shows what the recording has; nobody asked for one value by name.
-    if request.is_run() { missing_rows::complete(request, &reading.channels, missing, rows) } else { rows }
+    let mut rows = if request.is_run() {
+        missing_rows::complete(request, &reading.channels, missing, rows)
+    } else {
+        rows
+    };
+    let gyros = reading.channels.iter().filter(|c| c.role.is_gyro());
+    let gyros: Vec<&str> = gyros.map(|c| c.id.as_str()).collect();
+    let correlation = |one: &_, other: &_| evidence.correlation(one, other);
+    rows.extend(derived::rows(procedure, request.limits, &gyros, &estimates, &correlation));
+    rows
 }
 
 /// The longest gap in what was evaluated, s.

@@ -10,7 +10,7 @@ use crate::record::{ProcedureRecord, RunKind, RunRecord, Session, UnitUnderTest}
 use chrono::{DateTime, Utc};
 use std::fmt;
 
-/// What is to be run. Clock, host and people are passed in: the outcome is a pure function of a request.
+/// Request for a run. Clock, host and people are passed in: the outcome is a pure function of a request.
 pub struct Request<'a> {
     /// `run` or `analyze`.
     pub kind: RunKind,

@@ -107,9 +107,9 @@ pub(super) trait TestKind: Sized {
     /// What the collected data show.
     type Evidence: Evidence;
     /// Ids of the checks that the test could make, apart from those of every test.
-    const CHECKS: &'static [&'static str];
+    const OWN_CHECKS: &'static [&'static str];
     /// Key of the reason for a measurand that has no estimate at all.
-    const MISSING: &'static str;
+    const MISSING_REASON: &'static str;
 
     /// The test of a procedure; `None` for a procedure of another kind.
     fn of(procedure: &Procedure) -> Option<Self>;
@@ -161,6 +161,11 @@ pub(super) trait Evidence {
 
     /// The estimates of a measurand on every channel; channels asked for and limits are applied by the pipeline.
     fn estimates(&self, reading: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate>;
+
+    /// The correlation of two estimates from one fit; `None` where they are not of one, or where it is not known.
+    fn correlation(&self, _one: &Estimate, _other: &Estimate) -> Option<f64> {
+        None
+    }
 
     /// The figures that the report asks for.
     fn figures(&self, reading: &Reading<'_>) -> Vec<Figure>;

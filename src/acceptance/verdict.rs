@@ -1,24 +1,49 @@
 //! Rows with their limits, and the verdict of the whole.
 
 use crate::config::procedure::{EffectiveLimits, Procedure};
-use crate::estimate::{Estimate, Holds, Verdict, judge};
+use crate::estimate::{Estimate, Holds, Limit, Verdict, judge};
 use crate::i18n::{Arg, Note, note};
 use crate::record::{
     ConditionRecord, ConditionStatus, Evidence, LimitRecord, MeasurandRecord, ObjectionRecord,
+    ReferenceRecord,
 };
 
-/// Judges one estimate.
+/// Judges one estimate by the limits that hold.
 pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure) -> MeasurandRecord {
     let spec = limits.limit(estimate.id, &estimate.channel);
     let limit = spec.map(|l| &l.limit);
     // A limit in another unit than the value decides nothing.
     let other = spec.and_then(|l| l.recorded_unit).filter(|unit| *unit != estimate.unit);
-    let nothing = Estimate::not_identifiable(estimate.id, "", None, estimate.unit, "");
+    let reference = limits
+        .reference(estimate.id, &estimate.channel)
+        .filter(|_| procedure.report.show_reference)
+        .map(|r| r.record.clone());
     // Of what can be negative and is not shown, no lower limit is known to be met.
     let signed = crate::measurand::find(estimate.id).is_some_and(|m| m.signed);
+    judged(estimate, Against { limit, unit: estimate.unit, other_unit: other, signed, reference })
+}
+
+/// What a row is judged by and shown beside.
+pub struct Against<'a> {
+    /// The limit.
+    pub limit: Option<&'a Limit>,
+    /// Unit of the row.
+    pub unit: &'a str,
+    /// Unit of the limit where it measures something else than the row: it decides nothing.
+    pub other_unit: Option<&'a str>,
+    /// Whether the quantity can be negative.
+    pub signed: bool,
+    /// Published value.
+    pub reference: Option<ReferenceRecord>,
+}
+
+/// The row of an estimate, judged.
+pub fn judged(estimate: &Estimate, against: Against<'_>) -> MeasurandRecord {
+    let Against { limit, unit, other_unit, signed, reference } = against;
+    let nothing = Estimate::not_identifiable(estimate.id, "", None, estimate.unit, "");
     let judgement = limit.map(|l| {
         let contradicted = estimate.contradicted();
-        let undecided = other.is_some() || contradicted == Some(Holds::Nothing);
+        let undecided = other_unit.is_some() || contradicted == Some(Holds::Nothing);
         let mut judged = judge(if undecided { &nothing } else { estimate }, l);
         let only_bounded = contradicted.is_some() && (judged.verdict == Verdict::Fail || l.min.is_some());
         if undecided || only_bounded || estimate.value.is_none() && signed && l.min.is_some() {
@@ -27,17 +52,13 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
         judged
     });
     let mut notes = estimate.notes.clone();
-    notes.extend(other.map(|unit| note!("note.limit_other_unit", given = unit, unit = estimate.unit)));
-    let reference = limits
-        .reference(estimate.id, &estimate.channel)
-        .filter(|_| procedure.report.show_reference)
-        .map(|r| r.record.clone());
+    notes.extend(other_unit.map(|given| note!("note.limit_other_unit", given, unit)));
     MeasurandRecord {
         id: estimate.id.to_owned(),
         channel: estimate.channel.clone(),
         phase: None,
         value: estimate.value,
-        unit: estimate.unit.to_owned(),
+        unit: unit.to_owned(),
         interval: estimate.interval95(),
         common_standard_uncertainty: estimate.value.map(|_| estimate.common),
         identifiable: estimate.value.is_some(),
@@ -45,9 +66,7 @@ pub fn row(estimate: &Estimate, limits: &EffectiveLimits, procedure: &Procedure)
         most_likely: estimate.most_likely,
         lower_limit: estimate.lower_limit,
         method: estimate.method.to_owned(),
-        limit: limit
-            .zip(judgement.as_ref())
-            .map(|(l, j)| LimitRecord::new(l, other.unwrap_or(estimate.unit), j)),
+        limit: limit.zip(judgement.as_ref()).map(|(l, j)| LimitRecord::new(l, other_unit.unwrap_or(unit), j)),
         reference,
         verdict: judgement.as_ref().map_or(Verdict::None, |j| j.verdict),
         margin: judgement.as_ref().and_then(|j| j.margin),

@@ -1,6 +1,6 @@
 //! `sagnac analyze`: the noise of a recording without a procedure.
 
-use super::columns::ColumnArgs;
+use super::columns::{ColumnArgs, WarmUpArgs};
 use super::evaluate::evaluate;
 use super::job::{Frame, Job, Made, execute};
 use super::join::JoinArgs;
@@ -10,7 +10,7 @@ use super::place::{self, OutputPlace};
 use super::read::ReadArgs;
 use crate::acceptance::Request;
 use crate::acceptance::analysis::Prepared;
-use crate::acceptance::column_choice::{channels, unit_contradictions};
+use crate::acceptance::column_choice::{channels, remarks};
 use crate::config::procedure::EffectiveLimits;
 use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::open_recording;
@@ -30,6 +30,8 @@ pub struct AnalyzeArgs {
     join: JoinArgs,
     #[command(flatten)]
     columns: ColumnArgs,
+    #[command(flatten)]
+    start: WarmUpArgs,
     /// Output folder [default: named after the recording and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -68,8 +70,9 @@ impl Job for Analysis<'_> {
                 &args.columns.unit,
                 &args.columns.counter,
                 &args.columns.time,
+                (&args.columns.increment, args.columns.scale),
             ),
-            (args.columns.sample_rate, args.columns.warm_up.seconds, &args.grid, &args.read),
+            (args.columns.sample_rate, args.start.warm_up.seconds, &args.grid, &args.read),
         ));
         inputs.begin(&out, Kind::Result, frame.lang)
     }
@@ -79,9 +82,9 @@ impl Job for Analysis<'_> {
         let say = |note: Note| place::error(&note, lang);
         let recording = open_recording(&args.recording, &args.read.options()).map_err(|e| e.say(lang))?;
         let (source, manifest) = (recording.source, recording.manifest);
-        let choice = args.columns.choice();
+        let choice = args.columns.choice(args.start.warm_up.seconds);
         let channels = channels(&choice, named(args), &source).map_err(say)?;
-        for note in unit_contradictions(&channels, &source) {
+        for note in remarks(&choice, &channels, &source) {
             frame.warn(&note);
         }
         let prepared = Prepared::new(channels, &choice, named(args), &source).map_err(say)?;
@@ -97,7 +100,8 @@ impl Job for Analysis<'_> {
     }
 
     fn next_step(&self, _: &Results, _: &Path) -> Option<Note> {
-        let options = format!("{}{}", self.args.columns.as_typed(), self.args.read.as_typed());
+        let options =
+            [self.args.columns.as_typed(), self.args.start.as_typed(), self.args.read.as_typed()].concat();
         next_step::init(&self.args.recording, &options)
     }
 }

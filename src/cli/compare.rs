@@ -1,6 +1,6 @@
 //! `sagnac compare`: Russian against Allan figures of any units, or the published tables.
 
-use super::columns::ColumnArgs;
+use super::columns::{ColumnArgs, WarmUpArgs};
 use super::evaluate::with_progress;
 use super::job::{Frame, Job, Made, execute};
 use super::options::OutputArgs;
@@ -9,7 +9,7 @@ use super::progress::Progress;
 use super::read::ReadArgs;
 use crate::acceptance::Request;
 use crate::acceptance::analysis::Prepared;
-use crate::acceptance::column_choice::{channels, unit_contradictions};
+use crate::acceptance::column_choice::{channels, remarks};
 use crate::acceptance::compare::published_checks::checked;
 use crate::acceptance::compare::{
     Comparison, Origin, Unit, mark_repeated, name_apart, not_compared, units_of,
@@ -35,6 +35,8 @@ pub struct CompareArgs {
     published: bool,
     #[command(flatten)]
     columns: ColumnArgs,
+    #[command(flatten)]
+    start: WarmUpArgs,
     /// Limits file: each limit applies to the figure it names; a result keeps its own limits
     #[arg(long, value_name = "FILE")]
     limits: Option<PathBuf>,
@@ -68,8 +70,9 @@ impl Job for &CompareArgs {
                 &self.columns.unit,
                 &self.columns.counter,
                 &self.columns.time,
+                (&self.columns.increment, self.columns.scale),
             ),
-            (self.columns.sample_rate, self.columns.warm_up.seconds, self.published, &self.read),
+            (self.columns.sample_rate, self.start.warm_up.seconds, self.published, &self.read),
         ));
         inputs.begin(&out, Kind::Comparison, frame.lang)
     }
@@ -195,9 +198,9 @@ fn analysed(
     let say = |note: Note| place::error(&note, lang);
     let recording = open_recording(&[path.to_owned()], &args.read.options()).map_err(|e| e.say(lang))?;
     let (source, manifest) = (recording.source, recording.manifest);
-    let choice = args.columns.choice();
+    let choice = args.columns.choice(args.start.warm_up.seconds);
     let channels = channels(&choice, path, &source).map_err(say)?;
-    let otherwise = unit_contradictions(&channels, &source);
+    let otherwise = remarks(&choice, &channels, &source);
     let prepared = Prepared::new(channels, &choice, path, &source).map_err(say)?;
     let request = Request {
         unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },

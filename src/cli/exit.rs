@@ -20,6 +20,7 @@ pub fn of(results: &Results) -> u8 {
     match results.record().record() {
         Record::Run(run) => of_verdict(run.verdict),
         Record::Lot(lot) => of_verdict(lot.verdict),
+        Record::Day(day) => of_verdict(day.verdict),
         Record::Explanation(one) => of_mismatch(one.explanation.verdict),
         Record::Joint(several) => of_mismatch(several.explanation.verdict),
         Record::Plan(file) => match file.plan.outcome {
@@ -44,7 +45,8 @@ pub fn where_limits_are_required(results: &Results) -> u8 {
     if verdict == Verdict::None { INDETERMINATE } else { of_verdict(verdict) }
 }
 
-fn of_verdict(verdict: Verdict) -> u8 {
+/// The exit code of a verdict.
+pub fn of_verdict(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::None | Verdict::Pass => PASS,
         Verdict::Fail => FAIL,

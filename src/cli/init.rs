@@ -1,13 +1,13 @@
 //! `sagnac init`: a procedure, limits and a job for continuous integration from what a recording holds.
 
-use super::columns::ColumnArgs;
+use super::columns::{ColumnArgs, WarmUpArgs};
 use super::evaluate::with_progress;
 use super::join::JoinArgs;
 use super::progress::{Display, Progress};
 use super::read::ReadArgs;
 use super::{exit, place};
 use crate::acceptance::analysis::Prepared;
-use crate::acceptance::column_choice::channels;
+use crate::acceptance::column_choice::{channels, remarks};
 use crate::acceptance::verdict::contradicted;
 use crate::config::procedure::EffectiveLimits;
 use crate::criticism::temperature;
@@ -34,6 +34,8 @@ pub struct InitArgs {
     recording: PathBuf,
     #[command(flatten)]
     columns: ColumnArgs,
+    #[command(flatten)]
+    start: WarmUpArgs,
     /// Folder for the files; existing files are not replaced
     #[arg(long, value_name = "DIR", default_value = ".")]
     out: PathBuf,
@@ -81,7 +83,11 @@ pub fn main(args: &InitArgs, lang: Lang) -> Result<u8, String> {
     JoinArgs::default().check(recording, "join.help.init", lang)?;
     let opened = open_recording(recording, &args.read.options()).map_err(|e| e.say(lang))?;
     let source = opened.source;
-    let channels = channels(&args.columns.choice(), &args.recording, &source).map_err(say)?;
+    let choice = args.columns.choice(args.start.warm_up.seconds);
+    let channels = channels(&choice, &args.recording, &source).map_err(say)?;
+    for note in remarks(&choice, &channels, &source) {
+        place::eprint_diagnostic(&place::warning(&note, lang));
+    }
     let (record, sample_rate_hz) = analysed(args, &channels, &source, lang)?;
     let files = written(args, layout.as_ref(), &channels, &source, (&record, sample_rate_hz), lang)
         .map_err(|e| say(note!("init.template", reason = e.to_string())))?;
@@ -120,7 +126,12 @@ fn analysed(
     lang: Lang,
 ) -> Result<(RunRecord, Option<f64>), String> {
     let say = |note: Note| place::error(&note, lang);
-    let prepared = Prepared::new(channels.to_vec(), &args.columns.choice(), &args.recording, source);
+    let prepared = Prepared::new(
+        channels.to_vec(),
+        &args.columns.choice(args.start.warm_up.seconds),
+        &args.recording,
+        source,
+    );
     let prepared = prepared.map_err(say)?;
     let limits = EffectiveLimits::default();
     let request = prepared.request(source, &limits, moment::now());
@@ -187,6 +198,7 @@ fn written(
             },
             role => c.role.id(),
             unit => toml_text(c.unit.text()),
+            scale => (c.scale != 1.0).then(|| toml_text(&c.scale.to_string())),
         }).collect::<Vec<_>>(),
         unused => unused(channels, source, lang),
         example => if sweep.is_some() { "temperature-ramp" } else { "static-bias" },
@@ -195,7 +207,7 @@ fn written(
         sample_rate => sample_rate_hz.map(|hz| toml_text(&format!("{hz} Hz"))),
         duration => duration(usable_s, lang),
         minimum_duration => toml_text(&minimum_duration(usable_s)),
-        warm_up => toml_text(&format!("{} s", args.columns.warm_up.seconds)),
+        warm_up => toml_text(&format!("{} s", args.start.warm_up.seconds)),
         temperature => temperature.map(|id| toml_text(id)),
         sweep => sweep.zip(temperature).map(|((low, high), channel)| context! {
             channel => toml_text(channel),

@@ -7,7 +7,7 @@ use crate::i18n::{Lang, Localize, Note, note};
 use crate::ingest::lot::stated_serial_of;
 use crate::ingest::unit_data::UnitData;
 use crate::ingest::{ReadOptions, Source, files_read};
-use crate::output::{Kind, Order, StagedFolder, UNREAD, sha256, sha256_of_file, sha256_of_several};
+use crate::output::{Kind, Order, StagedFolder, UNREAD_HASH, sha256, sha256_of_file, sha256_of_several};
 use crate::record::UnitUnderTest;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -181,5 +181,5 @@ pub fn publish(folder: StagedFolder, record: impl Serialize, lang: Lang) -> Resu
 /// SHA-256 of a file, or of one that the program holds. What is neither, or cannot be read, has none.
 fn hash(path: &Path) -> String {
     let shipped = || shipped::find(path).map(|s| sha256(s.text.as_bytes()));
-    sha256_of_file(path).or_else(shipped).unwrap_or_else(|| UNREAD.to_owned())
+    sha256_of_file(path).or_else(shipped).unwrap_or_else(|| UNREAD_HASH.to_owned())
 }

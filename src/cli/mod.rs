@@ -8,11 +8,13 @@ mod datasheet;
 mod demo;
 mod each;
 mod effects;
+pub mod ending;
 mod evaluate;
 pub mod exit;
 mod explain;
 mod explain_args;
 mod explain_jointly;
+mod export;
 mod help;
 mod history;
 mod init;
@@ -48,6 +50,7 @@ mod stdout;
 mod store;
 mod test_setup;
 mod verify;
+mod watch;
 mod writer;
 
 #[cfg(feature = "schema")]
@@ -100,11 +103,22 @@ enum Verb {
         sagnac run static-bias 'lot-7/*.csv' --each --limits sample-unit --out reports/lot-7"
     )]
     Run(run_args::RunArgs),
+    /// Test every recording that appears in a folder, once, when it is complete
+    #[command(
+        after_help = "Exit codes: 0 ended when asked; with --once as run --each: 0 pass (or nothing new), 1 fail, 2 could not run or tell, 3 indeterminate.\n\n\
+        Examples:\n  sagnac watch /data/bench-2 --rules watch.toml --out /srv/reports\n  \
+        sagnac watch /data/bench-2 --procedure static-bias --limits sample-unit --once"
+    )]
+    Watch(watch::WatchArgs),
     /// Render the report of a result again, without its recording: in another language, with other templates
     #[command(after_help = "Exit codes: 0 written, 2 could not.\n\n\
         Examples:\n  sagnac report reports/SN-0042 --lang ru --out reports/SN-0042-ru\n  \
         sagnac report result.json --format html --templates templates")]
     Report(report::ReportArgs),
+    /// Write the parameters of a unit for an estimator, an autopilot or a simulator
+    #[command(after_help = "Examples:\n  sagnac export reports/SN-0042 --for kalibr --out imu0.yaml\n  \
+        sagnac export reports/SN-0042 --for gazebo --channels gyro_x,gyro_y,gyro_z")]
+    Export(export::ExportArgs),
     /// Find where a recording differs from its simulation, and why
     #[command(
         after_help = "Exit codes: 0 consistent, 1 mismatch explained, 2 could not run, 3 unknown mismatch.\n\n\
@@ -226,11 +240,13 @@ pub fn main() -> ExitCode {
         Verb::Run(args) if args.each.each => each::main(&args, lang),
         Verb::Run(args) if is_phased(&args.procedure) => run_phases::main(&args, lang),
         Verb::Run(args) => run::main(&args, lang),
+        Verb::Watch(args) => watch::main(&args, lang),
         Verb::Check(args) => check::main(&args, lang),
         Verb::Inspect(args) => inspect::main(&args, lang),
         Verb::Init(args) => init::main(&args, lang),
         Verb::Analyze(args) => analyze::main(&args, lang),
         Verb::Report(args) => report::main(&args, lang),
+        Verb::Export(args) => export::main(&args, lang),
         Verb::Compare(args) => compare::main(&args, lang),
         Verb::Datasheet(args) => datasheet::main(&args, lang),
         Verb::Model(args) => model::main(&args, lang),

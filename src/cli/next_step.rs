@@ -18,10 +18,13 @@ pub fn after_inspection(recording: &[PathBuf], source: &Source, read: &str) -> O
     let mut gyros = source.columns().iter().filter(|c| c.numeric).map(|c| c.inferred());
     let gyro = gyros.find(|found| found.role.is_gyro())?;
     let mut options = String::new();
-    if !gyro.unit_is_named {
+    if !gyro.unit_is_named && !read.contains("--unit ") {
         options.push_str(" --unit UNIT");
     }
-    if source.time_column().is_none() && source.stated_sample_rate_hz().is_none() {
+    if source.time_column().is_none()
+        && source.stated_sample_rate_hz().is_none()
+        && !read.contains("--sample-rate")
+    {
         options.push_str(" --sample-rate HZ");
     }
     options.push_str(read);

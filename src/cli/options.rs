@@ -9,6 +9,7 @@ use crate::report::export::{CERTIFICATE_FORM, Dcc, EXPORTERS, Exporter, FURTHER,
 use crate::report::pdf::PdfPages;
 use clap::builder::PossibleValuesParser;
 use clap::{Args, ValueEnum};
+use std::ffi::OsString;
 use std::path::{Path, PathBuf};
 
 /// Choice of the averaging times.
@@ -67,6 +68,22 @@ fn form_ids() -> PossibleValuesParser {
 }
 
 impl FormArgs {
+    /// The options as they are given to another run of the program.
+    pub fn arguments(&self) -> Vec<OsString> {
+        let mut out = vec![];
+        let mut option = |name: &str, value: OsString| out.extend([OsString::from(name), value]);
+        if !self.forms.is_empty() {
+            option("--format", self.forms.join(",").into());
+        }
+        if let Some(pages) = self.pages.and_then(|p| p.to_possible_value()) {
+            option("--pages", pages.get_name().into());
+        }
+        if let Some(templates) = &self.templates {
+            option("--templates", templates.into());
+        }
+        out
+    }
+
     /// True where a form is named.
     pub fn names(&self, id: &str) -> bool {
         self.forms.iter().any(|form| form == id)

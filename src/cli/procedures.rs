@@ -1,7 +1,7 @@
 //! `sagnac procedures`: the procedures and limits that the program carries.
 
 use super::{exit, place};
-use crate::config::shipped::{LIMITS, PROCEDURES, Shipped, find};
+use crate::config::shipped::{SHIPPED_LIMITS, SHIPPED_PROCEDURES, Shipped, find};
 use crate::i18n::{Lang, Localize, Note, note};
 use clap::{Args, Subcommand};
 use sagnac_ingest::read_file;
@@ -33,7 +33,8 @@ pub fn main(args: &ProceduresArgs, lang: Lang) -> Result<u8, String> {
         None => list(lang),
         Some(What::Show { name }) => {
             let Some(shipped) = find(Path::new(name)) else {
-                let names: Vec<&str> = PROCEDURES.iter().chain(LIMITS).map(|s| s.name).collect();
+                let names: Vec<&str> =
+                    SHIPPED_PROCEDURES.iter().chain(SHIPPED_LIMITS).map(|s| s.name).collect();
                 let note = note!("procedures.unknown", name = name.as_str());
                 return Err(place::error(&note.with("names", names.join(", ")), lang));
             };
@@ -54,12 +55,14 @@ pub fn say_which(named: &[&Path], lang: Lang) {
 }
 
 fn list(lang: Lang) {
-    let width = PROCEDURES.iter().chain(LIMITS).map(|s| s.name.len()).max().unwrap_or(0);
+    let width = SHIPPED_PROCEDURES.iter().chain(SHIPPED_LIMITS).map(|s| s.name.len()).max().unwrap_or(0);
     let group = |key: &'static str, all: &[Shipped]| {
         let rows: String = all.iter().map(|s| format!("  {:width$}  {}\n", s.name, s.title(lang))).collect();
         format!("{}\n{rows}", Note::new(key).say(lang))
     };
-    let text = [group("procedures.procedures", PROCEDURES), group("procedures.limits", LIMITS)].join("\n");
+    let text =
+        [group("procedures.procedures", SHIPPED_PROCEDURES), group("procedures.limits", SHIPPED_LIMITS)]
+            .join("\n");
     place::print(&format!("{text}\n{}\n", note!("procedures.more").say(lang)));
 }
 
@@ -70,7 +73,7 @@ fn save(folder: &Path, lang: Lang) -> Result<(), String> {
         place::error(&note, lang)
     };
     let all: Vec<(PathBuf, &Shipped)> =
-        PROCEDURES.iter().chain(LIMITS).map(|s| (folder.join(s.path()), s)).collect();
+        SHIPPED_PROCEDURES.iter().chain(SHIPPED_LIMITS).map(|s| (folder.join(s.path()), s)).collect();
     for (path, shipped) in &all {
         if path.exists()
             && read_file(path, shipped.text.len() as u64).ok().as_deref() != Some(shipped.text.as_bytes())

@@ -1,9 +1,11 @@
 //! Options that say how a recording is to be read.
 
 use super::place::for_shell;
-use crate::config::recording_keys::{DECIMALS, DELIMITERS, ENCODINGS, decimal, delimiter, encoding};
+use crate::config::recording_keys::{
+    DECIMAL_WORDS, DELIMITER_WORDS, ENCODING_WORDS, decimal, delimiter, encoding, rows,
+};
 use crate::ingest::layout::LayoutFile;
-use crate::ingest::{ReadOptions, TextOptions};
+use crate::ingest::{ReadOptions, RowMatch, TextOptions};
 use clap::Args;
 use clap::builder::PossibleValuesParser;
 use std::path::{Path, PathBuf};
@@ -16,13 +18,13 @@ pub struct ReadArgs {
     #[arg(long = "input-format", value_name = "ID")]
     input_format: Option<String>,
     /// Character encoding of a text file [default: detected]
-    #[arg(long, value_parser = PossibleValuesParser::new(words(ENCODINGS)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(words(ENCODING_WORDS)))]
     encoding: Option<String>,
     /// Field delimiter of a text file [default: detected]
-    #[arg(long, value_parser = PossibleValuesParser::new(words(DELIMITERS)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(words(DELIMITER_WORDS)))]
     delimiter: Option<String>,
     /// Decimal mark of a text file [default: detected]
-    #[arg(long, value_parser = PossibleValuesParser::new(words(DECIMALS)))]
+    #[arg(long, value_parser = PossibleValuesParser::new(words(DECIMAL_WORDS)))]
     decimal: Option<String>,
     /// Line with the column names of a text file, counted from 1; 0: none
     #[arg(long, value_name = "LINE")]
@@ -36,6 +38,25 @@ pub struct ReadArgs {
     /// Record layout of a raw binary file (TOML)
     #[arg(long, value_name = "FILE")]
     layout: Option<PathBuf>,
+    /// Unit of the timestamps [default: from the name, or from size and step]
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<String>,
+    /// Only the rows in which a column has this value, where several sensors share a table
+    #[arg(id = "where", long = "where", value_name = "COLUMN=VALUE", value_parser = row_match)]
+    only: Option<String>,
+    /// First and last row to read, counted from 1 [default: all]
+    #[arg(long, value_name = "FIRST-LAST", value_parser = row_range)]
+    rows: Option<String>,
+}
+
+/// A text that names a column and a value.
+fn row_match(text: &str) -> Result<String, String> {
+    RowMatch::parse(text).map(|_| text.to_owned()).ok_or_else(|| "COLUMN=VALUE".to_owned())
+}
+
+/// A text that names two rows.
+fn row_range(text: &str) -> Result<String, String> {
+    rows(text).map(|_| text.to_owned()).ok_or_else(|| "FIRST-LAST".to_owned())
 }
 
 fn words(list: &'static [(&'static str, &'static str)]) -> impl Iterator<Item = &'static str> {
@@ -53,6 +74,9 @@ impl ReadArgs {
             ("--delimiter", &self.delimiter),
             ("--decimal", &self.decimal),
             ("--part", &self.part),
+            ("--time-unit", &self.time_unit),
+            ("--where", &self.only),
+            ("--rows", &self.rows),
         ];
         for (option, value) in texts {
             if let Some(value) = value {
@@ -78,6 +102,8 @@ impl ReadArgs {
             ("delimiter", &self.delimiter),
             ("decimal", &self.decimal),
             ("part", &self.part),
+            ("where", &self.only),
+            ("rows", &self.rows),
         ];
         let texts = texts.into_iter().filter_map(|(key, v)| Some((key, toml::Value::String(v.clone()?))));
         let lines = [("header_line", self.header_line), ("first_line", self.first_line)];
@@ -106,6 +132,9 @@ impl ReadArgs {
             },
             part: self.part.clone(),
             layout: self.layout.clone().map(LayoutFile::at),
+            time_unit: self.time_unit.clone(),
+            only: self.only.as_deref().and_then(RowMatch::parse),
+            rows: self.rows.as_deref().and_then(rows),
         }
     }
 }

@@ -43,6 +43,8 @@ pub enum SchemaKind {
     ProofResult,
     /// A sheet file: rows, names and units of a data sheet
     Sheet,
+    /// Rules of a watched folder
+    Watch,
     /// datasheet.json
     Datasheet,
     /// What `sagnac history --format json` writes
@@ -58,6 +60,7 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Model => schema::model(),
         SchemaKind::Proof => schema::proof(),
         SchemaKind::Sheet => schema::sheet(),
+        SchemaKind::Watch => schema::watch(),
         SchemaKind::Schedule => schema::schedule(),
         SchemaKind::Alternatives => schema::alternatives(),
         SchemaKind::Result => return generated(include_str!("../../schemas/result.json")),

@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 const SCHEMA_FOLDER: &str = "schemas";
 
 /// The list of hashes in [`SCHEMA_FOLDER`].
-const SOURCES: &str = "SOURCES";
+const SOURCES_FILE: &str = "SOURCES";
 
 /// Folders whose types have derived schemas.
 const SOURCE_FOLDERS: [&str; 4] =
@@ -39,7 +39,7 @@ pub fn generate(package: &Path, check: bool) -> io::Result<Vec<&'static str>> {
     for (name, schema) in derived() {
         put(name, format!("{:#}\n", schema.as_value()))?;
     }
-    put(SOURCES, hashes(package)?)?;
+    put(SOURCES_FILE, hashes(package)?)?;
     Ok(stale)
 }
 
@@ -143,7 +143,7 @@ mod tests {
     #[test]
     fn schemas_are_up_to_date() {
         let package = Path::new(env!("CARGO_MANIFEST_DIR"));
-        let stored = fs::read_to_string(package.join(SCHEMA_FOLDER).join(SOURCES)).unwrap();
+        let stored = fs::read_to_string(package.join(SCHEMA_FOLDER).join(SOURCES_FILE)).unwrap();
         let now = hashes(package).unwrap();
         let [stored, now] = [&stored, &now].map(|text| text.lines().collect::<BTreeSet<_>>());
         assert!(now.len() > 30, "the search found only {} files", now.len());

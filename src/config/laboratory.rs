@@ -12,7 +12,7 @@ use crate::i18n::{Lang, LocalText, note};
 use std::path::Path;
 
 /// Messages for a file that cannot be read at all.
-const WORDING: Wording =
+const READ_MESSAGES: Wording =
     Wording { unreadable: "laboratory_file.unreadable", folder: "laboratory_file.folder" };
 
 /// The file as a whole.
@@ -163,7 +163,7 @@ impl Place {
 /// # Errors
 /// Every problem of the file, each with its place.
 pub fn load(path: &Path) -> Result<Laboratory, Problems> {
-    parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?)
+    parse(&path.display().to_string(), &text_file::bytes(path, &READ_MESSAGES)?)
 }
 
 /// Reads the file of a laboratory from its bytes; `name` stands in diagnostics.

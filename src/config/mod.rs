@@ -1,7 +1,7 @@
 //! TOML files whose keys are described once, as data: reading with every problem placed, and the parts of schema and
 //! guide that follow from the description.
 //!
-//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`proof`], [`manifest`], [`layout`], [`laboratory`] and [`user`] are the files; the others
+//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`proof`], [`manifest`], [`layout`], [`laboratory`], [`watch`] and [`user`] are the files; the others
 //! know none of them.
 
 pub mod alternatives;
@@ -30,3 +30,4 @@ pub(crate) mod text_file;
 mod texts;
 pub mod user;
 pub(crate) mod values;
+pub mod watch;

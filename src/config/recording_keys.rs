@@ -5,8 +5,8 @@ use crate::config::reader::{Reader, shorten};
 use crate::config::section::Section;
 use crate::config::spec::Word;
 use crate::config::table::Table;
-use crate::i18n::note;
-use sagnac_ingest::{Encoding, FORMATS, ReadOptions, TextOptions};
+use crate::i18n::{Note, note};
+use sagnac_ingest::{Encoding, FORMATS, ReadOptions, RowMatch, TextOptions};
 
 /// How a recording is to be read.
 #[derive(Table)]
@@ -15,13 +15,13 @@ pub(crate) struct RecordingKeys {
     #[key(example = "csv")]
     format: Option<String>,
     /// Character encoding of a text file; detected if omitted.
-    #[key(choice = ENCODINGS, example = "windows-1251")]
+    #[key(choice = ENCODING_WORDS, example = "windows-1251")]
     encoding: Option<&'static str>,
     /// Field delimiter of a text file; detected if omitted.
-    #[key(choice = DELIMITERS, example = "semicolon")]
+    #[key(choice = DELIMITER_WORDS, example = "semicolon")]
     delimiter: Option<&'static str>,
     /// Decimal mark of a text file; detected if omitted.
-    #[key(choice = DECIMALS, example = "comma")]
+    #[key(choice = DECIMAL_WORDS, example = "comma")]
     decimal: Option<&'static str>,
     /// Line with the column names of a text file, counted from 1; 0: none; detected if omitted.
     #[key(min = 0, max = 1e6, example = 4)]
@@ -35,6 +35,12 @@ pub(crate) struct RecordingKeys {
     /// Part of a container that holds the recording: a dataset, a variable, a topic.
     #[key(example = "/imu/gyro")]
     part: Option<String>,
+    /// Only the rows in which a column has this value, where several sensors share a table.
+    #[key(name = "where", example = "sensor=0")]
+    only: Option<String>,
+    /// First and last row to read, counted from 1; all if omitted.
+    #[key(example = "1-600")]
+    rows: Option<String>,
 }
 
 impl RecordingKeys {
@@ -73,12 +79,21 @@ impl RecordingKeys {
             let help = Some("reading.comma_quotes".into());
             reader.error(&section.span_of("decimal"), "reading.comma_twice", help);
         }
-        ReadOptions { format: self.format, text, part: self.part, layout: None }
+        let mut known = |key: &str, text: &Option<String>, is_read: bool, message: &'static str| {
+            if let Some(text) = text.as_deref().filter(|_| !is_read) {
+                reader.error(&section.span_of(key), Note::new(message).with("given", shorten(text)), None);
+            }
+        };
+        let (only, rows) =
+            (self.only.as_deref().and_then(RowMatch::parse), self.rows.as_deref().and_then(rows));
+        known("where", &self.only, only.is_some(), "reading.where");
+        known("rows", &self.rows, rows.is_some(), "reading.rows");
+        ReadOptions { format: self.format, text, part: self.part, only, rows, ..ReadOptions::default() }
     }
 }
 
 /// Character encodings of text files.
-pub const ENCODINGS: &[Word] = &[
+pub const ENCODING_WORDS: &[Word] = &[
     ("utf-8", "UTF-8, with or without byte-order mark"),
     ("utf-16le", "UTF-16, little endian"),
     ("utf-16be", "UTF-16, big endian"),
@@ -86,7 +101,7 @@ pub const ENCODINGS: &[Word] = &[
 ];
 
 /// Separators of fields, as words and as characters.
-pub const DELIMITERS: &[Word] = &[
+pub const DELIMITER_WORDS: &[Word] = &[
     ("comma", "`,`"),
     ("semicolon", "`;`"),
     ("tab", "a tab"),
@@ -98,7 +113,7 @@ pub const DELIMITERS: &[Word] = &[
 ];
 
 /// Decimal signs.
-pub const DECIMALS: &[Word] = &[("point", "`.`"), ("comma", "`,`")];
+pub const DECIMAL_WORDS: &[Word] = &[("point", "`.`"), ("comma", "`,`")];
 
 /// The encoding of a word.
 pub fn encoding(word: &str) -> Option<Encoding> {
@@ -130,4 +145,12 @@ pub fn decimal(word: &str) -> Option<u8> {
         "comma" | "," => Some(b','),
         _ => None,
     }
+}
+
+/// First and last row of a range such as `1-600`; `257-` has no end.
+pub fn rows(text: &str) -> Option<(u64, u64)> {
+    let (first, last) = text.trim().split_once('-')?;
+    let first: u64 = first.trim().parse().ok()?;
+    let last = if last.trim().is_empty() { u64::MAX } else { last.trim().parse().ok()? };
+    (first > 0 && first <= last).then_some((first, last))
 }

@@ -34,7 +34,7 @@ macro_rules! shipped {
 }
 
 /// Every procedure, by name.
-pub static PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
+pub static SHIPPED_PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
     "acceptance"
     "bias-repeatability"
     "magnetic-sensitivity"
@@ -51,7 +51,7 @@ pub static PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
 );
 
 /// Every limits file, by name.
-pub static LIMITS: &[Shipped] = shipped!(Limits, "procedures/limits":
+pub static SHIPPED_LIMITS: &[Shipped] = shipped!(Limits, "procedures/limits":
     "oius-1000"
     "oius-200"
     "oius-2000"
@@ -91,7 +91,7 @@ impl Shipped {
 
 /// The shipped file at a path in the folder of all shipped files, as one of them names another.
 pub fn at(path: &str) -> Option<&'static Shipped> {
-    PROCEDURES.iter().chain(LIMITS).find(|s| s.path() == path)
+    SHIPPED_PROCEDURES.iter().chain(SHIPPED_LIMITS).find(|s| s.path() == path)
 }
 
 /// The shipped file that a name stands for. `None` for anything with a folder or an ending, which is a path.
@@ -99,7 +99,7 @@ pub fn find(path: &Path) -> Option<&'static Shipped> {
     let mut parts = path.components();
     let (Some(Component::Normal(name)), None) = (parts.next(), parts.next()) else { return None };
     let name = name.to_str()?;
-    PROCEDURES.iter().chain(LIMITS).find(|s| s.name == name)
+    SHIPPED_PROCEDURES.iter().chain(SHIPPED_LIMITS).find(|s| s.name == name)
 }
 
 #[cfg(test)]
@@ -116,18 +116,18 @@ mod tests {
             toml.map(|f| f.file_stem().unwrap().to_string_lossy().into_owned()).collect()
         };
         let of = |list: &[Shipped]| -> BTreeSet<String> { list.iter().map(|s| s.name.to_owned()).collect() };
-        assert_eq!(of(PROCEDURES), names(&root));
-        assert_eq!(of(LIMITS), names(&root.join("limits")));
-        assert!(of(PROCEDURES).is_disjoint(&of(LIMITS)));
+        assert_eq!(of(SHIPPED_PROCEDURES), names(&root));
+        assert_eq!(of(SHIPPED_LIMITS), names(&root.join("limits")));
+        assert!(of(SHIPPED_PROCEDURES).is_disjoint(&of(SHIPPED_LIMITS)));
         // What a shipped file names in the way of a file is shipped too.
-        for s in PROCEDURES.iter().filter(|s| s.text.contains("[[phase]]")) {
+        for s in SHIPPED_PROCEDURES.iter().filter(|s| s.text.contains("[[phase]]")) {
             let named = s
                 .text
                 .lines()
                 .filter_map(|l| l.strip_prefix("procedure = \"").or(l.strip_prefix("limits = \"")));
             named.for_each(|n| assert!(at(n.trim_end_matches('"')).is_some(), "{}: {n}", s.name));
         }
-        for s in PROCEDURES.iter().chain(LIMITS) {
+        for s in SHIPPED_PROCEDURES.iter().chain(SHIPPED_LIMITS) {
             for lang in Lang::ALL {
                 assert!(!s.title(*lang).is_empty(), "{}", s.name);
             }

@@ -138,6 +138,8 @@ pub enum Kind {
     Columns(&'static [Word]),
     /// A list of ids of effects of the catalogue, or `unknown`.
     Effects,
+    /// A program and its arguments.
+    Command,
     /// A number with its unit, in a text: `"20 degC"`.
     Quantity {
         /// Unit it is converted to.
@@ -196,6 +198,7 @@ impl Kind {
             Kind::Columns([]) => note!("proof_file.columns"),
             Kind::Columns(words) => note!("keyed.kind.columns", words = in_quotes(words)),
             Kind::Effects => note!("proof_file.effects"),
+            Kind::Command => note!("watch_file.command"),
             Kind::Quantity { unit, range, .. } => {
                 let shown = if unit == "1" { "%" } else { unit };
                 if range == Range::ANY {

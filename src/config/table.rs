@@ -35,7 +35,7 @@ pub(crate) trait Table: Default {
 /// The type of a field.
 pub(crate) trait KeyValue: Sized {
     /// Kind of a key of this type, where its attribute does not say more.
-    const KIND: Kind;
+    const VALUE_KIND: Kind;
 
     /// The value of an entry; `None` for one of another kind, such as that of an unsound value.
     fn of(entry: &Entry) -> Option<Self>;
@@ -98,7 +98,7 @@ pub(crate) const fn joined<const COUNT: usize>(parts: &[&[KeySpec]]) -> [KeySpec
 macro_rules! entries {
     ($($ty:ty: $kind:expr, $entry:pat => $value:expr;)*) => {$(
         impl KeyValue for $ty {
-            const KIND: Kind = $kind;
+            const VALUE_KIND: Kind = $kind;
 
             fn of(entry: &Entry) -> Option<$ty> {
                 match entry {
@@ -137,7 +137,7 @@ entries! {
 macro_rules! words {
     ($ty:ty, $words:expr, $of:expr) => {
         impl $crate::config::table::KeyValue for $ty {
-            const KIND: $crate::config::spec::Kind = $crate::config::spec::Kind::Choice($words);
+            const VALUE_KIND: $crate::config::spec::Kind = $crate::config::spec::Kind::Choice($words);
 
             fn of(entry: &$crate::config::section::Entry) -> Option<$ty> {
                 match entry {
@@ -148,7 +148,7 @@ macro_rules! words {
         }
 
         impl $crate::config::table::KeyValue for Vec<$ty> {
-            const KIND: $crate::config::spec::Kind = $crate::config::spec::Kind::Choices($words);
+            const VALUE_KIND: $crate::config::spec::Kind = $crate::config::spec::Kind::Choices($words);
 
             fn of(entry: &$crate::config::section::Entry) -> Option<Vec<$ty>> {
                 match entry {
@@ -165,7 +165,7 @@ macro_rules! words {
 pub(crate) use words;
 
 impl<T: KeyValue> KeyValue for Option<T> {
-    const KIND: Kind = T::KIND;
+    const VALUE_KIND: Kind = T::VALUE_KIND;
 
     fn of(entry: &Entry) -> Option<Option<T>> {
         T::of(entry).map(Some)
@@ -174,7 +174,7 @@ impl<T: KeyValue> KeyValue for Option<T> {
 
 /// A list of tables; one table alone counts as a list of one.
 impl<T: Table> KeyValue for Vec<T> {
-    const KIND: Kind = Kind::Tables(T::SPEC);
+    const VALUE_KIND: Kind = Kind::Tables(T::SPEC);
 
     fn of(entry: &Entry) -> Option<Vec<T>> {
         match entry {

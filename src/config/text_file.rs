@@ -59,14 +59,19 @@ fn help(path: &Path) -> Note {
         return "text_file.check_path".into();
     }
     let names = |list: &[shipped::Shipped]| list.iter().map(|s| s.name).collect::<Vec<_>>().join(", ");
-    note!("text_file.check_name", procedures = names(shipped::PROCEDURES), limits = names(shipped::LIMITS))
+    note!(
+        "text_file.check_name",
+        procedures = names(shipped::SHIPPED_PROCEDURES),
+        limits = names(shipped::SHIPPED_LIMITS)
+    )
 }
 
 /// The file of the most similar name, as a path that can be given in place of the wrong one.
 fn nearest_file(path: &Path) -> Option<String> {
     let name = path.file_name()?.to_str()?;
     let is_plain = path.components().count() == 1;
-    let shipped = shipped::PROCEDURES.iter().chain(shipped::LIMITS).map(|s| s.name.to_owned());
+    let shipped =
+        shipped::SHIPPED_PROCEDURES.iter().chain(shipped::SHIPPED_LIMITS).map(|s| s.name.to_owned());
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let beside = std::fs::read_dir(folder).into_iter().flatten().take(MAX_NAMES).flatten();
     let beside = beside.filter_map(|entry| entry.file_name().into_string().ok());

@@ -9,7 +9,7 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 
 /// Messages for settings that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "user_config.unreadable", folder: "user_config.folder" };
+const READ_MESSAGES: Wording = Wording { unreadable: "user_config.unreadable", folder: "user_config.folder" };
 
 /// The settings as a whole.
 pub static CONFIG_FILE: TableSpec = *ConfigTables::SPEC;
@@ -51,7 +51,7 @@ fn place(variable: impl Fn(&str) -> Option<OsString>) -> Option<PathBuf> {
 /// Every problem of the file, each with its place.
 pub fn load(variable: impl Fn(&str) -> Option<OsString>) -> Result<UserConfig, Problems> {
     let Some(path) = place(variable).filter(|p| p.exists()) else { return Ok(UserConfig::default()) };
-    let source = text_file::source(&path.display().to_string(), &text_file::bytes(&path, &WORDING)?)?;
+    let source = text_file::source(&path.display().to_string(), &text_file::bytes(&path, &READ_MESSAGES)?)?;
     let (config, problems) = checked(&source, &CONFIG_FILE, |root, _| {
         let store = ConfigTables::read(root).store.and_then(|s| s.path);
         let folder = path.parent().unwrap_or(&path);

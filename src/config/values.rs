@@ -71,6 +71,13 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
             }
             Some(Entry::Names(names))
         }
+        Kind::Command => {
+            let DeValue::Array(items) = value.toml else { return reader.wrong(value) };
+            let words = items
+                .iter()
+                .filter_map(|item| text(reader, value.with(item.get_ref(), &item.span()), Blank::Allowed));
+            Some(Entry::Names(words.collect()))
+        }
         Kind::Effects => {
             let DeValue::Array(items) = value.toml else { return reader.wrong(value) };
             let mut ids = vec![];

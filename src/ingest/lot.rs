@@ -147,17 +147,22 @@ fn repeated(members: &[Member]) -> Vec<Note> {
         .collect()
 }
 
+/// A name for the folder of a unit, safe in any file system.
+pub fn folder_name(serial: &str) -> String {
+    let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
+    let name: String = serial.chars().map(safe).take(MAX_FOLDER_CHARACTERS).collect();
+    let name = name.trim_matches('.');
+    if name.is_empty() { "unit".to_owned() } else { name.to_owned() }
+}
+
 /// Gives each unit a folder of its own.
 fn name_folders(members: &mut [Member]) {
     let mut taken: BTreeSet<String> = RESERVED_NAMES.iter().map(|name| (*name).to_owned()).collect();
     for member in members {
-        let safe = |c: char| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '_' };
-        let name: String = member.serial.chars().map(safe).take(MAX_FOLDER_CHARACTERS).collect();
-        let name = name.trim_matches('.');
-        let name = if name.is_empty() { "unit" } else { name };
+        let name = folder_name(&member.serial);
         // Some file systems do not tell upper from lower case.
         let numbered = (2..).map(|n| format!("{name}_{n}"));
-        let free = std::iter::once(name.to_owned()).chain(numbered).find(|n| taken.insert(n.to_lowercase()));
+        let free = std::iter::once(name.clone()).chain(numbered).find(|n| taken.insert(n.to_lowercase()));
         member.folder = free.unwrap_or_default();
     }
 }

@@ -131,6 +131,12 @@ impl SerialPattern {
     }
 }
 
+/// True where a pattern of `*` and `?` fits a whole path. Neither of them fits a `/`.
+pub fn fits(pattern: &str, path: &str) -> bool {
+    let tokens: Vec<Token> = pattern.chars().map(token).collect();
+    reached(&tokens, &path.chars().collect::<Vec<_>>()).last() == Some(&true)
+}
+
 fn token(c: char) -> Token {
     match c {
         '*' => Token::Any,
@@ -177,6 +183,19 @@ mod tests {
         }
         assert_ne!(plain("0"), plain(""));
         assert_ne!(plain("4-3"), plain("43"));
+    }
+
+    #[test]
+    fn a_pattern_fits_a_whole_path() {
+        for (pattern, path, expected) in [
+            ("*", "a.csv", true),
+            ("*", "a/b.csv", false),
+            ("*/*.csv", "a/b.csv", true),
+            ("?.csv", "ab.csv", false),
+            ("*.csv", "a.csv.done", false),
+        ] {
+            assert_eq!(fits(pattern, path), expected, "{pattern} {path}");
+        }
     }
 
     #[test]

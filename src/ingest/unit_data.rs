@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Messages about a table that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "unit_data.unreadable", folder: "unit_data.folder" };
+const READ_MESSAGES: Wording = Wording { unreadable: "unit_data.unreadable", folder: "unit_data.folder" };
 
 /// The units of a table, by their serial numbers.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -33,7 +33,7 @@ impl UnitData {
     /// # Errors
     /// Every problem, each with its place.
     pub fn load(path: &Path) -> Result<UnitData, Problems> {
-        parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?)
+        parse(&path.display().to_string(), &text_file::bytes(path, &READ_MESSAGES)?)
     }
 }
 

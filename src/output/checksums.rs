@@ -14,8 +14,8 @@ pub fn sha256(bytes: &[u8]) -> String {
     hexadecimal(&Sha256::digest(bytes))
 }
 
-/// What stands for the hash of a file that cannot be read: opening it says why.
-pub const UNREAD: &str = "unread";
+/// Stand-in for the hash of a file that cannot be read: opening it says why.
+pub const UNREAD_HASH: &str = "unread";
 
 /// SHA-256 of a file, hexadecimal; `None` for what is no file or cannot be read.
 pub fn sha256_of_file(path: &Path) -> Option<String> {

@@ -66,7 +66,7 @@ impl Earlier {
         Some(Earlier { kind, made: stated.or_else(modified), record, inputs, files })
     }
 
-    /// What it is: verdict, unit, moment.
+    /// Description of the result: verdict, unit, moment.
     pub(super) fn what(&self) -> Note {
         let text = |at: &str| self.record.pointer(at).and_then(Value::as_str).map(str::to_owned);
         let made = self.made.clone().unwrap_or_else(|| "–".to_owned());
@@ -88,7 +88,7 @@ impl Earlier {
             Kind::Explanation | Kind::Joint => {
                 described.with("verdict", text("/verdict").unwrap_or_default())
             }
-            Kind::Comparison | Kind::Plan | Kind::DataSheet | Kind::Proof => described,
+            Kind::Comparison | Kind::Plan | Kind::DataSheet | Kind::Proof | Kind::Day => described,
         }
     }
 

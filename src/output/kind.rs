@@ -33,11 +33,13 @@ pub enum Kind {
     DataSheet,
     /// A proof: what was concealed, what was said, what is true.
     Proof,
+    /// A day of a watched folder.
+    Day,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 8] = [
+    pub const ALL: [Kind; 9] = [
         Kind::Result,
         Kind::Comparison,
         Kind::Explanation,
@@ -46,6 +48,7 @@ impl Kind {
         Kind::Plan,
         Kind::DataSheet,
         Kind::Proof,
+        Kind::Day,
     ];
 
     /// The JSON file that a folder of this kind holds, and by which it is known.
@@ -59,6 +62,7 @@ impl Kind {
             Kind::Plan => "plan.json",
             Kind::DataSheet => "datasheet.json",
             Kind::Proof => "proof.json",
+            Kind::Day => "day.json",
         }
     }
 
@@ -67,7 +71,7 @@ impl Kind {
         match self {
             Kind::Result | Kind::Explanation | Kind::Joint | Kind::Plan | Kind::Proof => "report",
             Kind::Comparison => "comparison",
-            Kind::Lot => "index",
+            Kind::Lot | Kind::Day => "index",
             Kind::DataSheet => "datasheet",
         }
     }
@@ -83,6 +87,7 @@ impl Kind {
             Kind::Plan => "output_error.what.plan",
             Kind::DataSheet => "output_error.what.datasheet",
             Kind::Proof => "output_error.what.proof",
+            Kind::Day => "output_error.what.day",
         }
     }
 
@@ -97,6 +102,7 @@ impl Kind {
             Kind::Plan => "plan.error.foreign_folder",
             Kind::DataSheet => "output_error.why.foreign_datasheet",
             Kind::Proof => "prove.error.foreign_folder",
+            Kind::Day => "output_error.why.foreign_day",
         }
     }
 
@@ -111,6 +117,7 @@ impl Kind {
             Kind::Plan => "{\"format\":\"plan/",
             Kind::DataSheet => "{\"format\":\"datasheet/",
             Kind::Proof => "{\"format\":\"proof-result/",
+            Kind::Day => "{\"format\":\"day/",
         }
     }
 
@@ -133,6 +140,7 @@ impl Kind {
             Kind::Plan => name == "schedule.toml",
             Kind::DataSheet => name == "limits.toml",
             Kind::Proof => name == "model.toml",
+            Kind::Day => false,
         }
     }
 
@@ -148,7 +156,12 @@ impl Kind {
                 }
                 Kind::Joint => name == "recordings",
                 Kind::Lot => name == "junit.xml",
-                Kind::Comparison | Kind::Explanation | Kind::Plan | Kind::DataSheet | Kind::Proof => false,
+                Kind::Comparison
+                | Kind::Explanation
+                | Kind::Plan
+                | Kind::DataSheet
+                | Kind::Proof
+                | Kind::Day => false,
             };
         page || matches!(name, "figures" | "signatures.json" | CHECKSUMS_FILE)
             || name == self.record_file()

@@ -114,7 +114,7 @@ impl<T: AsRef<Path>> Deref for Partial<T> {
     }
 }
 
-/// What is known of something hidden by its name.
+/// True for a partial name made since this machine booted; `None` for a name that is not of the program's form.
 fn made_here(name: &str) -> Option<bool> {
     let (before, rest) = name.rsplit_once(".partial-")?;
     let boot = rest.split_once('-').map(|(boot, _)| boot);

@@ -26,7 +26,7 @@ pub(super) struct Prepared {
     pub shown: Series,
     /// Columns that are concealed.
     pub hidden: BTreeMap<String, Vec<f64>>,
-    /// What was added to the rate.
+    /// Disturbance added to the rate.
     pub added: Option<Added>,
     /// What it sees once the columns are shown; `None` where no column was concealed.
     pub unveiled: Option<Series>,

@@ -9,6 +9,7 @@ mod check;
 mod comparison;
 mod context;
 mod datasheet;
+mod day;
 mod deviation;
 mod evidence;
 mod explained;
@@ -40,6 +41,7 @@ pub use datasheet::{
     SheetShare, SheetSide, SheetSpread, SheetTemperatureCurve, SheetTemperaturePoint, SheetTypical,
     SheetUnitCurve, SheetValue,
 };
+pub use day::{DAY_FORMAT, DayRecord, DayTest, EVENT_FORMAT, HookState, Untested, WatchEvent};
 pub use deviation::DeviationRecord;
 pub use evidence::Evidence;
 pub use explained::ExplainedRecord;

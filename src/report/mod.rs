@@ -5,6 +5,7 @@
 
 pub mod compare;
 pub mod datasheet;
+mod day;
 mod document;
 pub mod explain;
 pub mod export;
@@ -16,6 +17,7 @@ pub mod lot;
 pub mod methods;
 pub mod number;
 pub mod page;
+pub mod parameters;
 pub mod pdf;
 pub mod plan;
 pub mod proof;

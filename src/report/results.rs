@@ -17,8 +17,8 @@ use crate::plan::record::PLAN_FORMAT;
 use crate::record::explanation::Explanation;
 use crate::record::read::{self, ReadError};
 use crate::record::{
-    DATASHEET_FORMAT, DataSheet, FigureRecord, LOT_FORMAT, LotRecord, PROOF_FORMAT, ProofRecord,
-    RESULT_FORMAT, RunRecord,
+    DATASHEET_FORMAT, DAY_FORMAT, DataSheet, DayRecord, FigureRecord, LOT_FORMAT, LotRecord, PROOF_FORMAT,
+    ProofRecord, RESULT_FORMAT, RunRecord,
 };
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -252,8 +252,8 @@ struct Listing {
 }
 
 impl StoredResults {
-    /// Reads a `result.json`, `explain.json`, `joint.json`, `comparison.json`, `index.json`, `plan.json`, `datasheet.json`
-    /// or `proof.json`, or the folder of one, with what stands beside it.
+    /// Reads a `result.json`, `explain.json`, `joint.json`, `comparison.json`, `index.json`, `plan.json`, `datasheet.json`,
+    /// `day.json` or `proof.json`, or the folder of one, with what stands beside it.
     ///
     /// # Errors
     /// A note that names the file and what is wrong with it.
@@ -277,6 +277,9 @@ impl StoredResults {
             Some("lot") => Results::of_lot(read::of_format::<LotRecord>(&bytes, LOT_FORMAT).map_err(wrong)?),
             Some("datasheet") => {
                 Results::of_datasheet(read::of_format(&bytes, DATASHEET_FORMAT).map_err(wrong)?)
+            }
+            Some("day") => {
+                Results::of(read::of_format::<DayRecord>(&bytes, DAY_FORMAT).map_err(wrong)?, vec![], vec![])
             }
             Some("proof-result") => {
                 let proof: ProofRecord = read::of_format(&bytes, PROOF_FORMAT).map_err(wrong)?;

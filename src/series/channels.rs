@@ -217,9 +217,13 @@ impl SeriesChannels {
     /// Adds a channel; gives its place.
     fn take(&mut self, name: &'static str, index: usize, source: &Source, role: Role, unit: Unit) -> usize {
         let column = source.columns().get(index).map(|c| c.name.clone()).unwrap_or_default();
+        // What the header states of the size of a count holds in the unit it is stated in.
+        let stated =
+            source.columns().get(index).map(|c| c.inferred()).filter(|g| g.unit.text() == unit.text());
+        let scale = stated.map_or(1.0, |g| g.scale);
         self.read_from.push(read_from(name, column, unit.text()));
         let column = ColumnRef::Position(index + 1);
-        self.channels.push(Channel { id: name.to_owned(), column, role, unit, scale: 1.0 });
+        self.channels.push(Channel { id: name.to_owned(), column, role, unit, scale });
         self.channels.len() - 1
     }
 }

@@ -2,7 +2,7 @@
 
 use super::key::{self, Invalid, KeyError};
 use super::role::Role;
-use super::statement::{Previous, SIGN_OFF, STATEMENT, SignOff, Statement, Subject};
+use super::statement::{Previous, SIGN_OFF, STATEMENT_TYPE, SignOff, Statement, Subject};
 use crate::i18n::{Note, io_reason, note};
 use crate::output::{
     CHECKSUMS_FILE, Found, SIGNATURES_FOLDER, StagedFile, found_below, is_partial, read_below, sha256,
@@ -149,7 +149,7 @@ pub fn is_leftover(stray: &str, statements: usize) -> bool {
 
 fn statement(bytes: &[u8]) -> Option<Statement> {
     let statement: Statement = serde_json::from_slice(bytes).ok()?;
-    let known = statement.statement_type == STATEMENT && statement.predicate_type == SIGN_OFF;
+    let known = statement.statement_type == STATEMENT_TYPE && statement.predicate_type == SIGN_OFF;
     known.then_some(statement)
 }
 
@@ -189,7 +189,7 @@ pub fn sign(
         digest: BTreeMap::from([("sha256".to_owned(), hash.clone())]),
     });
     let statement = Statement {
-        statement_type: STATEMENT.to_owned(),
+        statement_type: STATEMENT_TYPE.to_owned(),
         subject: subject.collect(),
         predicate_type: SIGN_OFF.to_owned(),
         predicate: SignOff { previous, ..about },

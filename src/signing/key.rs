@@ -8,7 +8,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 
 /// Purpose of the signatures, as `ssh-keygen -n` takes it: a signature for something else is none here.
-pub const NAMESPACE: &str = "sagnac";
+pub const SIGNATURE_NAMESPACE: &str = "sagnac";
 
 /// Largest file of a key that is read, bytes.
 const MAX_KEY_BYTES: u64 = 1 << 20;
@@ -57,7 +57,8 @@ pub fn sign(key: &Path, message: &[u8]) -> Result<String, KeyError> {
     if private.is_encrypted() {
         return through_agent(key, message);
     }
-    let signature = private.sign(NAMESPACE, HashAlg::Sha512, message).map_err(|e| unreadable(&e))?;
+    let signature =
+        private.sign(SIGNATURE_NAMESPACE, HashAlg::Sha512, message).map_err(|e| unreadable(&e))?;
     signature.to_pem(LineEnding::LF).map_err(|e| unreadable(&e))
 }
 
@@ -71,7 +72,7 @@ fn ed25519(algorithm: &Algorithm) -> Result<(), KeyError> {
 fn through_agent(key: &Path, message: &[u8]) -> Result<String, KeyError> {
     let failed = |e: std::io::Error| KeyError::Agent(format!("ssh-keygen: {e}"));
     let mut child = Command::new("ssh-keygen")
-        .args(["-Y", "sign", "-n", NAMESPACE, "-f"])
+        .args(["-Y", "sign", "-n", SIGNATURE_NAMESPACE, "-f"])
         .arg(key)
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
@@ -113,7 +114,7 @@ pub fn verify(message: &[u8], signature: &str) -> Result<PublicKey, Invalid> {
         return Err(Invalid::Rewritten);
     }
     let key = PublicKey::from(signature.public_key().clone());
-    key.verify(NAMESPACE, message, &signature).map_err(said)?;
+    key.verify(SIGNATURE_NAMESPACE, message, &signature).map_err(said)?;
     Ok(key)
 }
 

@@ -12,7 +12,7 @@ mod statement;
 
 pub use crate::output::SIGNATURES_FOLDER;
 pub use chain::{Broken, Link, chain, files, files_of, hold, is_leftover, sign, strays};
-pub use key::NAMESPACE;
+pub use key::SIGNATURE_NAMESPACE;
 pub use role::Role;
 pub use signers::{BadLine, Refusal, Signers, Standing, moment};
 pub use statement::{Previous, SignOff, Statement, Subject, Waived};

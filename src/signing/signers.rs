@@ -1,7 +1,7 @@
 //! Who may sign: a list in the form of the `allowed_signers` of OpenSSH, read as `ssh-keygen -Y verify` reads it (`sshsig.c`). A line
 //! that `ssh-keygen` passes over is passed over here too, and said.
 
-use super::key::NAMESPACE;
+use super::key::SIGNATURE_NAMESPACE;
 use super::pattern::{Listed, matches_list};
 use chrono::{DateTime, Local, NaiveDateTime, TimeZone, Utc};
 use sagnac_ingest::read_file;
@@ -159,7 +159,7 @@ impl Line {
         if options.authority {
             return Err(Refusal::Authority);
         }
-        let is_for = |list: &String| matches_list(NAMESPACE, list) == Listed::Yes;
+        let is_for = |list: &String| matches_list(SIGNATURE_NAMESPACE, list) == Listed::Yes;
         if !options.namespaces.as_ref().is_none_or(is_for) {
             return Err(Refusal::Namespace);
         }
@@ -203,8 +203,8 @@ fn parse(line: &str) -> Result<Option<(String, PublicKey, Options)>, LineFault> 
 
 /// The first word of a line, of which a part may stand in quotes, and what follows it.
 fn first_word(line: &str) -> Option<(String, &str)> {
-    const SPACES: [char; 4] = [' ', '\t', '\r', '\n'];
-    let end = line.find(|c: char| SPACES.contains(&c) || c == '"')?;
+    const SPACE_CHARS: [char; 4] = [' ', '\t', '\r', '\n'];
+    let end = line.find(|c: char| SPACE_CHARS.contains(&c) || c == '"')?;
     let (before, rest) = line.split_at_checked(end)?;
     let (word, rest) = match rest.strip_prefix('"') {
         Some(quoted) => {
@@ -213,7 +213,7 @@ fn first_word(line: &str) -> Option<(String, &str)> {
         }
         None => (before.to_owned(), rest),
     };
-    Some((word, rest.trim_start_matches(SPACES)))
+    Some((word, rest.trim_start_matches(SPACE_CHARS)))
 }
 
 /// The key that a text begins with: its kind and itself. What follows is a comment.
@@ -239,11 +239,11 @@ fn end_of_options(text: &str) -> Option<usize> {
 
 impl Options {
     fn parse(text: &str) -> Result<Options, LineFault> {
-        const AUTHORITY: &str = "cert-authority";
+        const AUTHORITY_OPTION: &str = "cert-authority";
         let mut options = Options::default();
         let mut rest = text.trim_end_matches('\r');
         loop {
-            if let Some(after) = without_prefix(rest, AUTHORITY) {
+            if let Some(after) = without_prefix(rest, AUTHORITY_OPTION) {
                 options.authority = true;
                 rest = after;
             } else {

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
 /// Type that every such statement declares.
-pub const STATEMENT: &str = "https://in-toto.io/Statement/v1";
+pub const STATEMENT_TYPE: &str = "https://in-toto.io/Statement/v1";
 
 /// The kind of what it says of the files.
 pub const SIGN_OFF: &str = "urn:sagnac:sign-off:1";
@@ -14,7 +14,7 @@ pub const SIGN_OFF: &str = "urn:sagnac:sign-off:1";
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Statement {
-    /// Always [`STATEMENT`].
+    /// Always [`STATEMENT_TYPE`].
     #[serde(rename = "_type")]
     pub statement_type: String,
     /// The files that it is about.

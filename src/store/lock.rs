@@ -10,9 +10,9 @@ use std::io::ErrorKind;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
-/// How long others may hold the lock, or a transaction of the database.
-pub(super) const PATIENCE: Duration = Duration::from_secs(60);
-/// What a process listed and did not finish is forgotten after this time, where no lock tells: none takes as long.
+/// Time for which others may hold the lock, or a transaction of the database.
+pub(super) const LOCK_TIMEOUT: Duration = Duration::from_secs(60);
+/// Time after which an entry that a process listed and did not finish is forgotten, where no lock tells: none takes as long.
 pub(super) const FORGOTTEN_AFTER: Duration = Duration::from_secs(24 * 3600);
 /// Pause between two attempts.
 const RETRY_PAUSE: Duration = Duration::from_millis(5);
@@ -52,7 +52,9 @@ pub(super) fn take(path: &Path, sharing: Sharing) -> Result<Lock, StoreError> {
         };
         match tried {
             Ok(()) => return Ok(Lock { _file: file }),
-            Err(TryLockError::WouldBlock) if began.elapsed() < PATIENCE => std::thread::sleep(RETRY_PAUSE),
+            Err(TryLockError::WouldBlock) if began.elapsed() < LOCK_TIMEOUT => {
+                std::thread::sleep(RETRY_PAUSE)
+            }
             Err(TryLockError::WouldBlock) => return Err(StoreError::Busy(path.to_owned())),
             // A file system without locks: its transactions are all there is.
             Err(TryLockError::Error(e)) if e.kind() == ErrorKind::Unsupported => {
@@ -67,7 +69,7 @@ pub(super) fn take(path: &Path, sharing: Sharing) -> Result<Lock, StoreError> {
 #[cfg(target_os = "linux")]
 pub(super) fn is_shared_disk(path: &Path) -> bool {
     /// NFS, SMB, CIFS, SMB2, 9P, AFS, Ceph, Lustre, GFS2, OCFS2 and FUSE, by the numbers of `statfs(2)`.
-    const SHARED: [u32; 11] = [
+    const NETWORK_FILE_SYSTEMS: [u32; 11] = [
         0x6969,
         0x517B,
         0xFF53_4D42,
@@ -81,7 +83,7 @@ pub(super) fn is_shared_disk(path: &Path) -> bool {
         0x6573_5546,
     ];
     // The number has 32 bits, whatever the type of the field is on a machine.
-    rustix::fs::statfs(path).is_ok_and(|s| SHARED.contains(&(s.f_type as u32)))
+    rustix::fs::statfs(path).is_ok_and(|s| NETWORK_FILE_SYSTEMS.contains(&(s.f_type as u32)))
 }
 
 /// Elsewhere the answer of the database decides.

@@ -1,4 +1,4 @@
-//! What is stated about results after they were made. A statement is a file of its own, named by its hash; it is never
+//! Statements about results after they were made. A statement is a file of its own, named by its hash; it is never
 //! changed or taken back, only followed by another.
 
 use super::address::sha256;

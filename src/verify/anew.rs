@@ -30,7 +30,7 @@ pub struct Anew<'a> {
     pub options: &'a [String],
 }
 
-/// What a record holds that does not follow from recording and procedure, or is compared apart: who tested and when, what a store knew,
+/// Members of a record that do not follow from recording and procedure, or are compared apart: who tested and when, what a store knew,
 /// where files lay.
 const UNCOMPARED_MEMBERS: [&str; 10] = [
     "format",

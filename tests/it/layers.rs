@@ -32,7 +32,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
     (
         CORE,
         &[
-            &["lot"],
+            &["formula", "lot"],
             &["rate_table", "temperature"],
             &["influence"],
             &["evidence"],
@@ -52,7 +52,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
             &["simulate"],
             &["acceptance", "selftest"],
             &["report"],
-            &["library", "prove", "verify"],
+            &["library", "prove", "verify", "watch"],
             &["cli"],
         ],
     ),
@@ -66,6 +66,7 @@ const FACADE: &[&str] = &[
     "estimate",
     "evidence",
     "figure",
+    "formula",
     "influence",
     "lot",
     "measurand",

@@ -26,8 +26,8 @@ pub const WORKER_SILENCE_S: u64 = 20;
 pub const NO_WORKER_S: u64 = 20;
 /// A run ends when there has been no scheduler or no worker for this time, s; workers count as lost some time before it begins.
 pub const LOST_S: u64 = 15;
-/// How often the client asks the scheduler, and how long it waits for the answer.
-const ASK: Duration = Duration::from_secs(2);
+/// Interval at which the client asks the scheduler, and for which it waits for the answer.
+const POLL_INTERVAL: Duration = Duration::from_secs(2);
 /// How often a worker tells that it lives, s.
 const HEARTBEAT_S: u64 = 5;
 /// How often the scheduler looks for lost workers, s.
@@ -55,10 +55,10 @@ pub async fn client(scheduler: &str, partitions: usize) -> Result<SessionContext
 /// Ballista fails a job whose workers are all lost, but not one that began without a worker: that one waits for the first.
 pub async fn lost(scheduler: &str) -> String {
     let asked = format!("{}/readyz", scheduler.trim_end_matches('/').replacen("df://", "http://", 1));
-    let client = reqwest::Client::builder().timeout(ASK).build().unwrap_or_default();
+    let client = reqwest::Client::builder().timeout(POLL_INTERVAL).build().unwrap_or_default();
     let (mut ready, mut why) = (Instant::now(), String::new());
     while ready.elapsed() < Duration::from_secs(LOST_S) {
-        tokio::time::sleep(ASK).await;
+        tokio::time::sleep(POLL_INTERVAL).await;
         match client.get(&asked).send().await {
             Ok(answer) if answer.status().is_success() => ready = Instant::now(),
             Ok(_) => why = format!("{scheduler} has no worker; start one with `sagnac-archive worker`"),

@@ -17,13 +17,13 @@ use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Every recording has a result.
-const DONE: u8 = 0;
+const ALL_DONE: u8 = 0;
 /// Some recordings have an error instead.
 const WITH_ERRORS: u8 = 1;
 /// The command could not be carried out.
-pub const FAILED: u8 = 2;
+pub const COMMAND_FAILED: u8 = 2;
 /// Recordings that could not be reached and are named one by one.
-const NAMED: usize = 20;
+const MAX_NAMED_RECORDINGS: usize = 20;
 /// Stack of a thread that plans queries, bytes: plans are trees that are walked by recursion.
 const STACK_BYTES: usize = 16 << 20;
 
@@ -58,14 +58,14 @@ pub struct ListArgs {
     #[arg(long, value_name = "FILE")]
     model: Option<String>,
     /// Endings of recordings, separated by commas
-    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = ENDINGS)]
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = FILE_ENDINGS)]
     endings: Vec<String>,
     /// Recordings of a shard
     #[arg(long, value_name = "N", default_value_t = 10_000)]
     rows: usize,
 }
 
-const ENDINGS: &str = "csv,csv.gz,csv.zst,tsv,txt,dat,parquet,mcap,bag,h5,hdf5,npy,npz,mat,tdms";
+const FILE_ENDINGS: &str = "csv,csv.gz,csv.zst,tsv,txt,dat,parquet,mcap,bag,h5,hdf5,npy,npz,mat,tdms";
 
 #[derive(Debug, Args)]
 pub struct RunArgs {
@@ -166,7 +166,7 @@ pub fn execute(command: Command) -> Result<u8, String> {
             Command::Query(args) => query(args).await,
             Command::Scheduler(args) => {
                 let served = cluster::scheduler(args.bind, &args.host).await;
-                served.map(|()| DONE).map_err(|e| format!("scheduler at {}: {e}", args.bind))
+                served.map(|()| ALL_DONE).map_err(|e| format!("scheduler at {}: {e}", args.bind))
             }
             Command::Worker(args) => worker(args).await,
         }
@@ -216,7 +216,7 @@ async fn list(args: ListArgs) -> Result<u8, String> {
         return Err(format!("{}: no recording with an ending of {endings}; see --endings", args.folder));
     }
     say(format_args!("{found} recordings listed in {}\n", args.out))?;
-    Ok(DONE)
+    Ok(ALL_DONE)
 }
 
 /// The query, and what a job file says beside it.
@@ -316,7 +316,7 @@ fn bar() -> ProgressBar {
 /// Says what a run did; gives the exit code.
 fn told(report: &Report, out: &str) -> Result<u8, String> {
     let counts = report.counts;
-    for text in report.unreached.iter().take(NAMED) {
+    for text in report.unreached.iter().take(MAX_NAMED_RECORDINGS) {
         eprintln!("warning: {text}");
     }
     say(format_args!(
@@ -326,7 +326,7 @@ fn told(report: &Report, out: &str) -> Result<u8, String> {
     if counts.unreached > 0 {
         say(format_args!("The same command tries again what was out of reach.\n"))?;
     }
-    Ok(if counts.errors + counts.unreached > 0 { WITH_ERRORS } else { DONE })
+    Ok(if counts.errors + counts.unreached > 0 { WITH_ERRORS } else { ALL_DONE })
 }
 
 async fn query(args: QueryArgs) -> Result<u8, String> {
@@ -350,7 +350,7 @@ async fn query(args: QueryArgs) -> Result<u8, String> {
     } else {
         say(format_args!("{}\n", pretty_format_batches(&batches).map_err(|e| e.to_string())?))?;
     }
-    Ok(DONE)
+    Ok(ALL_DONE)
 }
 
 async fn worker(args: WorkerArgs) -> Result<u8, String> {
@@ -370,5 +370,5 @@ async fn worker(args: WorkerArgs) -> Result<u8, String> {
         memory_bytes: args.memory << 20,
         work_dir: args.work.map(|w| w.display().to_string()),
     });
-    served.await.map(|()| DONE).map_err(|e| format!("worker for {}: {e}", args.scheduler))
+    served.await.map(|()| ALL_DONE).map_err(|e| format!("worker for {}: {e}", args.scheduler))
 }

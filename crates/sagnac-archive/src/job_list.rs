@@ -28,11 +28,11 @@ use std::sync::Arc;
 use url::Url;
 
 /// Names of the columns, in their order.
-pub const COLUMNS: [&str; 6] = ["uri", "state", "procedure", "limits", "model", "unit"];
+pub const JOB_COLUMNS: [&str; 6] = ["uri", "state", "procedure", "limits", "model", "unit"];
 
 /// The schema of a job list.
 pub fn schema() -> SchemaRef {
-    texts(&COLUMNS)
+    texts(&JOB_COLUMNS)
 }
 
 /// A schema of texts.
@@ -146,7 +146,7 @@ fn batch(listing: &Listing, found: &[ObjectMeta]) -> Result<RecordBatch> {
 pub fn compressed() -> WriterPropertiesBuilder {
     WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::default()))
-        .set_created_by(format!("sagnac-archive {}", crate::ENGINE))
+        .set_created_by(format!("sagnac-archive {}", crate::ENGINE_VERSION))
 }
 
 /// A batch as the bytes of a Parquet file.

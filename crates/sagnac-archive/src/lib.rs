@@ -33,4 +33,4 @@ pub mod session;
 pub mod stores;
 
 /// Version of the engine that results are of.
-pub const ENGINE: &str = env!("CARGO_PKG_VERSION");
+pub const ENGINE_VERSION: &str = env!("CARGO_PKG_VERSION");

@@ -9,13 +9,13 @@ use std::process::ExitCode;
 
 /// Analyse an archive of recordings, on one machine or on several
 #[derive(Debug, Parser)]
-#[command(name = "sagnac-archive", version, after_help = AFTER)]
+#[command(name = "sagnac-archive", version, after_help = AFTER_HELP)]
 struct Cli {
     #[command(subcommand)]
     command: Command,
 }
 
-const AFTER: &str = "Exit codes: 0: every recording has a result; 1: some have an error instead; 2: the command \
+const AFTER_HELP: &str = "Exit codes: 0: every recording has a result; 1: some have an error instead; 2: the command \
                      could not be carried out.\nAn object store is told by the environment: AWS_ACCESS_KEY_ID, \
                      AWS_SECRET_ACCESS_KEY, AWS_REGION, AWS_ENDPOINT, AWS_ALLOW_HTTP.";
 
@@ -29,7 +29,7 @@ fn main() -> ExitCode {
             let text = text.trim_end();
             let head = if text.starts_with("error: ") { "" } else { "error: " };
             eprintln!("{head}{text}");
-            ExitCode::from(commands::FAILED)
+            ExitCode::from(commands::COMMAND_FAILED)
         }
     }
 }

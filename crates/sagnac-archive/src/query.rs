@@ -12,7 +12,7 @@ use datafusion::logical_expr::{Expr, LogicalPlan, ScalarUDF, cast, lit};
 use datafusion::prelude::col;
 
 /// Columns of what is left to do, in their order: what the call of a query gave for a row, and the key of the job.
-pub const PENDING: [&str; 7] = ["key", "uri", "procedure", "limits", "model", "unit", "at"];
+pub const PENDING_COLUMNS: [&str; 7] = ["key", "uri", "procedure", "limits", "model", "unit", "at"];
 
 /// A query that does one thing with each of some rows of the job list.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ impl RowQuery {
         Ok(RowQuery { rows, function, arguments })
     }
 
-    /// The columns [`PENDING`] from the rows; `at` is the time of evaluation where the query states none.
+    /// The columns [`PENDING_COLUMNS`] from the rows; `at` is the time of evaluation where the query states none.
     pub fn pending(&self, at: &str) -> Vec<Expr> {
         let null = || Expr::Literal(ScalarValue::Utf8(None), None);
         // A bare NULL has no type of its own.
@@ -75,12 +75,12 @@ impl RowQuery {
         let key = ScalarUDF::from(Key::new()).call(identity);
         [key, uri, procedure, limits, model, unit, at]
             .into_iter()
-            .zip(PENDING)
+            .zip(PENDING_COLUMNS)
             .map(|(e, n)| e.alias(n))
             .collect()
     }
 
-    /// The call for a row of [`PENDING`].
+    /// The call for a row of [`PENDING_COLUMNS`].
     pub fn call(&self, function: &ScalarUDF) -> Expr {
         let names: &[&str] = match self.function {
             Function::Analyze => &["uri", "unit", "at"],

@@ -3,7 +3,7 @@
 //! `<folder>/procedure=<name>/engine=<version>/part-<run>-<portion>.parquet`, one row a recording: `key`, `uri`, `procedure_path`,
 //! `limits_path`, `model_path`, then the fields of an outcome.
 
-use crate::ENGINE;
+use crate::ENGINE_VERSION;
 use crate::functions::Function;
 use crate::job_list::{compressed, parquet, put};
 use crate::outcome;
@@ -24,11 +24,11 @@ use std::sync::Arc;
 use url::Url;
 
 /// Columns that say what was asked; they come before those of an outcome.
-const ASKED: [&str; 5] = ["key", "uri", "procedure_path", "limits_path", "model_path"];
+const REQUEST_COLUMNS: [&str; 5] = ["key", "uri", "procedure_path", "limits_path", "model_path"];
 
 /// The schema of a result file.
 pub fn schema() -> SchemaRef {
-    let asked = ASKED.iter().map(|n| Arc::new(Field::new(*n, DataType::Utf8, true)));
+    let asked = REQUEST_COLUMNS.iter().map(|n| Arc::new(Field::new(*n, DataType::Utf8, true)));
     Arc::new(Schema::new(asked.chain(outcome::fields().iter().cloned()).collect::<Vec<_>>()))
 }
 
@@ -118,7 +118,7 @@ impl Writer {
             .set_column_dictionary_enabled(json(), false)
             .set_column_statistics_enabled(json(), EnabledStatistics::None);
         let file = format!("part-{}-{portion:06}.parquet", self.run);
-        let parts = [format!("procedure={name}"), format!("engine={ENGINE}"), file];
+        let parts = [format!("procedure={name}"), format!("engine={ENGINE_VERSION}"), file];
         let path = parts.into_iter().fold(self.folder.clone(), |path, part| path.join(part));
         put(self.store.as_ref(), &path, parquet(batch, properties)?).await
     }

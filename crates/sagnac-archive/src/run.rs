@@ -1,12 +1,12 @@
 //! A run: what is left to do, in portions, with retries.
 //!
-//! What is left is the job list without what the results hold already, by an anti-join on the key. It is evaluated in portions: a
+//! The work left is the job list without what the results hold already, by an anti-join on the key. It is evaluated in portions: a
 //! portion is one query of DataFusion or one job of Ballista, and its results appear as whole files when it ends. A run that was
 //! stopped anywhere is resumed by the same command; it loses the portions that were under way, and nothing is doubled.
 
 use crate::cluster;
 use crate::job_list::{self, compressed, parquet, parquet_table, put};
-use crate::query::{PENDING, RowQuery};
+use crate::query::{PENDING_COLUMNS, RowQuery};
 use crate::results::{self, Counts, Writer};
 use crate::session;
 use crate::stores;
@@ -31,7 +31,7 @@ use url::Url;
 /// Portions under way at a time: while one ends on a single thread, the next keeps the others busy.
 const UNDER_WAY: usize = 2;
 /// Pauses before a portion is tried again on a cluster: a worker or a scheduler that was lost may be back.
-const PAUSES: [Duration; 2] = [Duration::from_secs(3), Duration::from_secs(10)];
+const RETRY_PAUSES: [Duration; 2] = [Duration::from_secs(3), Duration::from_secs(10)];
 /// Where the portions of a cluster lie while they are under way, below the folder of the results.
 const PENDING_FOLDER: &str = ".pending";
 /// Ending of their names: not that of results.
@@ -202,7 +202,7 @@ impl Runner {
         Ok((counts, unreached))
     }
 
-    /// What a portion gives; on a cluster it is tried again where it failed, as long as there is a scheduler with a worker.
+    /// Results of a portion; on a cluster it is tried again where it failed, as long as there is a scheduler with a worker.
     async fn patiently(
         &self,
         number: usize,
@@ -213,7 +213,7 @@ impl Runner {
             return self.outcomes(self.context.read_batch(portion.clone())?)?.collect().await;
         };
         let attempts = async {
-            for pause in &PAUSES {
+            for pause in &RETRY_PAUSES {
                 match self.evaluated(number, portion).await {
                     Ok(batches) => return Ok(batches),
                     Err(e) => progress.suspend(|| {
@@ -244,7 +244,7 @@ impl Runner {
                 ListingTableUrl::try_new(url, None)
             })
             .collect();
-        let table = parquet_table(urls?, job_list::texts(&PENDING), PENDING_ENDING)?;
+        let table = parquet_table(urls?, job_list::texts(&PENDING_COLUMNS), PENDING_ENDING)?;
         let batches = self.outcomes(self.context.read_table(table)?)?.collect().await?;
         let rows: usize = batches.iter().map(RecordBatch::num_rows).sum();
         if rows != portion.num_rows() {

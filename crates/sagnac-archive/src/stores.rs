@@ -60,8 +60,8 @@ fn place(url: &Url) -> String {
 
 /// The stores of this process.
 pub fn stores() -> &'static Arc<Stores> {
-    static STORES: OnceLock<Arc<Stores>> = OnceLock::new();
-    STORES.get_or_init(Arc::default)
+    static SHARED_STORES: OnceLock<Arc<Stores>> = OnceLock::new();
+    SHARED_STORES.get_or_init(Arc::default)
 }
 
 /// The address of what a user names: a path, or a URL as it stands.
@@ -147,8 +147,8 @@ fn unreachable(named: &str, e: &std::io::Error) -> Failure {
 
 /// A runtime of its own: evaluations wait for downloads on threads that are no part of DataFusion's runtime.
 fn downloads() -> std::result::Result<&'static tokio::runtime::Runtime, Failure> {
-    static DOWNLOADS: OnceLock<std::io::Result<tokio::runtime::Runtime>> = OnceLock::new();
-    let runtime = DOWNLOADS
+    static DOWNLOAD_RUNTIME: OnceLock<std::io::Result<tokio::runtime::Runtime>> = OnceLock::new();
+    let runtime = DOWNLOAD_RUNTIME
         .get_or_init(|| tokio::runtime::Builder::new_multi_thread().worker_threads(1).enable_all().build());
     runtime.as_ref().map_err(|e| Failure::new(FailureKind::Access, format!("no thread for downloads: {e}")))
 }

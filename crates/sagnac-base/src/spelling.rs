@@ -1,7 +1,7 @@
 //! Names that a user may have meant.
 
 /// Shortest beginning of a name that is taken for the name, characters.
-const BEGINNING: usize = 3;
+const MIN_PREFIX_CHARS: usize = 3;
 
 /// The candidate that begins with `word`, or else is spelt most nearly like it, when one is near enough to be meant.
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
@@ -28,7 +28,7 @@ fn plain(name: &str) -> String {
 
 /// The candidate that begins with a word: `temp` is `temperature`. Of several, the one that all others begin with.
 fn begun<'a>(wanted: &str, candidates: &[&'a str]) -> Option<&'a str> {
-    if wanted.chars().count() < BEGINNING {
+    if wanted.chars().count() < MIN_PREFIX_CHARS {
         return None;
     }
     let begin = || candidates.iter().copied().filter(|c| plain(c).starts_with(wanted));

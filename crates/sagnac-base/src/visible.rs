@@ -6,7 +6,7 @@
 use std::borrow::Cow;
 
 /// Replacement of a character that is not shown.
-const SIGN: char = '·';
+const REPLACEMENT_SIGN: char = '·';
 
 /// True for a character that steers in place of being shown: controls, marks of direction, what has no width, separators
 /// of lines.
@@ -20,7 +20,7 @@ pub fn steers(c: char) -> bool {
 fn shown(c: char) -> char {
     match c {
         '\t' | '\n' | '\r' => ' ',
-        c if steers(c) => SIGN,
+        c if steers(c) => REPLACEMENT_SIGN,
         c => c,
     }
 }

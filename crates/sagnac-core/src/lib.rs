@@ -41,6 +41,7 @@ pub use sagnac_noise::noise;
 
 pub mod criticism;
 pub mod evidence;
+pub mod formula;
 pub mod influence;
 pub mod lot;
 pub mod measurand;

@@ -1,4 +1,4 @@
-//! A column of a file, and what its name and the format tell of it.
+//! A column of a file, and what its name, its format and its first values tell of it.
 
 use crate::column_inference::{InferredColumn, infer};
 use sagnac_core::message::note;
@@ -20,11 +20,19 @@ pub struct Column {
     pub epoch_s: Option<f64>,
     /// Period after which time stamps start again from zero, s: 86400 for time of day, 604800 for seconds of the week.
     pub rollover_s: Option<f64>,
+    /// Role, unit and scale where the first values or the header of the file decide and the name alone would not.
+    pub judged: Option<InferredColumn>,
 }
 
 impl Column {
-    /// The most likely role and unit: from the type of the column where that is decisive, otherwise from its name.
+    /// The most likely role and unit: as the first values or the header decide, from the type of the column where that is
+    /// decisive, otherwise from its name.
     pub fn inferred(&self) -> InferredColumn {
+        self.judged.clone().unwrap_or_else(|| self.by_name())
+    }
+
+    /// Role and unit from type and name alone.
+    pub(crate) fn by_name(&self) -> InferredColumn {
         let mut inferred = infer(&self.name, self.unit.as_deref());
         let dates = self.storage == DATES;
         if dates || ((self.epoch_s.is_some() || self.rollover_s.is_some()) && inferred.role != Role::Time) {

@@ -11,83 +11,97 @@ pub struct InferredColumn {
     pub role: Role,
     /// Unit of the numbers in the file.
     pub unit: Unit,
+    /// Factor from the numbers in the file to that unit; 1 unless the file states another.
+    pub scale: f64,
     /// False if neither name nor file states the unit, and the usual unit of the role was assumed.
     pub unit_is_named: bool,
     /// Why role and unit were chosen.
     pub reason: Note,
 }
 
-/// Name endings that mean a unit, as words joined by `_`.
-const UNIT_WORDS: &[(&[&str], &str)] = &[
-    (&["deg", "per", "h"], "deg/h"),
-    (&["deg", "per", "hr"], "deg/h"),
-    (&["deg", "per", "hour"], "deg/h"),
-    (&["deg", "per", "s"], "deg/s"),
-    (&["deg", "per", "sec"], "deg/s"),
-    (&["rad", "per", "s"], "rad/s"),
-    (&["rad", "per", "sec"], "rad/s"),
-    (&["deg", "h"], "deg/h"),
-    (&["deg", "hr"], "deg/h"),
-    (&["deg", "s"], "deg/s"),
-    (&["deg", "sec"], "deg/s"),
-    (&["mdeg", "s"], "mdeg/s"),
-    (&["mdeg", "h"], "mdeg/h"),
-    (&["rad", "s"], "rad/s"),
-    (&["mrad", "s"], "mrad/s"),
-    (&["urad", "s"], "urad/s"),
-    (&["nrad", "s"], "nrad/s"),
-    (&["arcsec", "s"], "arcsec/s"),
-    (&["m", "s2"], "m/s^2"),
-    (&["mm", "s2"], "mm/s^2"),
-    (&["um", "s2"], "um/s^2"),
-    (&["nm", "s2"], "nm/s^2"),
-    (&["dph"], "deg/h"),
-    (&["dps"], "deg/s"),
-    (&["rpm"], "rpm"),
-    (&["degc"], "degC"),
-    (&["degf"], "degF"),
-    (&["degk"], "K"),
-    (&["k"], "K"),
-    (&["c"], "degC"),
-    (&["deg"], "deg"),
-    (&["mdeg"], "mdeg"),
-    (&["arcsec"], "arcsec"),
-    (&["arcmin"], "arcmin"),
-    (&["rad"], "rad"),
-    (&["mrad"], "mrad"),
-    (&["urad"], "urad"),
-    (&["nrad"], "nrad"),
-    (&["counts"], "count"),
-    (&["count"], "count"),
-    (&["lsb"], "count"),
-    (&["raw"], "count"),
-    (&["pulses"], "count"),
-    (&["pct"], "%"),
-    (&["percent"], "%"),
-    (&["hpa"], "hPa"),
-    (&["kpa"], "kPa"),
-    (&["pa"], "Pa"),
-    (&["mbar"], "hPa"),
-    (&["hz"], "Hz"),
-    (&["khz"], "kHz"),
-    (&["mv"], "mV"),
-    (&["v"], "V"),
-    (&["ma"], "mA"),
-    (&["a"], "A"),
-    (&["ut"], "uT"),
-    (&["nt"], "nT"),
-    (&["mt"], "mT"),
-    (&["gauss"], "gauss"),
-    (&["mg"], "mg"),
-    (&["g"], "g"),
-    (&["ms"], "ms"),
-    (&["us"], "us"),
-    (&["ns"], "ns"),
-    (&["sec"], "s"),
-    (&["seconds"], "s"),
-    (&["s"], "s"),
-    (&["min"], "min"),
-    (&["h"], "h"),
+impl InferredColumn {
+    /// True when the name of the column speaks of a gyro but the numbers are counts, whose size is not known.
+    pub fn counts_of_a_gyro(&self, name: &str) -> bool {
+        let counts = parse("count").is_some_and(|c| c.same_dimension(&self.unit));
+        let name = name.to_lowercase();
+        counts && ["gyro", "fog", "rlg", "rate", "omega"].iter().any(|w| name.contains(w))
+    }
+}
+
+/// Last words of names that mean a unit, in lower case.
+const UNIT_WORDS: &[(&str, &str)] = &[
+    ("°f", "degF"),
+    ("°c", "degC"),
+    ("dph", "deg/h"),
+    ("dps", "deg/s"),
+    ("degps", "deg/s"),
+    ("mdps", "mdps"),
+    ("udps", "udps"),
+    ("radps", "rad/s"),
+    ("mradps", "mrad/s"),
+    ("uradps", "urad/s"),
+    ("rpm", "rpm"),
+    ("degc", "degC"),
+    ("celsius", "degC"),
+    ("degf", "degF"),
+    ("fahrenheit", "degF"),
+    ("degk", "K"),
+    ("kelvin", "K"),
+    ("k", "K"),
+    ("c", "degC"),
+    ("deg", "deg"),
+    ("degrees", "deg"),
+    ("mdeg", "mdeg"),
+    ("arcsec", "arcsec"),
+    ("arcmin", "arcmin"),
+    ("rad", "rad"),
+    ("radians", "rad"),
+    ("mrad", "mrad"),
+    ("urad", "urad"),
+    ("nrad", "nrad"),
+    ("counts", "count"),
+    ("count", "count"),
+    ("lsb", "count"),
+    ("raw", "count"),
+    ("pulses", "count"),
+    ("pct", "%"),
+    ("percent", "%"),
+    ("hpa", "hPa"),
+    ("kpa", "kPa"),
+    ("pa", "Pa"),
+    ("mbar", "hPa"),
+    ("hz", "Hz"),
+    ("khz", "kHz"),
+    ("mv", "mV"),
+    ("v", "V"),
+    ("ma", "mA"),
+    ("a", "A"),
+    ("ut", "uT"),
+    ("nt", "nT"),
+    ("mt", "mT"),
+    ("gauss", "gauss"),
+    ("mg", "mg"),
+    ("g", "g"),
+    ("ms", "ms"),
+    ("msec", "ms"),
+    ("millis", "ms"),
+    ("milliseconds", "ms"),
+    ("us", "us"),
+    ("usec", "us"),
+    ("micros", "us"),
+    ("microseconds", "us"),
+    ("ns", "ns"),
+    ("nsec", "ns"),
+    ("nanos", "ns"),
+    ("nanoseconds", "ns"),
+    ("nanosec", "ns"),
+    ("sec", "s"),
+    ("secs", "s"),
+    ("seconds", "s"),
+    ("s", "s"),
+    ("min", "min"),
+    ("h", "h"),
+    ("hours", "h"),
 ];
 
 /// What a dimension of a unit says of a column, with the words for it.
@@ -106,6 +120,15 @@ pub fn infer(name: &str, declared_unit: Option<&str>) -> InferredColumn {
     } else {
         (None, words.as_slice(), "guess.none")
     };
+    // An angle that is no increment says nothing of a rate: `gyro_rad` is in rad/s or in rad.
+    let of_angle = |u: &Unit| parse("deg").is_some_and(|deg| u.same_dimension(&deg));
+    let body_is = NameWords(body);
+    let half = source == "guess.ending"
+        && unit.as_ref().is_some_and(of_angle)
+        && body_is.any(GYRO_NAMES)
+        && !body_is.any(INCREMENT)
+        && !body_is.any(ANGLE);
+    let (unit, source) = if half { (None, "guess.none") } else { (unit, source) };
     let role = role(body, unit.as_ref());
     let named = unit.is_some();
     let usual = role.internal_unit().unwrap_or("1");
@@ -121,7 +144,7 @@ pub fn infer(name: &str, declared_unit: Option<&str>) -> InferredColumn {
         .with("source", Note::new(source))
         .with("role", Arg::key("role", role.id()))
         .with("unit", usual);
-    InferredColumn { role, unit, unit_is_named: named, reason }
+    InferredColumn { role, unit, scale: 1.0, unit_is_named: named, reason }
 }
 
 /// The words of a name without its unit: `Rate [deg/h]` and `rate_deg_s` are one quantity.
@@ -174,10 +197,18 @@ fn words(name: &str) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     let mut word = String::new();
     let mut before = ' ';
-    for c in name.chars() {
+    let mut rest = name.chars();
+    while let Some(c) = rest.next() {
         // `degC`, `degF` and prefixed units such as `hPa` are one word.
         let degree = word.ends_with("deg") && matches!(c, 'C' | 'F' | 'K');
-        let hump = before.is_lowercase() && c.is_uppercase() && word.chars().count() > 1 && !degree;
+        // Behind capitals a new word begins with the last of them: `GyroXRadPerSec`, but `MHz`.
+        let after = rest.clone().next().is_some_and(char::is_lowercase);
+        let prefixed =
+            ["Hz", "Pa"].into_iter().any(|u| rest.as_str().starts_with(&u[1..]) && u.starts_with(c));
+        let hump = c.is_uppercase()
+            && !degree
+            && ((before.is_lowercase() && word.chars().count() > 1)
+                || (before.is_uppercase() && after && !prefixed));
         if (!c.is_alphanumeric() && c != '/' && c != '°' && c != '%') || hump {
             words.extend((!word.is_empty()).then(|| std::mem::take(&mut word)));
         }
@@ -193,15 +224,46 @@ fn words(name: &str) -> Vec<String> {
 /// The unit that the last words of a name spell, and how many words it takes. A name that is all unit, such as `g`,
 /// is no unit.
 fn unit_at_end(words: &[String]) -> Option<(Unit, usize)> {
-    for (ending, unit) in UNIT_WORDS {
-        let Some(start) = words.len().checked_sub(ending.len()).filter(|&s| s > 0) else { continue };
-        if words.get(start..).is_some_and(|w| w.iter().map(String::as_str).eq(ending.iter().copied())) {
-            return parse(unit).map(|u| (u, ending.len()));
-        }
+    let word = |back: usize| {
+        words.len().checked_sub(back).filter(|&i| i > 0).and_then(|i| words.get(i)).map(String::as_str)
+    };
+    let over = |quantity: Option<&str>, time: Option<&str>, used: usize| {
+        // `gyro_rad_s`, `RadPerSec`: an angle over a time.
+        let is =
+            |text: &str, like: &str| parse(text).zip(parse(like)).is_some_and(|(u, l)| u.same_dimension(&l));
+        let (quantity, time) = (quantity?, time?);
+        let angle = is(quantity, "deg") && is(time, "s");
+        angle.then(|| parse(&format!("{quantity}/{time}"))).flatten().map(|unit| (unit, used))
+    };
+    let acceleration = |length: Option<&str>, square: Option<&str>, used: usize| {
+        let length = length.filter(|l| matches!(*l, "m" | "mm" | "um" | "nm"))?;
+        square.filter(|s| *s == "s2")?;
+        Some((parse(&format!("{length}/s^2"))?, used))
+    };
+    let of_rate = || match (word(3), word(2), word(1)) {
+        (quantity, Some("per"), time) => over(quantity, time, 3),
+        // The words of `rad s^-1` and `m s^-2`.
+        (quantity, time, Some("1")) => over(quantity, time, 3),
+        (length, Some("s"), Some("2")) => acceleration(length, Some("s2"), 3),
+        (_, quantity, time) => over(quantity, time, 2),
+    };
+    if let Some(found) = of_rate().or_else(|| acceleration(word(2), word(1), 2)) {
+        return Some(found);
     }
+    // Names that are all unit and mean nothing but a time.
+    if let [only] = words {
+        let parts = ["millis", "micros", "nanos", "milliseconds", "microseconds", "nanoseconds"];
+        return parse(only).filter(|_| parts.contains(&only.as_str())).map(|unit| (unit, 0));
+    }
+    let last = word(1)?;
+    // A bare F may be anything but behind a temperature.
+    if last == "f" && words.iter().any(|w| w == "temp" || TEMPERATURE.contains(&w.as_str())) {
+        return parse("degF").map(|u| (u, 1));
+    }
+    let listed = UNIT_WORDS.iter().find(|(ending, _)| *ending == last).map(|(_, unit)| *unit);
     // A unit in its own spelling, such as `deg/h`.
-    let last = words.last().filter(|_| words.len() > 1)?;
-    if last.contains('/') { parse(last).map(|u| (u, 1)) } else { None }
+    let unit = listed.or_else(|| Some(last).filter(|l| l.contains('/')))?;
+    parse(unit).map(|u| (u, 1))
 }
 
 /// Words of names of temperatures.
@@ -241,6 +303,32 @@ const GYRO: &[&str] = &[
     "лг",
     "выходной",
 ];
+/// Further words of names of rates where the unit is that of a rate.
+const ANGULAR: &[&str] =
+    &["ang", "vel", "velocity", "angvel", "gyros", "ars", "roll", "pitch", "yaw", "output"];
+/// Words of names that speak of a gyro and yet are no output of it.
+const NO_OUTPUT: &[&str] = &[
+    "orientation",
+    "quaternion",
+    "quat",
+    "attitude",
+    "status",
+    "flag",
+    "flags",
+    "valid",
+    "error",
+    "errors",
+    "clip",
+    "clipping",
+    "baud",
+];
+/// Words before `rate` that make it none of a gyro.
+const OTHER_RATES: &[&str] = &["sample", "sampling", "data", "frame", "update", "refresh", "bit", "packet"];
+/// Words of names of angles.
+const ANGLE: &[&str] =
+    &["angle", "angles", "theta", "sum", "heading", "yaw", "roll", "pitch", "угол", "угла"];
+/// Words that mean a gyro and nothing else.
+const GYRO_NAMES: &[&str] = &["gyro", "gyr", "gyroscope", "гироскоп", "гироскопа", "вог"];
 /// Words of names of angles that accrue from sample to sample.
 const INCREMENT: &[&str] =
     &["delta", "dtheta", "increment", "inc", "dangle", "dtheta_x", "приращение", "приращения"];
@@ -260,13 +348,33 @@ const TIME: &[&str] = &[
     "sow",
     "clock",
     "datetime",
+    "datenum",
+    "millis",
+    "micros",
+    "nanos",
+    "milliseconds",
+    "microseconds",
+    "nanoseconds",
     "время",
     "т",
     "секунды",
 ];
 /// Words of names of sample counters.
-const COUNTER: &[&str] =
-    &["counter", "sample", "samples", "seq", "sequence", "счётчик", "счетчик", "отсчёт", "отсчет"];
+const COUNTER: &[&str] = &[
+    "counter",
+    "sample",
+    "samples",
+    "packet",
+    "cnt",
+    "пакет",
+    "кадр",
+    "seq",
+    "sequence",
+    "счётчик",
+    "счетчик",
+    "отсчёт",
+    "отсчет",
+];
 /// Words of names of other sensors, whose counts are no rates.
 const OTHER_SENSOR: &[&str] =
     &["accel", "acc", "accelerometer", "mag", "magnetometer", "pressure", "humidity"];
@@ -293,6 +401,17 @@ impl NameWords<'_> {
         self.any(TEMPERATURE) || ["temp", "t", "т"].into_iter().any(|stem| self.numbered(stem))
     }
 
+    /// True for rates such as `sample_rate`.
+    fn of_another_rate(&self) -> bool {
+        let gyro: Vec<&String> = self.0.iter().filter(|w| GYRO.contains(&w.as_str())).collect();
+        self.any(OTHER_RATES) && gyro.iter().all(|w| *w == "rate")
+    }
+
+    /// True when a word can mean nothing but a temperature.
+    fn temperature_word(&self) -> bool {
+        self.any(TEMPERATURE) || self.numbered("temp")
+    }
+
     fn counter(&self) -> bool {
         let alone = ["n", "index", "idx", "i", "count", "номер"];
         let by_itself = matches!(self.0, [only] if alone.contains(&only.as_str()));
@@ -308,11 +427,12 @@ fn role(words: &[String], unit: Option<&Unit>) -> Role {
     match () {
         _ if is(RATE) && name.any(OUTER) => Role::OuterRate,
         _ if is(RATE) && table => Role::TableRate,
-        _ if is(RATE) && (gyro || words.len() <= 2) => Role::Rate,
+        _ if is(RATE) && (gyro || words.len() <= 2 || name.any(ANGULAR)) => Role::Rate,
         _ if is("deg") && table => Role::TableAngle,
         _ if is("deg") && increment => Role::AngleIncrement,
         _ if is("degC") => Role::Temperature,
-        _ if is("s") && name.any(TIME) => Role::Time,
+        // LabVIEW names its times `X_Value`.
+        _ if is("s") && (name.any(TIME) || words == ["x", "value"]) => Role::Time,
         _ if is("V") && (name.any(SUPPLY) || name.any(&SUPPLY_IN_VOLTS)) => Role::Supply,
         _ if unit.is_some() && !is("count") => Role::Auxiliary,
         _ => role_without_dimension(&name, unit.is_some()),
@@ -324,15 +444,17 @@ fn role_without_dimension(name: &NameWords<'_>, counts: bool) -> Role {
     let (table, gyro, increment) = (name.any(TABLE), name.any(GYRO), name.any(INCREMENT));
     match () {
         _ if name.any(OTHER_SENSOR) => Role::Auxiliary,
-        _ if name.counter() && !gyro && !increment => Role::Counter,
+        _ if name.counter() && !gyro && !increment && !name.any(&["time", "timestamp"]) => Role::Counter,
         _ if counts => Role::Auxiliary,
         _ if table && name.any(&["rate", "speed", "скорость"]) => Role::TableRate,
         _ if table && name.any(&["angle", "position", "угол", "положение"]) => Role::TableAngle,
+        _ if gyro && name.temperature_word() => Role::Temperature,
+        _ if gyro && (name.any(NO_OUTPUT) || name.of_another_rate()) => Role::Auxiliary,
         _ if increment => Role::AngleIncrement,
         _ if gyro => Role::Rate,
         _ if name.any(&["time", "timestamp", "время"]) || name.0 == ["t"] => Role::Time,
         // `seconds_of_day`: nothing but time is counted in them. Seconds of a week are recognised by the reader.
-        _ if name.any(&["seconds", "sod", "секунды"]) => Role::Time,
+        _ if name.any(&["seconds", "sod", "datenum", "секунды"]) => Role::Time,
         _ if name.temperature() => Role::Temperature,
         _ if name.any(SUPPLY) => Role::Supply,
         _ => Role::Auxiliary,
@@ -404,6 +526,29 @@ mod tests {
             ("rate (1)", Role::Rate, "deg/h"),
             ("section", Role::Auxiliary, "1"),
             ("reset", Role::Auxiliary, "1"),
+            ("w_RS_S_x [rad s^-1]", Role::Rate, "rad/s"),
+            ("wx (rad.s-1)", Role::Rate, "rad/s"),
+            ("gyro_x [deg s-1]", Role::Rate, "deg/s"),
+            ("gx (mdps)", Role::Rate, "mdps"),
+            ("gyro_x_radps", Role::Rate, "rad/s"),
+            ("Gyro X (Degrees/s)", Role::Rate, "deg/s"),
+            ("UncalGyroXRadPerSec", Role::Rate, "rad/s"),
+            ("ang_vel_x [rad/s]", Role::Rate, "rad/s"),
+            ("gyro_rad_s^-1", Role::Rate, "rad/s"),
+            ("utcTimeMillis", Role::Time, "ms"),
+            ("time_usec", Role::Time, "us"),
+            ("TimeUS", Role::Time, "us"),
+            ("timestamp_sample", Role::Time, "s"),
+            ("millis", Role::Time, "ms"),
+            ("Temp (F)", Role::Temperature, "degF"),
+            ("temp_f", Role::Temperature, "degF"),
+            ("Temperature °F", Role::Temperature, "degF"),
+            ("gyro_temp", Role::Temperature, "degC"),
+            ("field.orientation.w", Role::Auxiliary, "1"),
+            ("sample_rate", Role::Auxiliary, "1"),
+            ("gyro_data_x", Role::Rate, "deg/h"),
+            ("gyro_rad[0]", Role::Rate, "deg/h"),
+            ("gyro_status", Role::Auxiliary, "1"),
         ] {
             let g = infer(name, None);
             let expected = Unit::parse(unit).unwrap();

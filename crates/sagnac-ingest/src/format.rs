@@ -3,6 +3,7 @@
 use crate::block::{Block, FileFacts};
 use crate::byte_stream::Packing;
 use crate::column::Column;
+use crate::cycle::Labels;
 use crate::error::IngestError;
 use crate::options::ReadOptions;
 use sagnac_core::message::Note;
@@ -52,8 +53,23 @@ pub struct Opened {
     pub metadata: Vec<(String, String)>,
     /// Sample rate that the file states, Hz.
     pub stated_sample_rate_hz: Option<f64>,
+    /// Words in the first rows of columns that hold few of them.
+    pub labels: Vec<Labels>,
+    /// Rows that are none of the recording and are left out.
+    pub bad_blocks: Vec<BadBlock>,
     /// The reader.
     pub table: Box<dyn Table>,
+}
+
+/// Rows at the start or the end that are none of the recording.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BadBlock {
+    /// The first of them, counted from 1.
+    pub first_row: u64,
+    /// Their number.
+    pub rows: u64,
+    /// What they are, and how they are left out.
+    pub note: Note,
 }
 
 /// A file format.

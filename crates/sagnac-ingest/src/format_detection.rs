@@ -6,14 +6,49 @@ use crate::formats::{FORMATS, FormatFeature, left_out};
 use sagnac_core::message::{Arg, Note, note};
 use sagnac_core::spelling::nearest;
 
-/// First bytes of kinds of files that are not read, with the keys of what they are and what to do about them.
-const NOT_READ: &[(&[u8], &str, &str)] = &[
-    (b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
-    (b"SQLite format 3\0", "ingest.ros.sqlite", "ingest.ros.hint.convert"),
-    (b"%PDF", "ingest.kind.pdf", "ingest.hint.give_recording"),
-    (b"7z\xbc\xaf", "ingest.kind.seven_zip", "ingest.hint.unpack"),
-    (b"BZh", "ingest.kind.bzip2", "ingest.hint.repack"),
-    (b"\xfd7zXZ", "ingest.kind.xz", "ingest.hint.repack"),
+/// A kind of file that is not read.
+struct NotRead {
+    /// Its first bytes.
+    magic: &'static [u8],
+    /// Key of what it is.
+    what: &'static str,
+    /// Key of what to do about it.
+    hint: &'static str,
+    /// What converts it, for the hint; empty where none is named.
+    converter: &'static str,
+}
+
+const fn not_read(magic: &'static [u8], what: &'static str, hint: &'static str) -> NotRead {
+    NotRead { magic, what, hint, converter: "" }
+}
+
+const fn convertible(magic: &'static [u8], what: &'static str, converter: &'static str) -> NotRead {
+    NotRead { magic, what, hint: "ingest.hint.convert_with", converter }
+}
+
+/// Kinds of files that are not read, by their first bytes.
+const NOT_READ: &[NotRead] = &[
+    not_read(b"PK\x03\x04", "ingest.kind.zip", "ingest.hint.export_sheet"),
+    not_read(b"%PDF", "ingest.kind.pdf", "ingest.hint.give_recording"),
+    not_read(b"7z\xbc\xaf", "ingest.kind.seven_zip", "ingest.hint.unpack"),
+    not_read(b"BZh", "ingest.kind.bzip2", "ingest.hint.repack"),
+    not_read(b"\xfd7zXZ", "ingest.kind.xz", "ingest.hint.repack"),
+    not_read(b"Rar!", "ingest.kind.rar", "ingest.hint.unpack"),
+    not_read(b"\xd0\xcf\x11\xe0", "ingest.kind.compound", "ingest.hint.export_sheet"),
+    convertible(b"\xa3\x95", "ingest.kind.dataflash", "`mavlogdump.py --format csv` (pymavlink)"),
+    convertible(b"ARROW1", "ingest.kind.arrow", "`pandas.read_feather(...).to_parquet(...)`"),
+    convertible(b"FEA1", "ingest.kind.arrow", "`pandas.read_feather(...).to_parquet(...)`"),
+    convertible(b"Obj\x01", "ingest.kind.avro", "`fastavro --json`"),
+    convertible(b"MDF     ", "ingest.kind.mdf", "`asammdf` (export to CSV or Parquet)"),
+    convertible(b"\xaa\x44\x12", "ingest.kind.novatel", "NovAtel Convert (to ASCII)"),
+    convertible(b"\xaa\x44\x13", "ingest.kind.novatel", "NovAtel Convert (to ASCII)"),
+    convertible(b"\xb5\x62", "ingest.kind.ubx", "u-center or `pyubx2`"),
+    convertible(b"\xfa\xff", "ingest.kind.xsens", "MT Manager (export to text)"),
+    convertible(b"RIFF", "ingest.kind.wave", "`scipy.io.wavfile.read`"),
+    convertible(b"\x80\x04\x95", "ingest.kind.pickle", "`pandas.read_pickle(...).to_parquet(...)`"),
+    convertible(b"\x0e\x03\x13\x01", "ingest.kind.hdf4", "`h4toh5`"),
+    convertible(b"CDF\x01", "ingest.kind.netcdf3", "`nccopy -k nc4`"),
+    convertible(b"CDF\x02", "ingest.kind.netcdf3", "`nccopy -k nc4`"),
 ];
 
 /// The format that the user states, else the first that recognises the file.
@@ -52,9 +87,13 @@ fn recognised(file: &Candidate) -> Result<&'static dyn Format, IngestError> {
     if let Some(missing) = left_out().find(|f| (f.recognises)(file)) {
         return Err(not_compiled_in(file, missing));
     }
-    if let Some((_, what, hint)) = NOT_READ.iter().find(|(magic, ..)| file.head.starts_with(magic)) {
-        let what = Arg::Key((*what).to_owned());
-        return Err(unknown(note!("ingest.not_read", what)).hint(*hint));
+    if let Some(kind) = NOT_READ.iter().find(|kind| file.head.starts_with(kind.magic)) {
+        let what = Arg::Key(kind.what.to_owned());
+        let hint = match kind.converter {
+            "" => Note::new(kind.hint),
+            converter => Note::new(kind.hint).with("converter", converter),
+        };
+        return Err(unknown(note!("ingest.not_read", what)).hint(hint));
     }
     format.ok_or_else(|| {
         let ids: Vec<&str> = FORMATS.iter().map(|f| f.id()).collect();
@@ -105,6 +144,12 @@ mod tests {
             ("tdms", candidate(b"TDSm....")),
             ("mcap", candidate(b"\x89MCAP0\r\n....")),
             ("rosbag", candidate(b"#ROSBAG V2.0\n....")),
+            ("rosbag2", candidate(b"SQLite format 3\0........")),
+            ("ulog", candidate(b"ULog\x01\x12\x35\x01........")),
+            ("xlsx", candidate(b"PK\x03\x04............................xl/workbook.xml")),
+            ("json", candidate(b"{\"t\": 0, \"rate\": 1}\n")),
+            ("slist", candidate(b"TIMESERIES XX_R_S_HJZ, 2 samples, 100 sps, 2026-01-01T00:00:00, SLIST, FLOAT, M/S\n1 2\n")),
+            ("rawimu", candidate(b"%RAWIMUSA,1105,1.0;1105,1.0,0,1,2,3,4,5,6*00\n")),
             ("csv", candidate(b"t,rate\n0,1\n1,2\n")),
         ]
     }

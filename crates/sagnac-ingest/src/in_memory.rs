@@ -69,10 +69,13 @@ pub(super) fn open(
         unit: column.epoch_s.map(|_| "s".to_owned()),
         epoch_s: column.epoch_s,
         rollover_s: None,
+        judged: None,
     };
     let described = columns.iter().map(describe).collect();
     let columns = columns.into_iter().map(|c| c.values).collect();
     Ok(Opened {
+        labels: Vec::new(),
+        bad_blocks: Vec::new(),
         columns: described,
         rows_estimate: Some(rows as u64),
         cut_off: Vec::new(),
@@ -87,6 +90,8 @@ pub(super) fn open(
 pub(super) fn nothing() -> Opened {
     let table = Box::new(Memory { columns: Vec::new(), block_rows: 1 });
     Opened {
+        labels: Vec::new(),
+        bad_blocks: Vec::new(),
         columns: Vec::new(),
         rows_estimate: Some(0),
         cut_off: Vec::new(),

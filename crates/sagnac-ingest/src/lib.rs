@@ -36,13 +36,16 @@
 //!
 //! | feature | formats |
 //! |---|---|
-//! | `text` | delimited text in any usual dialect |
+//! | `text` | delimited text in any usual dialect, sample lists (SLIST), `RAWIMU` logs of NovAtel |
+//! | `ulog` | flight logs of PX4 |
+//! | `json` | JSON lines, a list of JSON objects |
+//! | `xlsx` | sheets of spreadsheets (`.xlsx`, `.xls`, `.ods`) |
 //! | `parquet` | Apache Parquet |
 //! | `numpy` | NumPy `.npy` and `.npz` |
 //! | `matlab` | MAT files of version 4, 5 and 7 |
 //! | `hdf5` | HDF5, NetCDF-4, MAT files of version 7.3 |
 //! | `tdms` | TDMS of LabVIEW |
-//! | `mcap`, `bag` | recordings of ROS 2 and ROS 1 |
+//! | `mcap`, `rosbag2`, `bag` | recordings of ROS 2 (MCAP and SQLite) and ROS 1 |
 //! | `raw` | binary records by a [`layout`] |
 //!
 //! # Map
@@ -54,6 +57,8 @@
 //! | numbers in blocks of rows | [`Format`], [`Table`], `formats` |
 //! | several files as one recording | [`multi_file`] |
 //! | what a column is, by its name and unit | [`column_inference`] |
+//! | what a column is by its first values and the header | `first_values`, `column_judgement`, `time_scale` |
+//! | which rows are read | `selected_rows`, `cycle` |
 //! | the interval of the samples, gaps, roll-overs | [`clock`] |
 //! | rows placed on the grid of the recording | [`Plan`], `row_clock` |
 //! | outliers, stuck and repeated values | [`value_checks`] |
@@ -73,7 +78,16 @@ pub mod byte_stream;
 pub mod clock;
 mod column;
 pub mod column_inference;
-#[cfg(any(feature = "bag", feature = "hdf5", feature = "mcap", feature = "parquet", feature = "tdms"))]
+mod column_judgement;
+mod cycle;
+#[cfg(any(
+    feature = "bag",
+    feature = "hdf5",
+    feature = "mcap",
+    feature = "parquet",
+    feature = "rosbag2",
+    feature = "tdms"
+))]
 mod decode_pipeline;
 #[cfg(test)]
 mod english;
@@ -82,6 +96,7 @@ pub mod faults;
 mod field_faults;
 mod file_identity;
 mod first_look;
+mod first_values;
 mod format;
 mod format_detection;
 mod formats;
@@ -92,30 +107,41 @@ mod metadata;
 pub mod multi_file;
 mod named_file;
 mod options;
-#[cfg(any(feature = "bag", feature = "hdf5", feature = "mcap", feature = "tdms"))]
+#[cfg(any(
+    feature = "bag",
+    feature = "hdf5",
+    feature = "mcap",
+    feature = "rosbag2",
+    feature = "tdms",
+    feature = "ulog"
+))]
 mod part_selection;
 pub mod pattern;
 mod pauses;
 mod plan;
 mod requested_columns;
 mod row_clock;
+mod selected_rows;
 mod similar_column;
 mod source;
+mod stated_scales;
 mod stream;
 mod system;
+mod time_scale;
 pub mod value_checks;
 
 pub use block::{Block, FieldFault, FieldFaultKind, FileFacts};
 pub use byte_stream::Packing;
 pub use column::Column;
+pub use cycle::{Labels, Sensors};
 pub use error::{IngestError, IngestErrorKind};
 pub use first_look::FirstFields;
-pub use format::{Candidate, Format, OnBlock, Opened, Table};
+pub use format::{BadBlock, Candidate, Format, OnBlock, Opened, Table};
 pub use formats::FORMATS;
 pub use guarded::decoder_is_running;
 pub use in_memory::{MemoryColumn, MemoryValues};
 pub use named_file::{FileFault, open_file, read_file, read_text};
-pub use options::{Encoding, ReadOptions, StampOptions, StampWriting, TextOptions};
+pub use options::{Encoding, ReadOptions, RowMatch, StampOptions, StampWriting, TextOptions};
 pub use pauses::Pauses;
 pub use plan::{Plan, TimeBaseSpec, prepare};
 pub use source::{PartFacts, Source, open, open_with};
@@ -125,5 +151,9 @@ pub use system::io_reason;
 /// Longest piece of the start of a file that is looked at, bytes.
 const HEAD: usize = 256 << 10;
 
+#[cfg(all(test, feature = "all"))]
+mod log_layout_tests;
+#[cfg(all(test, feature = "all"))]
+mod reading_tests;
 #[cfg(all(test, feature = "text"))]
 mod tests;

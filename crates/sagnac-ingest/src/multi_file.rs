@@ -4,7 +4,7 @@ use super::byte_stream::digest;
 use super::error::{IngestError, IngestErrorKind};
 use super::source::{NoNumbers, PartFacts, ReadSeveral, SeveralFiles, Source, open_with};
 use super::{Column, FileFacts, OnBlock, Opened, ReadOptions};
-use crate::column_inference::{infer, stem};
+use crate::column_inference::stem;
 use sagnac_core::message::{Note, note};
 use sagnac_core::units::Affine;
 use sagnac_core::units::Unit;
@@ -84,6 +84,8 @@ pub fn open(
     }
     let stated = parts.first().and_then(|p| p.source.stated_sample_rate_hz());
     let described = Opened {
+        labels: Vec::new(),
+        bad_blocks: Vec::new(),
         columns,
         rows_estimate: rows,
         cut_off: parts.iter().flat_map(|p| p.source.cut_off()).cloned().collect(),
@@ -92,13 +94,14 @@ pub fn open(
         stated_sample_rate_hz: stated,
         table: super::in_memory::nothing().table,
     };
+    let sensors = parts.iter().find_map(|p| p.source.sensors()).cloned();
     let files = specs.iter().map(|s| (s.path.clone(), s.phase.clone())).collect();
     let bytes = parts.iter().map(|p| p.source.bytes()).sum();
     let Some((format, packing)) = parts.first().map(|p| (p.source.format(), p.source.packing())) else {
         return Err(none());
     };
     let several = SeveralFiles { files, contiguous, reader: Box::new(Parts(parts)) };
-    Ok(Source::of_several(name, format, packing, bytes, several, described))
+    Ok(Source::of_several(name, format, packing, bytes, several, (described, sensors)))
 }
 
 /// Finds the columns of the first file in another one: by name, or by the name without its unit.
@@ -127,8 +130,7 @@ fn match_columns(
             *t = true;
         }
         let conversion = conversion(column, other).ok_or_else(|| {
-            let units =
-                |c: &Column| c.unit.clone().unwrap_or_else(|| infer(&c.name, None).unit.text().into());
+            let units = |c: &Column| c.unit.clone().unwrap_or_else(|| c.inferred().unit.text().into());
             let note = note!(
                 "ingest.joined.units",
                 column = other.name.as_str(),
@@ -149,7 +151,7 @@ fn match_columns(
 /// The conversion from the numbers of one column to those of another; `None` where their units do not convert.
 fn conversion(to: &Column, from: &Column) -> Option<Affine> {
     let named = |c: &Column| {
-        let g = infer(&c.name, c.unit.as_deref());
+        let g = c.inferred();
         g.unit_is_named.then_some(g.unit)
     };
     let declared = |c: &Column| c.unit.as_deref().and_then(|u| Unit::parse(u).ok());

@@ -14,6 +14,32 @@ pub struct ReadOptions {
     pub part: Option<String>,
     /// Layout of the records of a raw binary file (TOML).
     pub layout: Option<LayoutFile>,
+    /// Unit of time stamps, in place of what the file says or what is found from their size.
+    pub time_unit: Option<String>,
+    /// Which rows are read, where the rows of several sensors take turns.
+    pub only: Option<RowMatch>,
+    /// First and last row that are read, counted from 1 among those that match.
+    pub rows: Option<(u64, u64)>,
+}
+
+/// The rows in which a column has a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct RowMatch {
+    /// The column.
+    pub column: ColumnRef,
+    /// The value as it is written.
+    pub value: String,
+}
+
+impl RowMatch {
+    /// Reads `COLUMN=VALUE`.
+    pub fn parse(text: &str) -> Option<RowMatch> {
+        let (column, value) = text.rsplit_once('=')?;
+        let (column, value) = (column.trim(), value.trim());
+        let column = column.parse().map_or_else(|_| ColumnRef::Name(column.to_owned()), ColumnRef::Position);
+        (column != ColumnRef::Name(String::new()) && !value.is_empty())
+            .then(|| RowMatch { column, value: value.to_owned() })
+    }
 }
 
 /// How a text file is written.

@@ -70,6 +70,10 @@ pub fn prepare<'a>(
     channels: &'a [Channel],
     spec: TimeBaseSpec,
 ) -> Result<Plan<'a>, IngestError> {
+    if let Some(sensors) = source.sensors() {
+        let error = IngestError::new(IngestErrorKind::Column, source.path(), sensors.note());
+        return Err(error.hint(sensors.hint()));
+    }
     let wanted = channels.iter().map(|c| source.resolve(&c.column)).collect::<Result<Vec<_>, _>>()?;
     let conversions = channels.iter().map(|c| conversion(source.path(), c)).collect::<Result<Vec<_>, _>>()?;
     let no_clock = |e: ClockError, hint: &'static str| {
@@ -95,7 +99,7 @@ pub fn prepare<'a>(
                 Some(interval_s) => Clock::declared(1.0 / interval_s),
                 None => Clock::probe_with(&stamps, spec.declared_sample_rate_hz),
             };
-            (clock.map_err(|e| no_clock(e, hint(&e)))?, start_s)
+            (clock.and_then(plausible).map_err(|e| no_clock(e, hint(&e)))?, start_s)
         }
         None => {
             let rate = source.rate_without_stamps_hz(spec.declared_sample_rate_hz).ok_or_else(|| {
@@ -135,6 +139,15 @@ pub fn prepare<'a>(
     };
     plan.rates_from_angles(1.0, increment_s);
     Ok(plan)
+}
+
+/// Rates at which gyros are sampled and their outputs averaged, Hz: beyond them the unit of the stamps is another.
+const SAMPLED_HZ: std::ops::RangeInclusive<f64> = 1e-4..=5e5;
+
+/// A clock found from stamps, unless no gyro is sampled so.
+fn plausible(clock: Clock) -> Result<Clock, ClockError> {
+    let rate_hz = 1.0 / clock.interval_s;
+    if SAMPLED_HZ.contains(&rate_hz) { Ok(clock) } else { Err(ClockError::Absurd { rate_hz }) }
 }
 
 /// Stamps and counts of the first rows of a recording.
@@ -214,6 +227,7 @@ fn batches(
 fn hint(error: &ClockError) -> &'static str {
     match error {
         ClockError::Batches { .. } | ClockError::Coarse { .. } => "ingest.hint.declare_batches",
+        ClockError::Absurd { .. } => "ingest.hint.time_unit",
         _ => "ingest.hint.check_time",
     }
 }
@@ -270,6 +284,11 @@ fn clock_note(error: &ClockError) -> Note {
         ClockError::Batches { rate_hz } => {
             note!("ingest.clock_batches", hz = (rate_hz * 1e4).round() / 1e4)
         }
+        ClockError::Absurd { rate_hz } => note!(
+            "ingest.clock_absurd",
+            hz = Arg::figures(*rate_hz, 3),
+            interval_s = Arg::figures(1.0 / rate_hz, 3)
+        ),
         ClockError::Rate { rate_hz } => note!("ingest.clock_rate", rate = rate_hz.to_string()),
     }
 }

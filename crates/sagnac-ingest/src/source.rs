@@ -3,16 +3,18 @@
 use super::byte_stream::{self, ByteStream, Packing, io_error};
 use super::error::{IngestError, IngestErrorKind};
 use super::file_identity::FileIdentity;
+use super::first_values::{Settled, settle};
 use super::format_detection::format_of;
 use super::guarded::guarded;
 use super::in_memory::MemoryColumn;
-use super::metadata::serial_numbers;
+use super::metadata::{serial_numbers, stated_start};
 use super::named_file::open_file;
 use super::requested_columns::{NumericCheck, not_numeric, repeat_columns, restore_columns};
 use super::similar_column::similar;
-use super::{Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, in_memory};
+use super::{BadBlock, Candidate, Column, FileFacts, HEAD, OnBlock, Opened, ReadOptions, Sensors, in_memory};
 use sagnac_core::message::{Note, note};
 use sagnac_core::recording::{ColumnRef, Role};
+use sagnac_core::units::Unit;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
@@ -29,6 +31,10 @@ pub struct Source {
     /// Of a file; columns in memory have none.
     identity: Option<FileIdentity>,
     opened: Opened,
+    /// Several sensors whose rows take turns, where none was chosen.
+    sensors: Option<Sensors>,
+    /// Unit of time stamps as the user states it.
+    time_unit: Option<Unit>,
     /// Of a recording of several files.
     several: Option<SeveralFiles>,
 }
@@ -123,7 +129,11 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
     };
     let format = format_of(&candidate)?;
     let opened = guarded(path, || format.open(&candidate))?;
+    let Settled { opened, sensors } = settle(path, opened, options)?;
+    let time_unit = options.time_unit.as_deref().and_then(|u| Unit::parse(u).ok());
     Ok(Source {
+        sensors,
+        time_unit,
         path: path.to_owned(),
         format: format.id(),
         packing,
@@ -156,7 +166,17 @@ impl Source {
     }
 
     fn alone(path: PathBuf, format: &'static str, opened: Opened) -> Source {
-        Source { path, format, packing: Packing::Plain, bytes: 0, identity: None, opened, several: None }
+        Source {
+            path,
+            format,
+            packing: Packing::Plain,
+            bytes: 0,
+            identity: None,
+            opened,
+            sensors: None,
+            time_unit: None,
+            several: None,
+        }
     }
 
     /// A recording of several files under a name. Format and packing are those of its first file.
@@ -166,7 +186,7 @@ impl Source {
         packing: Packing,
         bytes: u64,
         several: SeveralFiles,
-        described: Opened,
+        (described, sensors): (Opened, Option<Sensors>),
     ) -> Source {
         Source {
             path: name.to_owned(),
@@ -175,6 +195,8 @@ impl Source {
             bytes,
             identity: None,
             opened: described,
+            sensors,
+            time_unit: None,
             several: Some(several),
         }
     }
@@ -248,6 +270,21 @@ impl Source {
         serial_numbers(self.metadata())
     }
 
+    /// Several sensors whose rows take turns, where none was chosen.
+    pub fn sensors(&self) -> Option<&Sensors> {
+        self.sensors.as_ref()
+    }
+
+    /// Unit of time stamps as the user states it.
+    pub fn time_unit(&self) -> Option<&Unit> {
+        self.time_unit.as_ref()
+    }
+
+    /// Rows that are none of the recording and are left out.
+    pub fn bad_blocks(&self) -> &[BadBlock] {
+        &self.opened.bad_blocks
+    }
+
     /// Position of the column that tells the time, from 0: the first that goes on, else the first that starts again,
     /// such as clock time.
     pub fn time_column(&self) -> Option<usize> {
@@ -255,6 +292,11 @@ impl Source {
             self.columns().iter().position(|c| c.numeric && wanted(c) && c.inferred().role == Role::Time)
         };
         first(|c| c.rollover_s.is_none()).or_else(|| first(|_| true))
+    }
+
+    /// When the recording began, RFC 3339, as the file states it.
+    pub fn stated_start(&self) -> Option<String> {
+        stated_start(self.metadata())
     }
 
     /// Sample rate that the file states, Hz.

@@ -158,6 +158,10 @@ impl RowClock<'_> {
             // The end is missing: the place is the last row there is.
             self.log.push("cut_off", None, None, facts.rows, 1, || note.clone());
         }
+        for block in plan.source.bad_blocks() {
+            integrity.implausible += block.rows;
+            self.log.push("implausible", None, None, block.first_row, block.rows, || block.note.clone());
+        }
         integrity.examined = examined(plan, &values, facts.rows);
         integrity.faults = std::mem::take(&mut self.log).into_list();
         let files = self.files(&facts, parts, measured);
@@ -192,7 +196,7 @@ impl RowClock<'_> {
             first_stamp_s: first,
             last_stamp_s: last,
             duration_s: last - first + measured,
-            start: plan.absolute_start(first),
+            start: plan.absolute_start(first).or_else(|| plan.source.stated_start()),
             clock,
             notes,
             pauses_end_s: std::mem::take(&mut self.pauses.ends_s),

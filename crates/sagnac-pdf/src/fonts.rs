@@ -6,9 +6,9 @@ use typst::text::{Font, FontBook};
 use typst::utils::LazyHash;
 
 /// Families in the order in which a letter is looked for.
-pub const FAMILIES: [&str; 3] = ["Noto Sans", "Noto Sans Math", "Noto Sans Symbols2"];
+pub const FONT_FAMILIES: [&str; 3] = ["Noto Sans", "Noto Sans Math", "Noto Sans Symbols2"];
 
-static FILES: [&[u8]; 6] = [
+static FONT_FILES: [&[u8]; 6] = [
     include_bytes!("../fonts/NotoSans-Regular.ttf"),
     include_bytes!("../fonts/NotoSans-Bold.ttf"),
     include_bytes!("../fonts/NotoSans-Italic.ttf"),
@@ -18,12 +18,12 @@ static FILES: [&[u8]; 6] = [
 ];
 
 /// The fonts.
-pub static FONTS: LazyLock<Vec<Font>> =
-    LazyLock::new(|| FILES.iter().flat_map(|file| Font::iter(Bytes::new(*file))).collect());
+pub static SHIPPED_FONTS: LazyLock<Vec<Font>> =
+    LazyLock::new(|| FONT_FILES.iter().flat_map(|file| Font::iter(Bytes::new(*file))).collect());
 
 /// Their names and what each can show.
-pub static BOOK: LazyLock<LazyHash<FontBook>> =
-    LazyLock::new(|| LazyHash::new(FontBook::from_fonts(FONTS.iter())));
+pub static FONT_BOOK: LazyLock<LazyHash<FontBook>> =
+    LazyLock::new(|| LazyHash::new(FontBook::from_fonts(SHIPPED_FONTS.iter())));
 
 /// The text with every character that no font shows in its place written as its number, such as `[U+4E2D]`: an archived
 /// document must not have signs that nobody can read. Controls are left out.
@@ -33,7 +33,7 @@ pub fn shown(text: &str) -> String {
         match c {
             '\n' | '\t' => out.push(' '),
             c if c.is_control() => {}
-            c if FONTS.iter().any(|f| f.info().coverage.contains(u32::from(c))) => out.push(c),
+            c if SHIPPED_FONTS.iter().any(|f| f.info().coverage.contains(u32::from(c))) => out.push(c),
             c => out.push_str(&format!("[U+{:04X}]", u32::from(c))),
         }
     }
@@ -58,8 +58,8 @@ mod tests {
 
     #[test]
     fn every_family_is_there() {
-        for family in FAMILIES {
-            assert!(BOOK.contains_family(&family.to_lowercase()), "{family}");
+        for family in FONT_FAMILIES {
+            assert!(FONT_BOOK.contains_family(&family.to_lowercase()), "{family}");
         }
     }
 }

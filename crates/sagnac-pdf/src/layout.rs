@@ -1,21 +1,21 @@
 //! The look of a page, and the whole document in the typesetter's language.
 
-use crate::fonts::FAMILIES;
+use crate::fonts::FONT_FAMILIES;
 use crate::markup::{body, string, title};
 use crate::{Paper, Relation};
 
 /// Name of the document among its files.
-pub const MAIN: &str = "main.typ";
+pub const MAIN_FILE: &str = "main.typ";
 
-const LOOK: &str = include_str!("look.typ");
+const LOOK_SOURCE: &str = include_str!("look.typ");
 
 /// The document.
 pub fn document(paper: &Paper<'_>) -> String {
-    let families: Vec<String> = FAMILIES.iter().map(|f| string(f)).collect();
+    let families: Vec<String> = FONT_FAMILIES.iter().map(|f| string(f)).collect();
     let title = title(paper.markdown);
     let (before, between, after) = numbering(paper.page_number);
     let date = paper.made_at;
-    let mut out = LOOK.to_owned();
+    let mut out = LOOK_SOURCE.to_owned();
     out.push_str(&format!(
         "#show: page-of.with(title: {}, lang: {}, families: ({}), left: {}, right: {}, foot: {}, number: ({}, {}, {}), \
          date: datetime(year: {}, month: {}, day: {}, hour: {}, minute: {}, second: {}))\n",

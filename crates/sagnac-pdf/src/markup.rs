@@ -40,7 +40,7 @@ pub fn body(paper: &Paper<'_>) -> String {
     let mut body = Body { paper, out: String::new(), nested: vec![] };
     for event in Parser::new_ext(paper.markdown, Options::ENABLE_TABLES) {
         let ends_summary =
-            matches!(&event, Event::Html(text) if text.trim() == PAGE || text.trim() == SUMMARY);
+            matches!(&event, Event::Html(text) if text.trim() == PAGE_MARK || text.trim() == SUMMARY_MARK);
         if ends_summary && paper.pages == Pages::Summary {
             break;
         }
@@ -50,16 +50,16 @@ pub fn body(paper: &Paper<'_>) -> String {
 }
 
 /// A new page begins here, and the summary ends.
-const PAGE: &str = "<!-- page -->";
+const PAGE_MARK: &str = "<!-- page -->";
 /// The summary ends here.
-const SUMMARY: &str = "<!-- summary -->";
+const SUMMARY_MARK: &str = "<!-- summary -->";
 
 /// Signs of a word that has no place to break, above which places are made.
 const LONGEST_WORD: usize = 40;
 
 /// Signs on a line of a table, and of a cell that is kept on one line.
 const PAGE_WIDTH: usize = 100;
-const SHORT: usize = 20;
+const SHORT_COLUMN_CHARS: usize = 20;
 
 /// Text collected before it can be written.
 enum Nested {
@@ -98,7 +98,7 @@ impl Body<'_> {
             Event::Text(text) | Event::Code(text) => self.text(&text),
             Event::SoftBreak => self.put(" "),
             Event::HardBreak => self.put("#linebreak()"),
-            Event::Html(text) if text.trim() == PAGE => self.put("\n#pagebreak(weak: true)\n"),
+            Event::Html(text) if text.trim() == PAGE_MARK => self.put("\n#pagebreak(weak: true)\n"),
             // The pages have none; what a template of the user's has of it is no text.
             _ => {}
         }
@@ -280,7 +280,7 @@ impl Table {
         }
         // Short columns keep their width; the others share what is left by what a usual cell needs, and no word is too wide.
         let share = |(i, longest): (usize, &usize)| {
-            if *longest <= SHORT {
+            if *longest <= SHORT_COLUMN_CHARS {
                 return "auto".to_owned();
             }
             let words = self.texts.iter().skip(i).step_by(columns).flat_map(|t| t.split(' '));

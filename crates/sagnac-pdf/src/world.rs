@@ -1,6 +1,6 @@
 //! What the typesetter sees: the document, its drawings and the fonts, all in memory.
 
-use crate::fonts::{BOOK, FONTS};
+use crate::fonts::{FONT_BOOK, SHIPPED_FONTS};
 use crate::{Paper, layout};
 use std::collections::HashMap;
 use typst::diag::{FileError, FileResult};
@@ -24,7 +24,7 @@ impl InMemory {
         let all = drawings.chain(paper.attachments.iter().map(|a| (a.name, a.bytes)));
         // A name that is no path of this world is not found when the document asks for it.
         let files = all.filter_map(|(name, bytes)| Some((id(name)?, Bytes::new(bytes.to_vec())))).collect();
-        let main = match id(layout::MAIN) {
+        let main = match id(layout::MAIN_FILE) {
             Some(id) => Source::new(id, layout::document(paper)),
             None => Source::detached(layout::document(paper)),
         };
@@ -42,7 +42,7 @@ impl World for InMemory {
     }
 
     fn book(&self) -> &LazyHash<FontBook> {
-        &BOOK
+        &FONT_BOOK
     }
 
     fn main(&self) -> FileId {
@@ -58,7 +58,7 @@ impl World for InMemory {
     }
 
     fn font(&self, index: usize) -> Option<Font> {
-        FONTS.get(index).cloned()
+        SHIPPED_FONTS.get(index).cloned()
     }
 
     /// No document depends on the day on which it is typeset.

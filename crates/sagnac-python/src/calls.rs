@@ -205,7 +205,16 @@ fn analyze(
 ) -> PyResult<Results> {
     let recording = recording(source, sample_rate_hz)?;
     let Columns { rate, angle, unit, counter, time, warm_up_s } = columns;
-    let columns = ColumnChoice { rate, angle, unit, counter, time, sample_rate_hz, warm_up_s };
+    let columns = ColumnChoice {
+        rate,
+        angle,
+        unit,
+        counter,
+        time,
+        sample_rate_hz,
+        warm_up_s,
+        ..ColumnChoice::default()
+    };
     let analysis = Analysis { columns, taus: Some(taus.grid(py)?), exact, evaluated_at: None };
     watched(py, progress, move |teller: &mut Teller| {
         let result =

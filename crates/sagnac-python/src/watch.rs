@@ -12,7 +12,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// How often signals are looked at.
-const LOOK: Duration = Duration::from_millis(100);
+const SIGNAL_POLL_INTERVAL: Duration = Duration::from_millis(100);
 
 /// Shortest time between two calls of the user's function.
 const BETWEEN_CALLS: Duration = Duration::from_millis(50);
@@ -67,7 +67,7 @@ pub fn watched<T: Send + 'static>(
     let mut from = from;
     loop {
         let told;
-        (told, from) = py.detach(move || (from.recv_timeout(LOOK), from));
+        (told, from) = py.detach(move || (from.recv_timeout(SIGNAL_POLL_INTERVAL), from));
         let stop = |e: PyErr| {
             interrupted.store(true, Ordering::Relaxed);
             e

@@ -71,7 +71,7 @@ pub fn table(input: &DeriveInput) -> Result<TokenStream> {
         }
 
         impl crate::config::table::KeyValue for #ident {
-            const KIND: crate::config::spec::Kind =
+            const VALUE_KIND: crate::config::spec::Kind =
                 crate::config::spec::Kind::Table(<#ident as crate::config::table::Table>::SPEC);
 
             fn of(entry: &crate::config::section::Entry) -> Option<Self> {
@@ -214,7 +214,7 @@ fn kind(ty: &Type, attribute: &KeyAttribute) -> Result<TokenStream> {
         KindAttribute::ByType if attribute.range.is_stated() => {
             return Err(Error::new_spanned(ty, "a range is of a number"));
         }
-        KindAttribute::ByType => return Ok(quote!(<#ty as crate::config::table::KeyValue>::KIND)),
+        KindAttribute::ByType => return Ok(quote!(<#ty as crate::config::table::KeyValue>::VALUE_KIND)),
     };
     Ok(quote!(crate::config::spec::Kind::#kind))
 }

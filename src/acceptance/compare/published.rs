@@ -18,7 +18,7 @@ impl Printed {
         Some(Printed { value, half: 0.5 * 10f64.powi(-(decimals as i32)) })
     }
 
-    /// What was rounded to these digits.
+    /// Values that round to these digits.
     pub fn range(self) -> Range {
         Range { low: self.value - self.half, high: self.value + self.half }
     }

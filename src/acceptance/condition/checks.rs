@@ -1,7 +1,7 @@
 //! Which checks were made. A check notes it itself where it runs; what a kind of test could check and nothing noted is
 //! listed as not made.
 //!
-//! One more check: one line in [`CHECKS`], its name `check_name.<id>` in the tables, the kinds of test that could make it
+//! One more check: one line in [`ALL_CHECKS`], its name `check_name.<id>` in the tables, the kinds of test that could make it
 //! (`checks` of each, or [`OF_EVERY_TEST`]), and a call of [`CheckLog::made`] or [`CheckLog::not_made`] where it runs.
 
 use crate::i18n::{Note, note};
@@ -9,7 +9,7 @@ use crate::record::{CheckRecord, CheckStatus};
 use std::sync::Mutex;
 
 /// Every check, in the order of the report.
-pub const CHECKS: &[&str] = &[
+pub const ALL_CHECKS: &[&str] = &[
     "earth_rate",
     "earth_sign",
     "earth_in_positions",
@@ -69,7 +69,7 @@ impl CheckLog {
         }
     }
 
-    /// Every check of a kind of test in the order of [`CHECKS`]: as noted, or not made. What was made once on a channel
+    /// Every check of a kind of test in the order of [`ALL_CHECKS`]: as noted, or not made. What was made once on a channel
     /// was made. `own` are the checks that the kind of test adds to those of every test.
     pub fn records(&self, own: &[&str]) -> Vec<CheckRecord> {
         let told = self.0.lock().map(|list| list.clone()).unwrap_or_default();
@@ -102,7 +102,7 @@ pub fn none_made(own: &[&str]) -> Vec<CheckRecord> {
 }
 
 fn possible(own: &[&str]) -> impl Iterator<Item = &'static str> {
-    CHECKS.iter().copied().filter(move |id| OF_EVERY_TEST.contains(id) || own.contains(id))
+    ALL_CHECKS.iter().copied().filter(move |id| OF_EVERY_TEST.contains(id) || own.contains(id))
 }
 
 fn unmade(id: &str, reason: Note) -> CheckRecord {
@@ -138,7 +138,7 @@ mod tests {
 
     #[test]
     fn every_check_has_a_name() {
-        for id in CHECKS {
+        for id in ALL_CHECKS {
             for lang in [Lang::En, Lang::Ru] {
                 assert!(lookup(lang, &format!("check_name.{id}")).is_some(), "{id}");
             }

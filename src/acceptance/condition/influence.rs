@@ -83,7 +83,7 @@ pub enum Acted {
 
 impl Acted {
     /// Standard deviations from which a louder output counts as seen.
-    pub const SEEN: f64 = 3.0;
+    pub const MIN_SIGNIFICANCE: f64 = 3.0;
 
     /// How the levels are known.
     pub fn evidence(self) -> Evidence {

@@ -1,5 +1,5 @@
 //! Conditions of a test, judged from the recording. One file a condition; adding one is one file and one line in
-//! [`CONDITIONS`].
+//! [`ALL_CONDITIONS`].
 //!
 //! A condition is met only when it is shown to be met, the sensor's uncertainty included. One that is not makes the
 //! whole indeterminate: a test that was not done right neither passes nor fails a unit.
@@ -35,7 +35,7 @@ pub use facts::{BiasStep, ColumnFact, Condition, Facts, GyroFact, NoiseChange, W
 use crate::record::ConditionRecord;
 
 /// Every condition, in the order of the report.
-pub static CONDITIONS: &[&dyn Condition] = &[
+pub static ALL_CONDITIONS: &[&dyn Condition] = &[
     &unit_named::UnitNamed,
     &units::Units,
     &clock::Clock,
@@ -56,5 +56,5 @@ pub static CONDITIONS: &[&dyn Condition] = &[
 
 /// Judges every condition that the procedure asks for.
 pub fn judge_all(facts: &Facts<'_>) -> Vec<ConditionRecord> {
-    CONDITIONS.iter().flat_map(|c| c.judge(facts)).collect()
+    ALL_CONDITIONS.iter().flat_map(|c| c.judge(facts)).collect()
 }

@@ -1,4 +1,4 @@
-//! What is plausible for a unit of its family: the bias that it may have against the Earth rate, and the noise that it
+//! Plausibility of a unit of its family: the bias that it may have against the Earth rate, and the noise that it
 //! may have against the typical one. Both tell a wrong unit or sign from a bad unit.
 
 use super::facts::{Facts, GyroFact};

@@ -1,4 +1,4 @@
-//! What a test in positions and by turns of known angles must have been: every stated stretch found, and the Earth's
+//! Conditions of a test in positions and by turns of known angles: every stated stretch found, and the Earth's
 //! rotation seen as it is. A wrong sign, unit, axis or latitude is named.
 
 use super::facts::record;

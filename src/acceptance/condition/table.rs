@@ -1,4 +1,4 @@
-//! What a test on a rate table must have been: steps found, the rates reached, the angle in agreement, and an output that
+//! Conditions of a test on a rate table: steps found, the rates reached, the angle in agreement, and an output that
 //! follows the table. A mistake of sign, unit or axis is named.
 
 use super::checks::CheckLog;
@@ -68,7 +68,7 @@ pub struct ChannelFact {
     pub factor: Option<f64>,
     /// Standard uncertainty of it.
     pub standard: f64,
-    /// What the line leaves at rest once the Earth rate along the axis is taken out, deg/h, and that Earth rate, where the
+    /// Bias left by the line at rest once the Earth rate along the axis is taken out, deg/h, and that Earth rate, where the
     /// site tells it.
     pub bias_and_earth: Option<(f64, f64)>,
     /// Largest bias that the limits allow, deg/h.

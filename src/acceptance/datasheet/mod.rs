@@ -64,7 +64,7 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
     }
 }
 
-/// What the results tell of the conditions: temperature, how much was evaluated, what of the start was left out, sample rate.
+/// Conditions that the results tell of: temperature, how much was evaluated, what of the start was left out, sample rate.
 fn conditions(units: &[TestedUnit]) -> Vec<SheetCondition> {
     let windows = || units.iter().map(|u| Some(&u.result.window).filter(|w| **w != Window::default()));
     // The values of each unit that tells any.

@@ -1,4 +1,4 @@
-//! What the lot says of limits: what more units would promise, how the present limit compares, and what is risked by it.
+//! Outlook of a lot on limits: what more units would promise, how the present limit compares, and what is risked by it.
 
 use crate::lot::population::{Population, Side};
 use crate::lot::risk::Judged;

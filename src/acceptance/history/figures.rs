@@ -4,7 +4,7 @@ use crate::figure::{Axis, Figure, Layer, Panel, Scale, Style};
 use crate::record::{HistoryChart, HistoryControl, HistoryMonth, HistoryRecord};
 
 /// Id of the figure of verdicts by month.
-pub const MONTHS: &str = "months";
+pub const MONTHS_FIGURE: &str = "months";
 
 /// Every figure: verdicts by month, then the charts.
 pub fn all(history: &HistoryRecord) -> Vec<Figure> {
@@ -26,7 +26,7 @@ fn months(months: &[HistoryMonth]) -> Figure {
         months.iter().enumerate().map(|(i, m)| (i as f64 + 0.6, i as f64 + 1.4, of(m) as f64)).collect()
     };
     Figure {
-        id: MONTHS.to_owned(),
+        id: MONTHS_FIGURE.to_owned(),
         title: "history.figure.months".into(),
         channel: String::new(),
         panels: vec![Panel {

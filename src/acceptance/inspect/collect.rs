@@ -2,12 +2,13 @@
 
 use super::columns::{self, Content, Listed};
 use super::tracks::{Angle, HeldLevels, LevelFinder, LinearFit, runs};
+use crate::acceptance::column_choice::{ColumnChoice, unusable};
 use crate::acceptance::condition::stability_track::{StabilityFacts, StabilityTrack};
 use crate::acceptance::reading::tidy;
 use crate::criticism;
 use crate::estimate::Objection;
 use crate::i18n::{Arg, Note, note};
-use crate::ingest::{IngestError, IngestErrorKind, Plan, Source, StreamReport, TimeBaseSpec, prepare};
+use crate::ingest::{IngestError, Plan, Source, StreamReport, TimeBaseSpec, prepare};
 use crate::measurand::GyroEvidence;
 use crate::measurand::evidence::Course;
 use crate::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
@@ -102,12 +103,13 @@ pub(super) struct Inspection {
 
 pub(super) fn collect(
     source: &Source,
-    sample_rate_hz: Option<f64>,
+    choice: &ColumnChoice,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<Inspection, IngestError> {
-    let listed = columns::list(source)?;
-    let sample_rate_hz = source.rate_without_stamps_hz(sample_rate_hz);
-    let time = time_base(source, &listed, sample_rate_hz)?;
+    let mut listed = columns::list(source)?;
+    columns::choose(&mut listed, choice, source)?;
+    let sample_rate_hz = source.rate_without_stamps_hz(choice.sample_rate_hz);
+    let time = time_base(source, &listed, sample_rate_hz);
     let (channels, places) = columns::channels(&listed, time.is_known());
     let plan = prepare(source, &channels, spec(&time))?;
     let mut pass = Pass::new(&channels, &plan, time.is_known());
@@ -135,11 +137,7 @@ pub(super) fn collect(
 }
 
 /// Finds out whether the time column serves; where it does not, the declared rate or the count of the rows does.
-fn time_base(
-    source: &Source,
-    listed: &[Listed],
-    sample_rate_hz: Option<f64>,
-) -> Result<TimeBase, IngestError> {
+fn time_base(source: &Source, listed: &[Listed], sample_rate_hz: Option<f64>) -> TimeBase {
     let (channels, _) = columns::channels(listed, true);
     let without = |why: Option<Note>| {
         sample_rate_hz.map_or(TimeBase::Rows(why.clone()), |hz| TimeBase::Declared(hz, why))
@@ -150,14 +148,11 @@ fn time_base(
             _ => None,
         });
         let base = without(text);
-        return Ok(base);
+        return base;
     };
-    match prepare(source, std::slice::from_ref(time), TimeBaseSpec::default()) {
-        Ok(_) => Ok(TimeBase::Stamps(time.id.clone())),
-        Err(e) if e.kind() == IngestErrorKind::TimeBase => {
-            Ok(without(Some(why(&time.id, e.message().clone()))))
-        }
-        Err(e) => Err(e),
+    match unusable(source, time) {
+        Some(reason) => without(Some(why(&time.id, reason))),
+        None => TimeBase::Stamps(time.id.clone()),
     }
 }
 

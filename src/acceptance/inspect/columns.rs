@@ -1,5 +1,7 @@
 //! The columns of a file: which hold numbers, and what each is taken for.
 
+use crate::acceptance::column_choice::ColumnChoice;
+use crate::i18n::{Note, note};
 use crate::ingest::{FirstFields, IngestError, IngestErrorKind, Source};
 use crate::recording::column_inference::InferredColumn;
 use crate::recording::{Channel, ColumnRef, Role};
@@ -29,11 +31,84 @@ pub(super) struct Listed {
 impl Listed {
     /// True when the name speaks of a gyro but the numbers are counts, whose size is not known.
     pub fn counts_of_a_gyro(&self) -> bool {
-        let counts = Unit::parse("count").is_ok_and(|c| c.same_dimension(&self.guess.unit));
-        let name = self.name.to_lowercase();
-        let words = ["gyro", "fog", "rlg", "rate", "omega"];
-        self.content == Content::Numbers && counts && words.iter().any(|w| name.contains(w))
+        self.content == Content::Numbers && self.guess.counts_of_a_gyro(&self.name)
     }
+}
+
+/// Puts what the user chose in the place of what was found.
+///
+/// # Errors
+/// A column that is not there, a unit that is none.
+pub(super) fn choose(
+    listed: &mut [Listed],
+    choice: &ColumnChoice,
+    source: &Source,
+) -> Result<(), IngestError> {
+    let wrong = |note: Note| IngestError::new(IngestErrorKind::Column, source.path(), note);
+    let unit = choice
+        .unit
+        .as_deref()
+        .map(Unit::parse)
+        .transpose()
+        .map_err(|e| wrong(note!("cli.of_option", option = "--unit", what = e.note())))?;
+    let place = |name: &str| {
+        source.resolve(&name.parse().map_or_else(|_| ColumnRef::Name(name.to_owned()), ColumnRef::Position))
+    };
+    let gyros = [
+        (&choice.rate, None),
+        (&choice.angle, Some(Role::AccumulatedAngle)),
+        (&choice.increment, Some(Role::AngleIncrement)),
+    ];
+    let named = gyros.iter().any(|(names, _)| !names.is_empty());
+    if named {
+        // What is not named is no gyro output.
+        let others = listed.iter_mut().filter(|c| c.guess.role.is_gyro());
+        others.for_each(|c| c.guess.role = Role::Auxiliary);
+    }
+    let mut chosen: Vec<(usize, Option<Role>)> = Vec::new();
+    for (names, role) in gyros {
+        for name in names {
+            chosen.push((place(name)?, role));
+        }
+    }
+    if !named && (unit.is_some() || choice.scale.is_some()) {
+        let gyro = |c: &Listed| c.guess.role.is_gyro() || (choice.scale.is_some() && c.counts_of_a_gyro());
+        chosen.extend(listed.iter().enumerate().filter(|(_, c)| gyro(c)).map(|(i, _)| (i, None)));
+    }
+    let angle = |unit: &Unit| Unit::parse("deg").is_ok_and(|a| a.same_dimension(unit));
+    for (index, role) in chosen {
+        let Some(column) = listed.get_mut(index) else { continue };
+        if let Some(unit) = &unit {
+            column.guess.unit = unit.clone();
+            (column.guess.scale, column.guess.unit_is_named) = (1.0, true);
+        }
+        column.guess.scale = choice.scale.unwrap_or(column.guess.scale);
+        let by_unit = if angle(&column.guess.unit) { Role::AngleIncrement } else { Role::Rate };
+        column.guess.role = role.unwrap_or(by_unit);
+    }
+    let mut only = |name: &str, role: Role| -> Result<(), IngestError> {
+        listed.iter_mut().filter(|c| c.guess.role == role).for_each(|c| c.guess.role = Role::Auxiliary);
+        if name != "none"
+            && let Some(column) = listed.get_mut(place(name)?)
+        {
+            column.guess.role = role;
+            if role == Role::Time && !Unit::parse("s").is_ok_and(|s| s.same_dimension(&column.guess.unit)) {
+                column.guess.unit = source
+                    .time_unit()
+                    .cloned()
+                    .or_else(|| Unit::parse("s").ok())
+                    .unwrap_or(column.guess.unit.clone());
+            }
+        }
+        Ok(())
+    };
+    if let Some(name) = &choice.time {
+        only(name, Role::Time)?;
+    }
+    if let Some(name) = &choice.counter {
+        only(name, Role::Counter)?;
+    }
+    Ok(())
 }
 
 /// Looks at every column of a file.
@@ -101,7 +176,7 @@ pub(super) fn channels(listed: &[Listed], timed: bool) -> (Vec<Channel>, Vec<usi
             column: ColumnRef::Position(index + 1),
             role,
             unit: column.guess.unit.clone(),
-            scale: 1.0,
+            scale: column.guess.scale,
         });
         places.push(index);
     }

@@ -8,7 +8,7 @@ const LINE_WIDTH: usize = 96;
 const LABEL_WIDTH: usize = 19;
 
 /// A label that is left blank: the row belongs to the one above.
-pub(super) const CONTINUED: &str = "";
+pub(super) const NO_LABEL: &str = "";
 
 /// The words of a key.
 pub(super) fn word(key: &'static str) -> Arg {

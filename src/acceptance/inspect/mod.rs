@@ -13,6 +13,7 @@ mod show_gyro;
 mod support;
 mod tracks;
 
+use crate::acceptance::column_choice::ColumnChoice;
 use crate::acceptance::request::RunError;
 use crate::i18n::Lang;
 use crate::ingest::Source;
@@ -42,7 +43,20 @@ pub fn inspect_source(
     lang: Lang,
     progress: &mut dyn FnMut(u64, u64),
 ) -> Result<String, RunError> {
-    let found = collect::collect(source, sample_rate_hz, progress)?;
+    inspect_columns(source, &ColumnChoice { sample_rate_hz, ..ColumnChoice::default() }, lang, progress)
+}
+
+/// The same with columns as the user chooses them.
+///
+/// # Errors
+/// As [`inspect`], and columns that are not there.
+pub fn inspect_columns(
+    source: &Source,
+    choice: &ColumnChoice,
+    lang: Lang,
+    progress: &mut dyn FnMut(u64, u64),
+) -> Result<String, RunError> {
+    let found = collect::collect(source, choice, progress)?;
     Ok(show::text(source, &found, lang))
 }
 

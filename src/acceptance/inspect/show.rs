@@ -2,7 +2,7 @@
 
 use super::collect::{Inspection, TimeBase};
 use super::columns::{Content, Listed};
-use super::layout::{CONTINUED, Page, word};
+use super::layout::{NO_LABEL, Page, word};
 use super::quantity::{count, plain, time};
 use super::{show_gyro, support};
 use crate::i18n::{Arg, Lang, Localize, Note, decimal, note};
@@ -47,14 +47,14 @@ fn file(page: &mut Page, source: &Source, found: &Inspection) {
         page.row("SHA-256", found.report.facts.sha256.as_str());
     }
     for (i, note) in source.notes().iter().enumerate() {
-        page.row(if i == 0 { word("inspect.reader") } else { CONTINUED.into() }, note.clone());
+        page.row(if i == 0 { word("inspect.reader") } else { NO_LABEL.into() }, note.clone());
     }
     for (i, (key, value)) in source.metadata().iter().enumerate() {
-        let label = if i == 0 { word("inspect.stated.label") } else { CONTINUED.into() };
+        let label = if i == 0 { word("inspect.stated.label") } else { NO_LABEL.into() };
         page.row(label, format!("{key}: {value}"));
     }
     for serial in source.stated_serials() {
-        page.row(CONTINUED, note!("inspect.stated.serial", serial));
+        page.row(NO_LABEL, note!("inspect.stated.serial", serial));
     }
 }
 
@@ -220,13 +220,13 @@ fn rate_of_stamps(page: &mut Page, found: &Inspection) {
     if let Some(given) = found.declared_hz {
         let off = (given * found.tau0_s - 1.0) * 100.0;
         let note = note!("inspect.rate_given", given = plain(given, 6), off = plain(off, 2));
-        page.row(CONTINUED, note);
+        page.row(NO_LABEL, note);
     }
     if let Some(clock) = &found.report.clock {
         clock_facts(page, clock);
     }
     for note in &found.report.notes {
-        page.row(CONTINUED, note.clone());
+        page.row(NO_LABEL, note.clone());
     }
 }
 
@@ -266,14 +266,14 @@ fn stamps(page: &mut Page, found: &Inspection) {
 fn clock_facts(page: &mut Page, clock: &Measured) {
     let ppm = clock.uncertainty_s / clock.interval_s * 1e6;
     if ppm > 0.001 {
-        page.row(CONTINUED, note!("time_base.uncertainty", ppm = plain(ppm, 2)));
+        page.row(NO_LABEL, note!("time_base.uncertainty", ppm = plain(ppm, 2)));
     }
     if let (Some(drift), Some(sigma)) = (clock.drift, clock.drift_uncertainty)
         && drift.abs() > 4.0 * sigma
         && drift.abs() > 1e-7
     {
         let note = note!("time_base.drift", ppm = plain(drift * 1e6, 2));
-        page.row(CONTINUED, note.with("sigma", plain(sigma * 1e6, 2)));
+        page.row(NO_LABEL, note.with("sigma", plain(sigma * 1e6, 2)));
     }
 }
 
@@ -340,6 +340,6 @@ fn list(page: &mut Page, found: &Inspection, kinds: &[&str]) {
             ),
             None => row.with("place", place).with("what", what),
         };
-        page.row(CONTINUED, row);
+        page.row(NO_LABEL, row);
     }
 }

@@ -1,7 +1,7 @@
 //! The words: what each gyro channel shows, and the temperatures and table channels beside it.
 
 use super::collect::{DrivenChannel, Gyro, Inspection};
-use super::layout::{CONTINUED, Page, word};
+use super::layout::{NO_LABEL, Page, word};
 use super::quantity::{plain, rate, rates, time};
 use crate::i18n::{Arg, Note, note};
 use crate::measurand::ANGLE_RANDOM_WALK;
@@ -52,7 +52,7 @@ fn one(page: &mut Page, found: &Inspection, gyro: &Gyro) {
     let still = !gyro.motion.is_motion();
     page.row(word("inspect.mean"), Note::new(key).with("mean", rate(gyro.digest.mean)));
     if mean_taken_out(gyro) {
-        page.row(CONTINUED, note!("inspect.mean_taken_out"));
+        page.row(NO_LABEL, note!("inspect.mean_taken_out"));
     }
     page.row(word("inspect.motion"), motion(gyro));
     if still {
@@ -262,7 +262,7 @@ pub(super) fn others(page: &mut Page, found: &Inspection) {
             slope = plain(slope, 5),
             unit
         );
-        page.row(CONTINUED, note);
+        page.row(NO_LABEL, note);
     }
 }
 

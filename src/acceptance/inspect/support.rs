@@ -2,7 +2,7 @@
 
 use super::clock_check::{ClockRemark, clock_remark, earth, is_mains};
 use super::collect::{DrivenChannel, Gyro, Inspection, Temperature};
-use super::layout::{CONTINUED, Page, word};
+use super::layout::{NO_LABEL, Page, word};
 use super::quantity::{count, names, plain, rates, time, time_both};
 use super::show_gyro::{contradicted, described, strongest};
 use crate::criticism::temperature::MIN_RANGE_DEG_C;
@@ -108,7 +108,7 @@ fn averaging(page: &mut Page, found: &Inspection) {
     page.row(label, note);
     if stretches.count() > 1 {
         let note = note!("inspect.averaging_broken", n = count(stretches.count()), longest = time(longest_s));
-        page.row(CONTINUED, note);
+        page.row(NO_LABEL, note);
     }
 }
 
@@ -122,11 +122,11 @@ fn flicker(page: &mut Page, found: &Inspection) {
     for gyro in resting(found) {
         if !described(gyro) {
             let note = note!("inspect.flicker_undescribed");
-            page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
+            page.row(std::mem::replace(&mut label, NO_LABEL.into()), of_channel(gyro, note));
             continue;
         }
         if let Some(note) = contradicted(gyro, BIAS_INSTABILITY.id) {
-            page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
+            page.row(std::mem::replace(&mut label, NO_LABEL.into()), of_channel(gyro, note));
             continue;
         }
         let estimate = &gyro.identification.bias_instability;
@@ -145,7 +145,7 @@ fn flicker(page: &mut Page, found: &Inspection) {
             }
             (None, _, _) => note!("inspect.flicker_unknown"),
         };
-        page.row(std::mem::replace(&mut label, CONTINUED.into()), of_channel(gyro, note));
+        page.row(std::mem::replace(&mut label, NO_LABEL.into()), of_channel(gyro, note));
     }
 }
 
@@ -253,7 +253,7 @@ fn clock(page: &mut Page, found: &Inspection) {
         unique.sort_unstable();
         unique.dedup();
         let note = clock_note(remark, found.tau0_s).with("channels", names(unique.into_iter()));
-        page.row(std::mem::replace(&mut label, CONTINUED.into()), note);
+        page.row(std::mem::replace(&mut label, NO_LABEL.into()), note);
     }
 }
 

@@ -1,5 +1,5 @@
 //! The kinds of test, each a file or a folder. A new kind is one file that implements
-//! [`TestKind`](super::test_kind::TestKind) and one line in [`KINDS`].
+//! [`TestKind`](super::test_kind::TestKind) and one line in [`TEST_KINDS`].
 
 pub(super) mod at_rest;
 mod influence;
@@ -18,7 +18,7 @@ use crate::config::procedure::Procedure;
 type Maker = fn(&Procedure) -> Option<Box<dyn Test>>;
 
 /// Every kind of test. A procedure is of the first kind that finds what it needs in it.
-const KINDS: &[Maker] = &[
+const TEST_KINDS: &[Maker] = &[
     kind::<rate_table::RateTable>,
     kind::<positions::InPositions>,
     kind::<repeatability::Repeated>,
@@ -33,7 +33,7 @@ fn kind<K: TestKind + 'static>(procedure: &Procedure) -> Option<Box<dyn Test>> {
 
 /// The test that a procedure describes.
 pub(super) fn of_procedure(procedure: &Procedure) -> Box<dyn Test> {
-    KINDS.iter().find_map(|kind| kind(procedure)).unwrap_or_else(|| Box::new(at_rest::AtRest))
+    TEST_KINDS.iter().find_map(|kind| kind(procedure)).unwrap_or_else(|| Box::new(at_rest::AtRest))
 }
 
 /// The test of a request: an analysis is one at rest.
@@ -44,7 +44,7 @@ pub(super) fn of_request(request: &Request<'_>) -> Box<dyn Test> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::acceptance::condition::checks::{CHECKS, OF_EVERY_TEST};
+    use crate::acceptance::condition::checks::{ALL_CHECKS, OF_EVERY_TEST};
     use std::path::Path;
 
     #[test]
@@ -56,7 +56,7 @@ mod tests {
                 claimed.extend(of_procedure(&procedure.value).checks());
             }
         }
-        assert!(claimed.iter().all(|id| CHECKS.contains(id)), "{claimed:?}");
-        assert!(CHECKS.iter().all(|id| claimed.contains(id)), "{claimed:?}");
+        assert!(claimed.iter().all(|id| ALL_CHECKS.contains(id)), "{claimed:?}");
+        assert!(ALL_CHECKS.iter().all(|id| claimed.contains(id)), "{claimed:?}");
     }
 }

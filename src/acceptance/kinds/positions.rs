@@ -41,8 +41,8 @@ pub struct PositionEvidence {
 impl TestKind for InPositions {
     type Collector = Collector;
     type Evidence = PositionEvidence;
-    const CHECKS: &'static [&'static str] = &["earth_in_positions", "noise_level", "distribution"];
-    const MISSING: &'static str = "unshown.few_positions";
+    const OWN_CHECKS: &'static [&'static str] = &["earth_in_positions", "noise_level", "distribution"];
+    const MISSING_REASON: &'static str = "unshown.few_positions";
 
     fn of(procedure: &Procedure) -> Option<InPositions> {
         let setup = procedure.rate_table.clone().filter(|s| !s.known.is_empty())?;

@@ -34,8 +34,8 @@ pub struct RunEvidence {
 impl TestKind for Repeated {
     type Collector = Collector;
     type Evidence = RunEvidence;
-    const CHECKS: &'static [&'static str] = &["earth_rate", "noise_level", "distribution"];
-    const MISSING: &'static str = "unshown.few_runs";
+    const OWN_CHECKS: &'static [&'static str] = &["earth_rate", "noise_level", "distribution"];
+    const MISSING_REASON: &'static str = "unshown.few_runs";
 
     fn of(procedure: &Procedure) -> Option<Repeated> {
         Some(Repeated { test: procedure.repeatability_test.clone()? })

@@ -1,4 +1,4 @@
-//! What the conditions are judged by for a gyro that rests in stretches of a recording: runs, intervals without an influence,
+//! Facts by which the conditions are judged for a gyro that rests in stretches of a recording: runs, intervals without an influence,
 //! positions. The same checks are made of them as of a gyro that rests all the time, as far as blocks of its output show it.
 
 use crate::acceptance::condition::GyroFact;

@@ -41,8 +41,8 @@ impl Sink for BlockMeans {
 impl TestKind for OverTemperature {
     type Collector = (RateDigests, BlockMeans);
     type Evidence = RestEvidence;
-    const CHECKS: &'static [&'static str] = &["earth_rate", "noise_level", "distribution"];
-    const MISSING: &'static str = "unshown.no_course";
+    const OWN_CHECKS: &'static [&'static str] = &["earth_rate", "noise_level", "distribution"];
+    const MISSING_REASON: &'static str = "unshown.no_course";
 
     fn of(procedure: &Procedure) -> Option<OverTemperature> {
         let test = OverTemperature {

@@ -15,7 +15,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 /// Messages for a layout that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "layout.unreadable", folder: "layout.folder" };
+const READ_MESSAGES: Wording = Wording { unreadable: "layout.unreadable", folder: "layout.folder" };
 
 /// Longest sync word, bytes.
 const MAX_SYNC_BYTES: usize = 16;
@@ -25,7 +25,7 @@ const MAX_SYNC_BYTES: usize = 16;
 /// # Errors
 /// Every problem of the file, each with its place; a file that cannot be read is one problem without a place.
 pub fn load(path: &Path) -> Result<Layout, Problems> {
-    parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?)
+    parse(&path.display().to_string(), &text_file::bytes(path, &READ_MESSAGES)?)
 }
 
 /// Reads a layout from the bytes of a file; `name` stands in diagnostics.

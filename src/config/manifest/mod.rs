@@ -22,7 +22,7 @@ use std::path::{Path, PathBuf};
 use tables::{FileKeys, MANIFEST_FILE, ManifestTables, ReadingKeys, UnitKeys};
 
 /// Messages for a manifest that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
+const READ_MESSAGES: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
 
 /// A manifest.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,6 +79,9 @@ impl Manifest {
             },
             part: own.part.or_else(|| other.part.clone()),
             layout: own.layout.or_else(|| other.layout.clone()),
+            time_unit: own.time_unit.or_else(|| other.time_unit.clone()),
+            only: own.only.or_else(|| other.only.clone()),
+            rows: own.rows.or(other.rows),
         }
     }
 }
@@ -101,7 +104,7 @@ pub fn load(path: &Path) -> Result<Manifest, Problems> {
     parse(
         path,
         &path.display().to_string(),
-        &text_file::bytes(path, &WORDING)?,
+        &text_file::bytes(path, &READ_MESSAGES)?,
         contained_files::folder_of(path),
     )
 }

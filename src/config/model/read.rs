@@ -17,7 +17,7 @@ use sagnac_core::spelling::nearest;
 use std::path::Path;
 
 /// Messages for a claim that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "model_file.unreadable", folder: "model_file.folder" };
+const READ_MESSAGES: Wording = Wording { unreadable: "model_file.unreadable", folder: "model_file.folder" };
 
 /// The parameter that the report of every effect gives, beside those of its forward model.
 const RMS_PARAMETER: &str = "rms_deg_h";
@@ -35,7 +35,7 @@ pub fn load(path: &Path) -> Result<Claim, Problems> {
 /// # Errors
 /// As [`load`].
 pub fn load_model(path: &Path) -> Result<ModelFile, Problems> {
-    parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?)
+    parse(&path.display().to_string(), &text_file::bytes(path, &READ_MESSAGES)?)
 }
 
 /// Reads a claim from the bytes of a file; `name` stands in diagnostics.

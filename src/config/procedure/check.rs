@@ -161,15 +161,12 @@ fn nameless_instruments<'a>(procedures: impl IntoIterator<Item = &'a Loaded<Proc
     (!list.is_empty()).then(|| note!("check.no_serial", names = Arg::Several(list, ", ".into())))
 }
 
-/// What is worth knowing of a phase: what its own files say, and that no verdict can come from them.
+/// Warnings about a phase: what its own files say, and that no verdict can come from them.
 fn of_phase(phase: &Phase) -> Vec<Problem> {
     let mut found = phase.procedure.warnings.clone();
     let effective = effective(&phase.procedure, phase.limits.as_ref());
     found.extend(effective.warnings);
-    let unjudged = effective
-        .set
-        .limits
-        .is_empty()
+    let unjudged = (effective.set.count() == 0)
         .then(|| note!("check.no_limits", procedure = phase.procedure.value.id.as_str()));
     let path = phase.limits.as_ref().map_or(phase.procedure.path.as_str(), |l| l.path.as_str());
     found.extend(effective.idle.or(unjudged).map(|note| Problem::remark_on_file(path, note)));
@@ -183,22 +180,22 @@ fn count(n: usize, one: &'static str, several: &'static str) -> Note {
 
 fn procedure_sentence(p: &Loaded<Procedure>) -> Note {
     let p = &p.value;
-    let key = if p.limits.limits.is_empty() { "check.procedure_no_limits" } else { "check.procedure" };
+    let key = if p.limits.count() == 0 { "check.procedure_no_limits" } else { "check.procedure" };
     Note::new(key)
         .with("id", p.id.as_str())
         .with("revision", p.revision.as_str())
         .with("channels", count(p.channels.len(), "check.one_channel", "check.channels"))
         .with("measurands", count(p.measurands.len(), "check.one_measurand", "check.measurands"))
-        .with("limits", count(p.limits.limits.len(), "check.one_limit", "check.limits"))
+        .with("limits", count(p.limits.count(), "check.one_limit", "check.limits"))
 }
 
 fn limits_sentence(l: &Loaded<LimitsFile>) -> Note {
     let l = &l.value;
-    let key = if l.set.limits.is_empty() { "check.limits_file_no_limits" } else { "check.limits_file" };
+    let key = if l.set.count() == 0 { "check.limits_file_no_limits" } else { "check.limits_file" };
     Note::new(key)
         .with("id", l.id.as_str())
         .with("revision", l.revision.as_str())
-        .with("limits", count(l.set.limits.len(), "check.one_limit", "check.limits"))
+        .with("limits", count(l.set.count(), "check.one_limit", "check.limits"))
         .with("references", count(l.set.references.len(), "check.one_reference", "check.references"))
 }
 

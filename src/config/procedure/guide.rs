@@ -97,6 +97,7 @@ fn value(key: &KeySpec) -> String {
         Kind::Choice(_) => "one of the words listed".to_owned(),
         Kind::Choices(_) => "a list of the words listed".to_owned(),
         Kind::Columns(_) => "a list of names of columns".to_owned(),
+        Kind::Command => "a list of strings: program and arguments".to_owned(),
         Kind::Effects => "a list of ids of effects".to_owned(),
         kind => kind.describe().say(Lang::En),
     };

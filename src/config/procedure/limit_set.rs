@@ -1,5 +1,6 @@
 //! Limits, reference values and typical values as data, in the units of their measurands.
 
+use super::derived_rows::DerivedLimit;
 use super::diagnostics::Span;
 use crate::estimate::Limit;
 use crate::i18n::LocalText;
@@ -11,12 +12,21 @@ use crate::record::ReferenceRecord;
 pub struct LimitSet {
     /// Limits.
     pub limits: Vec<LimitSpec>,
+    /// Limits of quantities by a formula.
+    pub derived: Vec<DerivedLimit>,
     /// Published values, in the order of the file.
     pub references: Vec<Reference>,
     /// Typical values of the family.
     pub expected: Vec<Expected>,
     /// Limits that are written per second or in radians.
     pub fast_units: Vec<FastUnit>,
+}
+
+impl LimitSet {
+    /// Number of limits, of measurands and of formulas.
+    pub fn count(&self) -> usize {
+        self.limits.len() + self.derived.len()
+    }
 }
 
 /// A limit and what it is for.
@@ -84,4 +94,10 @@ pub struct FastUnit {
     pub value: Span,
     /// The unit as it is written.
     pub unit: String,
+}
+
+/// The gyro channel of a row: `rate` of `rate@-40`, `x` of `x<-y`.
+pub fn gyro_of(channel: &str) -> &str {
+    let end = channel.find('@').or_else(|| channel.find("<-")).unwrap_or(channel.len());
+    channel.get(..end).unwrap_or(channel)
 }

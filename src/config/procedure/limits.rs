@@ -1,6 +1,8 @@
 //! Limits, reference values and typical values; and how a limits file goes over the limits of a procedure.
 
+use super::derived;
 use super::diagnostics::{Problem, SourceText};
+pub use super::limit_set::gyro_of;
 pub use super::limit_set::{Expected, LimitSet, LimitSpec, LimitsFile, Reference};
 use super::model::{Loaded, Procedure};
 use super::quantity::AS_RECORDED;
@@ -65,12 +67,6 @@ impl EffectiveLimits {
     }
 }
 
-/// The gyro channel of a row: `rate` of `rate@-40`, `x` of `x<-y`.
-pub fn gyro_of(channel: &str) -> &str {
-    let end = channel.find('@').or_else(|| channel.find("<-")).unwrap_or(channel.len());
-    channel.get(..end).unwrap_or(channel)
-}
-
 /// The first entry for the channel, or else the first for every channel.
 fn best<'a, T>(
     entries: impl Iterator<Item = (&'a T, &'static str, Option<&'a str>)> + Clone,
@@ -106,7 +102,11 @@ pub fn effective(procedure: &Loaded<Procedure>, file: Option<&Loaded<LimitsFile>
     set.expected.extend(
         own.expected.iter().filter(|e| over.expected.iter().all(|o| o.measurand != e.measurand)).cloned(),
     );
+    set.derived
+        .extend(own.derived.iter().filter(|d| over.derived.iter().all(|o| o.derived != d.derived)).cloned());
     let mut warnings = not_measured(&procedure.value, file);
+    let unusable = over.derived.iter().filter_map(|limit| derived::unusable(&procedure.value, limit));
+    warnings.extend(unusable.map(|(span, message)| file.source.warning(&span, message)));
     warnings.extend(slips::against_channels(&procedure.value, over, &file.source));
     EffectiveLimits { set, warnings, idle: idle(&procedure.value, file) }
 }
@@ -119,10 +119,12 @@ fn idle(procedure: &Procedure, file: &Loaded<LimitsFile>) -> Option<Note> {
             && l.channel.as_deref().is_none_or(|c| procedure.channel(gyro_of(c)).is_some())
             && scale_factor_unit::other_unit(procedure, l).is_none()
     };
-    if limits.iter().any(applies) {
+    let derived = &file.value.set.derived;
+    if limits.iter().any(applies) || derived.iter().any(|d| derived::unusable(procedure, d).is_none()) {
         return None;
     }
-    let key = if limits.is_empty() { "check.references_only" } else { "check.none_applies" };
+    let key =
+        if limits.is_empty() && derived.is_empty() { "check.references_only" } else { "check.none_applies" };
     Some(Note::new(key).with("path", file.path.as_str()).with("procedure", procedure.id.as_str()))
 }
 

@@ -11,7 +11,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 /// Messages for a file that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "check.unreadable", folder: "check.is_folder" };
+const READ_MESSAGES: Wording = Wording { unreadable: "check.unreadable", folder: "check.is_folder" };
 
 /// Reads a procedure; the files that it names must be there.
 ///
@@ -19,7 +19,7 @@ const WORDING: Wording = Wording { unreadable: "check.unreadable", folder: "chec
 /// Every problem of the file, each with its place; a file that cannot be read is one problem without a place.
 pub fn load(path: &Path) -> Result<Loaded<Procedure>, Problems> {
     let folder = contained_files::folder_of(path);
-    loaded(&name_of(path), &text_file::bytes(path, &WORDING)?, |source| {
+    loaded(&name_of(path), &text_file::bytes(path, &READ_MESSAGES)?, |source| {
         parse::procedure(source, Some(folder))
     })
 }
@@ -29,7 +29,7 @@ pub fn load(path: &Path) -> Result<Loaded<Procedure>, Problems> {
 /// # Errors
 /// As [`load`].
 pub fn load_limits(path: &Path) -> Result<Loaded<LimitsFile>, Problems> {
-    parse_limits(&name_of(path), &text_file::bytes(path, &WORDING)?)
+    parse_limits(&name_of(path), &text_file::bytes(path, &READ_MESSAGES)?)
 }
 
 /// Reads a procedure from the bytes of a file; `name` stands in diagnostics and results. Whether the files that it names

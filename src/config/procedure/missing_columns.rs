@@ -26,7 +26,7 @@ pub fn missing_columns(procedure: &Loaded<Procedure>, source: &Source) -> Option
     first.map(|error| (problems, error))
 }
 
-/// What to do: the column that is spelt alike, or else the only one that is likely of the role and is not read yet.
+/// Advice for a missing column: the one that is spelt alike, or else the only one that is likely of the role and is not read yet.
 fn hint(spec: &ChannelSpec, procedure: &Procedure, source: &Source, error: &IngestError) -> Option<Note> {
     let ColumnRef::Name(name) = &spec.channel.column else { return error.advice().cloned() };
     if source.columns().iter().any(|c| c.name == *name) {

@@ -3,6 +3,8 @@
 
 pub(crate) mod channel;
 pub mod check;
+pub mod derived;
+pub mod derived_rows;
 pub mod guide;
 mod instrument;
 pub mod limit_set;

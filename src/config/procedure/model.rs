@@ -1,5 +1,6 @@
 //! A procedure after reading: plain values in inside units (deg/h, s, degC, Hz).
 
+use super::derived_rows::DerivedSpec;
 use super::diagnostics::{Problem, SourceText, Span};
 pub use super::instrument::Instrument;
 use super::limit_set::{LimitSet, LimitsFile};
@@ -86,6 +87,8 @@ pub struct Procedure {
     pub comparison_test: Option<ComparisonTest>,
     /// Quantities to determine, in the order of the report.
     pub measurands: Vec<MeasurandSpec>,
+    /// Quantities by a formula, in the order of the file.
+    pub derived: Vec<DerivedSpec>,
     /// Limits, references and typical values that stand in the procedure itself.
     pub limits: LimitSet,
     /// Clauses of the standard.

@@ -13,11 +13,15 @@ pub type Answer<'a> = &'a dyn Fn(&PowerQuestion) -> Option<(Note, Option<Note>)>
 pub fn belonging<'a>(file: &LimitsFile, procedures: &[&'a Loaded<Procedure>]) -> Vec<&'a Loaded<Procedure>> {
     let set = &file.set;
     let mut ids: Vec<&str> = set.limits.iter().map(|l| l.measurand.id).collect();
-    if ids.is_empty() {
+    if set.count() == 0 {
         ids.extend(set.references.iter().map(|r| r.measurand.id));
         ids.extend(set.expected.iter().map(|e| e.measurand.id));
     }
-    let measures = |p: &&&Loaded<Procedure>| ids.iter().any(|id| p.value.measures(id, None));
+    let has = |p: &Procedure, id: &str| p.derived.iter().any(|d| d.id == id);
+    let measures = |p: &&&Loaded<Procedure>| {
+        ids.iter().any(|id| p.value.measures(id, None))
+            || set.derived.iter().any(|l| has(&p.value, &l.derived))
+    };
     procedures.iter().filter(measures).copied().collect()
 }
 
@@ -35,7 +39,9 @@ pub fn of_limits(
     }
     let pairs: Vec<(&Loaded<Procedure>, EffectiveLimits)> =
         own.into_iter().map(|p| (p, effective(p, Some(file)))).collect();
-    let is_limit = |w: &Problem| file.value.set.limits.iter().any(|l| l.span == w.span);
+    let set = &file.value.set;
+    let spans = || set.limits.iter().map(|l| &l.span).chain(set.derived.iter().map(|l| &l.span));
+    let is_limit = |w: &Problem| spans().any(|span| *span == w.span);
     let in_every = |w: &Problem| pairs.iter().all(|(_, e)| e.warnings.iter().any(|o| o.span == w.span));
     let mut found = vec![];
     for (i, (procedure, effective)) in pairs.iter().enumerate() {
@@ -45,7 +51,7 @@ pub fn of_limits(
         found.extend(warnings(&asked, procedure, Some(file), answer));
     }
     let idle = pairs.iter().map(|(_, e)| e.idle.clone()).collect::<Option<Vec<Note>>>();
-    let judges = !file.value.set.limits.is_empty();
+    let judges = set.count() > 0;
     let first = idle.filter(|_| judges).and_then(|notes| notes.into_iter().next());
     found.extend(first.map(|note| Problem::remark_on_file(&file.path, note)));
     found
@@ -60,7 +66,7 @@ pub fn of_procedure(procedure: &Loaded<Procedure>, answer: Answer<'_>) -> Vec<Pr
 
 /// A file with limits that none of the procedures measures.
 fn decides_nothing(file: &Loaded<LimitsFile>, procedures: &[&Loaded<Procedure>]) -> Option<Problem> {
-    if procedures.is_empty() || file.value.set.limits.is_empty() {
+    if procedures.is_empty() || file.value.set.count() == 0 {
         return None;
     }
     let names: Vec<&str> = procedures.iter().map(|p| p.value.id.as_str()).collect();

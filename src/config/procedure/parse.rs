@@ -7,7 +7,7 @@ use super::reader::Reader;
 use super::section::Section;
 use super::tables::limits::{LIMITS_FILE, LimitsTables};
 use super::tables::{ChannelKeys, PROCEDURE_FILE, ProcedureFile};
-use super::{channel, recording_options, validate};
+use super::{channel, derived, recording_options, validate};
 use crate::config::contained_files;
 use crate::config::read_tables::checked;
 use crate::config::table::Table;
@@ -46,7 +46,8 @@ pub(super) fn limits_file(source: &SourceText) -> (Option<LimitsFile>, Problems)
     checked(source, &LIMITS_FILE, |root, reader| {
         let file = LimitsTables::read(root);
         let identity = file.identity;
-        let set = limits::read_set(file.limits, file.references, file.expected, identity.factor, reader);
+        let mut set = limits::read_set(file.limits, file.references, file.expected, identity.factor, reader);
+        set.derived = derived::read_limits(file.derived_limits, reader);
         let warnings = limits::warnings(&set, reader.source);
         reader.problems.list.extend(warnings);
         LimitsFile {
@@ -80,6 +81,8 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
     let (sample_rate_hz, sample_rate_tolerance) = (recording.sample_rate_hz, recording.sample_rate_tolerance);
     let mut read = recording_options::options(recording, &file.channels, reader);
     read.layout = layout.map(LayoutFile::at);
+    let mut limits = limits::read_set(file.limits, file.references, file.expected, None, reader);
+    limits.derived = derived::read_limits(file.derived_limits, reader);
     Procedure {
         id: identity.id,
         title: identity.title,
@@ -104,7 +107,8 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         repeatability_test: file.repeatability_test.map(Into::into),
         comparison_test: comparison.into_iter().flatten().next(),
         measurands: file.measurands.into_iter().filter_map(MeasurandKeys::spec).collect(),
-        limits: limits::read_set(file.limits, file.references, file.expected, None, reader),
+        derived: derived::read(file.derived, reader),
+        limits,
         clauses: file.clauses.into_iter().map(Into::into).collect(),
         report: file.report,
         waivers: file.waivers,

@@ -17,7 +17,7 @@ use crate::record::{ClauseRecord, ProcedureRecord};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
-const WORDING: Wording = Wording { unreadable: "check.unreadable", folder: "check.is_folder" };
+const READ_MESSAGES: Wording = Wording { unreadable: "check.unreadable", folder: "check.is_folder" };
 
 /// A procedure of several phases.
 #[derive(Debug, Clone, PartialEq)]
@@ -90,7 +90,7 @@ pub fn is_phased(path: &Path) -> bool {
 /// Every problem of the file; when it is sound, those of the files that it names.
 pub fn load_phased(path: &Path) -> Result<Phased, Problems> {
     let name = path.display().to_string();
-    let bytes = text_file::bytes(path, &WORDING)?;
+    let bytes = text_file::bytes(path, &READ_MESSAGES)?;
     let source = text_file::source(&name, &bytes)?;
     let home = match shipped::find(path).filter(|_| !path.is_file()) {
         Some(_) => Home::Program,

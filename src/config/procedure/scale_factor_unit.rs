@@ -25,7 +25,7 @@ pub fn scale_factor_unit(procedure: &Procedure, channel: &str) -> (&'static str,
     }
 }
 
-/// What is wrong with the unit of a limit on what is given as recorded; `None` where it is that of its channels.
+/// Note on a wrong unit of a limit on a rate given as recorded; `None` where it is that of its channels.
 pub fn other_unit(procedure: &Procedure, limit: &LimitSpec) -> Option<Note> {
     let given = limit.recorded_unit?;
     let concerned = |id: &str| limit.channel.as_deref().is_none_or(|c| c == id);

@@ -13,6 +13,7 @@ use crate::config::model::tables::MODEL_FILE;
 use crate::config::proof::tables::PROOF_FILE;
 use crate::config::schedule::tables::SCHEDULE_FILE;
 use crate::config::sheet::tables::SHEET_FILE;
+use crate::config::watch::tables::WATCH_FILE;
 use crate::effect::EFFECTS;
 use crate::i18n::{EffectText, Lang, effect_text};
 use crate::measurand::MEASURANDS;
@@ -51,6 +52,11 @@ pub fn model() -> Value {
 /// The schema of a sheet file.
 pub fn sheet() -> Value {
     document(&SHEET_FILE, "Sagnac sheet")
+}
+
+/// The schema of a file of watch rules.
+pub fn watch() -> Value {
+    document(&WATCH_FILE, "Sagnac watch rules")
 }
 
 /// The schema of a proof file.
@@ -165,6 +171,7 @@ fn value(kind: Kind) -> Value {
         Kind::Date => json!({"type": "string", "format": "date"}),
         Kind::Choice(words) => one_of(words),
         Kind::Choices(words) => json!({"type": "array", "items": one_of(words)}),
+        Kind::Command => json!({"type": "array", "minItems": 1, "items": {"type": "string"}}),
         Kind::Columns(_) => json!({"type": "array", "items": {"type": "string"}}),
         Kind::Effects => {
             let ids: Vec<&str> = EFFECTS.iter().map(|e| e.kind()).chain(["unknown"]).collect();

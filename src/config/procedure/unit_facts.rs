@@ -16,11 +16,11 @@ pub enum UnitFact {
     BuildDate,
 }
 
-words!(UnitFact, UnitFact::WORDS, UnitFact::of);
+words!(UnitFact, UnitFact::FACT_WORDS, UnitFact::of);
 
 impl UnitFact {
     /// The words of procedures.
-    pub(crate) const WORDS: &[Word] = &[
+    pub(crate) const FACT_WORDS: &[Word] = &[
         ("model", "The model, or the family in its place"),
         ("lot", "The lot or batch"),
         ("build_date", "The date on which the unit was built"),
@@ -76,7 +76,7 @@ mod tests {
 
     #[test]
     fn every_word_is_a_fact() {
-        for (word, _) in UnitFact::WORDS {
+        for (word, _) in UnitFact::FACT_WORDS {
             assert!(UnitFact::of(word).is_some(), "{word}");
         }
     }

@@ -19,6 +19,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     site(procedure, root, reader);
     measurands(procedure, root, reader);
     limits(procedure, reader);
+    super::derived::validate(procedure, reader);
     waivers(procedure, root, reader);
     averaging_times(procedure, root, reader);
     super::tables::rate_table::validate(procedure, root, reader);

@@ -14,14 +14,14 @@ use crate::i18n::note;
 use std::path::{Path, PathBuf};
 
 /// Messages for a proof file that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "proof_file.unreadable", folder: "proof_file.folder" };
+const READ_MESSAGES: Wording = Wording { unreadable: "proof_file.unreadable", folder: "proof_file.folder" };
 
 /// Reads a proof file.
 ///
 /// # Errors
 /// Every problem of the file, each with its place.
 pub fn load(path: &Path) -> Result<ProofFile, Problems> {
-    parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?, folder_of(path))
+    parse(&path.display().to_string(), &text_file::bytes(path, &READ_MESSAGES)?, folder_of(path))
 }
 
 /// Reads a proof file from its bytes; `name` stands in diagnostics, and the models that it names are looked for in `folder`.

@@ -12,14 +12,15 @@ use crate::i18n::note;
 use std::path::Path;
 
 /// Messages for a schedule that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "schedule_file.unreadable", folder: "schedule_file.folder" };
+const READ_MESSAGES: Wording =
+    Wording { unreadable: "schedule_file.unreadable", folder: "schedule_file.folder" };
 
 /// Reads a schedule.
 ///
 /// # Errors
 /// Every problem of the file, each with its place.
 pub fn load(path: &Path) -> Result<Schedule, Problems> {
-    parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?)
+    parse(&path.display().to_string(), &text_file::bytes(path, &READ_MESSAGES)?)
 }
 
 /// Reads a schedule from the bytes of a file; `name` stands in diagnostics.

@@ -13,14 +13,14 @@ use crate::units::Unit;
 use std::path::Path;
 
 /// Messages for a sheet file that cannot be read at all.
-const WORDING: Wording = Wording { unreadable: "sheet_file.unreadable", folder: "sheet_file.folder" };
+const READ_MESSAGES: Wording = Wording { unreadable: "sheet_file.unreadable", folder: "sheet_file.folder" };
 
 /// Reads a sheet file.
 ///
 /// # Errors
 /// Every problem of the file, each with its place.
 pub fn load(path: &Path) -> Result<SheetFile, Problems> {
-    parse(&path.display().to_string(), &text_file::bytes(path, &WORDING)?)
+    parse(&path.display().to_string(), &text_file::bytes(path, &READ_MESSAGES)?)
 }
 
 /// Reads a sheet file from its bytes; `name` stands in diagnostics.

@@ -9,7 +9,7 @@ use super::number::{count, date_time, limit_digits};
 use super::page::{Block, Head, OnTerminal, Page, Table, Value};
 use super::translator::Translator;
 use super::view::FigureView;
-use crate::acceptance::history::figures::{MONTHS, figure_id};
+use crate::acceptance::history::figures::{MONTHS_FIGURE, figure_id};
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize};
 use crate::record::{
@@ -31,7 +31,7 @@ pub fn page(history: &HistoryRecord, figures: &[Figure], lang: Lang) -> Page {
     let several = several_channels(history);
     let generator = format!("{} {}", history.program.name, history.program.version);
     let latest = history.results.last().map(|r| date_time(&r.evaluated_at)).unwrap_or_default();
-    let months = FigureView::find(figures, MONTHS, words).map(|f| {
+    let months = FigureView::find(figures, MONTHS_FIGURE, words).map(|f| {
         let caption = f.title.clone();
         Block::Section("figures", vec![Block::Figure(Box::new(FigureView { caption, ..f }))])
     });

@@ -9,6 +9,9 @@ use crate::report::translator::Translator;
 use crate::report::view::{self, Part, Phase, Row};
 use anstyle::Style;
 
+/// Axes at most that stand beside each other in a table.
+const MAX_AXES: usize = 4;
+
 /// The outcome: verdict, quantities, reasons, conditions that are not met, faults. `in_phases`: what a test of several
 /// phases found in each.
 pub(super) fn run(whole: &Part<'_>, in_phases: &[Phase<'_>], terminal: Terminal) -> String {
@@ -150,8 +153,12 @@ fn without_limits(part: &Part<'_>, terminal: Terminal) -> String {
             ]
         })
         .collect();
-    let mut out =
-        if cells.is_empty() { String::new() } else { format!("\n{}", table(&columns, &cells, terminal)) };
+    let (reason, absent) = main_reason(part, absent);
+    let mut out = reason.map_or_else(String::new, |r| format!("\n{}", terminal.indented([r])));
+    if !cells.is_empty() {
+        let (columns, cells) = by_axis(&shown, words).unwrap_or_else(|| (columns.into(), cells));
+        out += &format!("\n{}", table(&columns, &cells, terminal));
+    }
     let lines = view::line_sentences(part.record, words);
     if !lines.is_empty() {
         out += &section("terminal.lines", words, terminal);
@@ -164,6 +171,56 @@ fn without_limits(part: &Part<'_>, terminal: Terminal) -> String {
         out += &terminal.indented([sentence]);
     }
     out
+}
+
+/// Quantities without a value that one reason must explain to stand before all else.
+const MIN_WITH_ONE_REASON: usize = 6;
+
+/// The reason that most quantities without a value share, and those that have another.
+fn main_reason<'a, 'b>(part: &Part<'a>, absent: Vec<&'b Row<'a>>) -> (Option<String>, Vec<&'b Row<'a>>) {
+    let shared = |note: usize| absent.iter().filter(|row| row.footnotes.contains(&note)).count();
+    let most = (1..=part.footnotes.len()).max_by_key(|note| shared(*note));
+    let Some(note) = most.filter(|n| shared(*n) >= MIN_WITH_ONE_REASON && 2 * shared(*n) > absent.len())
+    else {
+        return (None, absent);
+    };
+    let reason = note.checked_sub(1).and_then(|i| part.footnotes.get(i)).cloned();
+    (reason, absent.into_iter().filter(|row| !row.footnotes.contains(&note)).collect())
+}
+
+/// Columns and rows of a table of quantities by axis, where several channels have the same ones.
+fn by_axis(shown: &[&Row<'_>], words: Translator) -> Option<(Vec<Column>, Vec<Vec<Cell>>)> {
+    let mut axes: Vec<&str> = vec![];
+    let mut ids: Vec<&str> = vec![];
+    for row in shown {
+        // A row of one temperature, ramp or level is none of an axis.
+        if row.of.channel.contains('@') {
+            return None;
+        }
+        axes.extend((!axes.contains(&row.of.channel.as_str())).then_some(row.of.channel.as_str()));
+        ids.extend((!ids.contains(&row.of.id.as_str())).then_some(row.of.id.as_str()));
+    }
+    if axes.len() < 2 || axes.len() > MAX_AXES {
+        return None;
+    }
+    let axis = |axis: &&str| Column { head: (*axis).to_owned(), align: Align::Right, left_out: None };
+    let mut columns = vec![column("quantity", Align::Left, None, words)];
+    columns.extend(axes.iter().map(axis));
+    columns.push(column("unit_of_quantity", Align::Left, None, words));
+    let rows = ids.iter().filter_map(|id| {
+        let of = |axis: &str| shown.iter().find(|row| row.of.id == *id && row.of.channel == axis);
+        let first = shown.iter().find(|row| row.of.id == *id)?;
+        let number = |row: &&Row<'_>| {
+            let bound = view::bound_alone(row.of, words);
+            if row.of.identifiable && bound.is_empty() { view::value(row.of, words) } else { bound }
+        };
+        let mut cells: Vec<Cell> = vec![first.name(words).into()];
+        cells.extend(axes.iter().map(|a| Cell::from(of(a).map_or_else(|| "–".to_owned(), number))));
+        cells.push(Cell { text: words.unit(&first.of.unit), style: Style::new().dimmed() });
+        Some(cells)
+    });
+    let rows = rows.collect();
+    Some((columns, rows))
 }
 
 fn column(id: &str, align: Align, left_out: Option<u8>, words: Translator) -> Column {

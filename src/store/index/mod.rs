@@ -9,10 +9,10 @@ pub(super) use query::StatementRow;
 pub use query::{Attempt, Correction, Counted, Filter};
 
 use super::error::{StoreError, io};
-use super::lock::PATIENCE;
+use super::lock::LOCK_TIMEOUT;
 use rusqlite::{Connection, OpenFlags};
 use sagnac_ingest::open_file;
-use schema::{APPLICATION_ID, TABLES, VERSION};
+use schema::{APPLICATION_ID, SCHEMA_VERSION, TABLE_STATEMENTS};
 use std::fs;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -123,9 +123,9 @@ impl Index {
             return Err(StoreError::ForeignIndex(self.path.clone()));
         }
         match number("user_version")? {
-            VERSION => Ok(Age::Current),
-            found if found > VERSION => {
-                Err(StoreError::LaterIndex { path: self.path.clone(), found, known: VERSION })
+            SCHEMA_VERSION => Ok(Age::Current),
+            found if found > SCHEMA_VERSION => {
+                Err(StoreError::LaterIndex { path: self.path.clone(), found, known: SCHEMA_VERSION })
             }
             found => Ok(Age::Earlier(found)),
         }
@@ -136,8 +136,8 @@ impl Index {
         let path = self.path.clone();
         let refused = |e: rusqlite::Error| StoreError::of_database(&path, &e);
         let change = self.db.transaction().map_err(refused)?;
-        change.execute_batch(TABLES).map_err(refused)?;
-        change.pragma_update(None, "user_version", VERSION).map_err(refused)?;
+        change.execute_batch(TABLE_STATEMENTS).map_err(refused)?;
+        change.pragma_update(None, "user_version", SCHEMA_VERSION).map_err(refused)?;
         change.commit().map_err(refused)
     }
 
@@ -168,7 +168,7 @@ impl Index {
     /// Sets how the database behaves on this connection.
     fn prepare(&self, shared_disk: bool) -> Result<Journal, StoreError> {
         let refused = |e: rusqlite::Error| self.refused(&e);
-        self.db.busy_timeout(PATIENCE).map_err(refused)?;
+        self.db.busy_timeout(LOCK_TIMEOUT).map_err(refused)?;
         self.db.pragma_update(None, "foreign_keys", true).map_err(refused)?;
         let wanted = if shared_disk { "DELETE" } else { "WAL" };
         let mode: String = self

@@ -4,11 +4,11 @@
 pub(super) const APPLICATION_ID: i64 = 0x5341_474E;
 
 /// Version of the tables; an empty database has version 0.
-pub(super) const VERSION: i64 = 2;
+pub(super) const SCHEMA_VERSION: i64 = 2;
 
 /// The tables. `placed_at` is the moment by which attempts are put in order: that of the evaluation, but for an attempt whose
 /// clock stood before that of one that came before it.
-pub(super) const TABLES: &str = "
+pub(super) const TABLE_STATEMENTS: &str = "
 CREATE TABLE result (
     id INTEGER PRIMARY KEY,
     address TEXT NOT NULL UNIQUE,

@@ -4,6 +4,7 @@
 mod influence;
 mod lots;
 mod rate_table;
+mod reading;
 mod temperature;
 mod warm_up;
 mod words;

@@ -10,7 +10,7 @@ use sagnac::noise::data::NoiseType;
 use sagnac::noise::digest::{DigestPlan, RateAccumulator, RateDigest};
 use sagnac::noise::evidence::Evidence;
 use sagnac::noise::family::Estimator;
-use sagnac::noise::identification::linear_fit::{Likelihood, SPECTRAL};
+use sagnac::noise::identification::linear_fit::{Likelihood, SPECTRAL_TERM_COUNT};
 use sagnac::noise::model::TERMS;
 
 const WINDOWS: [u64; 2] = [8, 100];
@@ -265,19 +265,20 @@ fn likelihood(worst: &mut Worst, record: &'static str, evidence: &Evidence) {
         assert!(power == 0.0 || evidence.bands.len() < 8, "{record}: no likelihood");
         return;
     };
-    let columns: Vec<Vec<f64>> = TERMS.iter().take(SPECTRAL).map(|t| evidence.expectation(t)).collect();
+    let columns: Vec<Vec<f64>> =
+        TERMS.iter().take(SPECTRAL_TERM_COUNT).map(|t| evidence.expectation(t)).collect();
     let white = TERMS.iter().position(|t| *t == NoiseType::AngleRandomWalk).unwrap();
     for with_ramp in [false, true] {
         let structure = [true, true, true, true, with_ramp];
         let Some(point) = likelihood.maximise(&structure, None, None) else {
             panic!("{record}: no maximum");
         };
-        let slowly = |variance: &[f64; SPECTRAL]| -> X {
+        let slowly = |variance: &[f64; SPECTRAL_TERM_COUNT]| -> X {
             let mut total = X::zero();
             let mut information = X::zero();
             let r = X::from(point.ramp);
             for (i, band) in evidence.bands.iter().enumerate() {
-                let s = sum((0..SPECTRAL).map(|t| X::from(columns[t][i]) * X::from(variance[t])));
+                let s = sum((0..SPECTRAL_TERM_COUNT).map(|t| X::from(columns[t][i]) * X::from(variance[t])));
                 let left = X::from(band.power) - X::from(2.0) * &r * X::from(band.cross)
                     + r.square() * X::from(band.ramp);
                 let left = if left.is_positive() { left } else { X::zero() };

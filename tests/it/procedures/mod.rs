@@ -2,6 +2,7 @@
 
 mod check_list;
 mod deciding;
+mod derived;
 mod files;
 mod manifest;
 mod named_files;

@@ -11,6 +11,7 @@ use std::path::Path;
 
 /// Ids that a record may hold where its documentation lists them.
 const LISTED: &[(&str, &[&str])] = &[
+    ("day", &["hook.pending", "hook.told"]),
     ("signer", &["approved", "reviewed", "tested"]),
     (
         "prove",
@@ -128,6 +129,7 @@ const OPEN: &[&str] = &[
 
 /// Dotted names in the sources that only look like keys: tables of procedures.
 const NO_KEYS: &[&str] = &[
+    "day.hook",
     "measurand.options",
     "attempt.number",
     "attempt.earlier.result",

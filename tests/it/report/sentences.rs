@@ -29,6 +29,10 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/recording_keys.rs", "meanings of words of keys: documentation, as of procedures"),
     ("src/config/layout/tables.rs", "meanings of words of keys of layouts: documentation, as of procedures"),
     ("src/config/proof/tables.rs", "meanings of words of keys of proofs: documentation, as of procedures"),
+    (
+        "src/config/watch/tables.rs",
+        "meanings of words of keys of watch rules: documentation, as of procedures",
+    ),
     ("src/config/model/tables.rs", "meanings of words of keys of claims: documentation, as of procedures"),
     (
         "src/config/schedule/tables.rs",
@@ -64,6 +68,7 @@ const LITERALS: &[(&str, &str, &str)] = &[
     ("src/report/lot/mod.rs", "units small cards", "classes of a table in HTML"),
     ("src/report/view/evidence.rs", "dense clauses cards", "classes of a table in HTML"),
     ("src/report/view/further.rs", "measurands matrix cards", "classes of a table in HTML"),
+    ("src/report/day/mod.rs", "units small cards", "classes of a table in HTML"),
     ("src/report/lot/quantity.rs", "units small cards", "classes of a table in HTML"),
     (
         "src/record/message.rs",
@@ -71,6 +76,7 @@ const LITERALS: &[(&str, &str, &str)] = &[
         "a fault of the reader of JSON, quoted as it says it",
     ),
     ("src/cli/demo.rs", "sagnac run static-bias", "a command line"),
+    ("src/report/parameters/formats.rs", "import numpy as np", "a line of Python"),
     (
         "crates/sagnac-ingest/src/column_inference.rs",
         "the inside units are units",

@@ -5,7 +5,7 @@ use crate::support::tested::tested;
 use sagnac::acceptance::condition::checks::CheckLog;
 use sagnac::acceptance::condition::stability_track::{Extreme, StabilityFacts, StabilityKey};
 use sagnac::acceptance::condition::{
-    BiasStep, CONDITIONS, ColumnFact, Facts, GyroFact, NoiseChange, WarmUpFact, judge_all,
+    ALL_CONDITIONS, BiasStep, ColumnFact, Facts, GyroFact, NoiseChange, WarmUpFact, judge_all,
 };
 use sagnac::config::procedure::model::{Allowance, EarthRate, FaultBudget, MeasurandSpec, SupplyCondition};
 use sagnac::config::procedure::{EffectiveLimits, effective, load, load_limits};
@@ -217,7 +217,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
     });
     let kinds: BTreeSet<&str> = records.iter().filter_map(|c| c.id.split('.').next()).collect();
     // One kind a condition, eleven more of faults, three more of the schedule.
-    assert_eq!(kinds.len(), CONDITIONS.len() - 2 + 12 + 4, "{kinds:?}");
+    assert_eq!(kinds.len(), ALL_CONDITIONS.len() - 2 + 12 + 4, "{kinds:?}");
     let mut keys: BTreeSet<String> = kinds.iter().map(|k| format!("condition.{k}")).collect();
     for c in &records {
         keys.extend(c.observed.keys().map(|name| format!("observed.{name}")));

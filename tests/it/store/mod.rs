@@ -70,7 +70,7 @@ fn write_results(folder: &Path, units: usize) {
 }
 
 /// The result folders of a store, by their addresses.
-fn kept(store: &Path) -> Vec<(String, PathBuf)> {
+pub(crate) fn kept(store: &Path) -> Vec<(String, PathBuf)> {
     let mut found = vec![];
     for group in crate::support::names(&store.join("results")).into_iter().filter(|n| !n.starts_with('.')) {
         let group = store.join("results").join(group);

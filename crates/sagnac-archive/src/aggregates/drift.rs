@@ -1,6 +1,6 @@
 //! `sagnac_drift`: the course of a quantity of one unit.
 
-use super::numbers::{Finish, Kept, Row, WIDTH, state_fields};
+use super::numbers::{ARGUMENT_COUNT, Finish, Kept, Row, state_fields};
 use datafusion::arrow::datatypes::{DataType, Field, FieldRef, Fields};
 use datafusion::common::scalar::ScalarStructBuilder;
 use datafusion::common::{Result, ScalarValue};
@@ -21,7 +21,7 @@ pub struct Drift {
 impl Drift {
     /// The function.
     pub fn new() -> Drift {
-        Drift { signature: Signature::exact(vec![DataType::Float64; WIDTH], Volatility::Immutable) }
+        Drift { signature: Signature::exact(vec![DataType::Float64; ARGUMENT_COUNT], Volatility::Immutable) }
     }
 }
 
@@ -31,11 +31,11 @@ impl Default for Drift {
     }
 }
 
-const NAMES: [&str; 6] =
+const FIELD_NAMES: [&str; 6] =
     ["change", "change_half_width", "slope", "slope_half_width", "steady_probability", "count"];
 
 fn fields() -> Fields {
-    NAMES.iter().map(|name| Field::new(*name, DataType::Float64, true)).collect()
+    FIELD_NAMES.iter().map(|name| Field::new(*name, DataType::Float64, true)).collect()
 }
 
 impl AggregateUDFImpl for Drift {

@@ -11,10 +11,10 @@ use std::fmt::Debug;
 use std::sync::Arc;
 
 /// Arguments of an aggregate.
-pub const WIDTH: usize = 3;
+pub const ARGUMENT_COUNT: usize = 3;
 
 /// The arguments of one row.
-pub type Row = [f64; WIDTH];
+pub type Row = [f64; ARGUMENT_COUNT];
 
 /// Results made of the rows of a group.
 pub trait Finish: Debug + Send + Sync + 'static {
@@ -56,7 +56,7 @@ impl<F: Finish> Kept<F> {
         kept.resize_with(groups.max(kept.len()), Vec::new);
         let numbers: Vec<&PrimitiveArray<Float64Type>> =
             columns.iter().filter_map(|c| c.as_primitive_opt()).collect();
-        let [a, b, c] = <[_; WIDTH]>::try_from(numbers).map_err(|_| no_numbers())?;
+        let [a, b, c] = <[_; ARGUMENT_COUNT]>::try_from(numbers).map_err(|_| no_numbers())?;
         for i in 0..a.len() {
             if a.is_null(i) || b.is_null(i) || c.is_null(i) {
                 continue;
@@ -77,7 +77,7 @@ impl<F: Finish> Kept<F> {
             let values = lists.value(i);
             let numbers = values.as_primitive_opt::<Float64Type>().ok_or_else(no_numbers)?.values();
             if let Some(group) = self.groups.get_mut(group_of(i)) {
-                group.extend(numbers.as_chunks::<WIDTH>().0);
+                group.extend(numbers.as_chunks::<ARGUMENT_COUNT>().0);
             }
         }
         Ok(())
@@ -99,7 +99,7 @@ fn no_numbers() -> DataFusionError {
 /// Groups as lists of their numbers.
 fn lists(groups: &[Vec<Row>]) -> ListArray {
     let numbers: Vec<f64> = groups.iter().flatten().flatten().copied().collect();
-    let offsets = OffsetBuffer::from_lengths(groups.iter().map(|g| g.len() * WIDTH));
+    let offsets = OffsetBuffer::from_lengths(groups.iter().map(|g| g.len() * ARGUMENT_COUNT));
     ListArray::new(item(), offsets, Arc::new(Float64Array::new(ScalarBuffer::from(numbers), None)), None)
 }
 

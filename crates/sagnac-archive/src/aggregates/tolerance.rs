@@ -1,6 +1,6 @@
 //! `sagnac_tolerance_upper`, `sagnac_tolerance_lower`: what the values of some units promise of all.
 
-use super::numbers::{Finish, Kept, Row, WIDTH, state_fields};
+use super::numbers::{ARGUMENT_COUNT, Finish, Kept, Row, state_fields};
 use datafusion::arrow::datatypes::{DataType, FieldRef};
 use datafusion::common::{DataFusionError, Result, ScalarValue};
 use datafusion::logical_expr::function::{AccumulatorArgs, StateFieldsArgs};
@@ -30,7 +30,10 @@ pub struct Tolerance {
 impl Tolerance {
     /// The function for one side.
     pub fn new(side: Side) -> Tolerance {
-        Tolerance { side, signature: Signature::exact(vec![DataType::Float64; WIDTH], Volatility::Immutable) }
+        Tolerance {
+            side,
+            signature: Signature::exact(vec![DataType::Float64; ARGUMENT_COUNT], Volatility::Immutable),
+        }
     }
 }
 
@@ -69,9 +72,9 @@ impl AggregateUDFImpl for Tolerance {
 
 /// The factor of a sample of some size. It costs 1.5 ms, and a sheet of many lots asks for the same few sizes.
 fn factor(size: usize, promise: Promise) -> Option<f64> {
-    static KNOWN: Mutex<BTreeMap<[u64; 3], Option<f64>>> = Mutex::new(BTreeMap::new());
+    static KNOWN_FACTORS: Mutex<BTreeMap<[u64; 3], Option<f64>>> = Mutex::new(BTreeMap::new());
     let key = [size as u64, promise.proportion.to_bits(), promise.confidence.to_bits()];
-    let known = || KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
+    let known = || KNOWN_FACTORS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(factor) = known().get(&key) {
         return *factor;
     }

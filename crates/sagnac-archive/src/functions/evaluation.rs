@@ -13,7 +13,7 @@ use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Recordings that this process has evaluated.
-static EVALUATED: AtomicU64 = AtomicU64::new(0);
+static EVALUATED_COUNT: AtomicU64 = AtomicU64::new(0);
 
 /// The functions that evaluate a recording.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -50,7 +50,7 @@ impl Function {
 
     /// Recordings that this process has evaluated so far.
     pub fn evaluated() -> u64 {
-        EVALUATED.load(Ordering::Relaxed)
+        EVALUATED_COUNT.load(Ordering::Relaxed)
     }
 }
 
@@ -91,7 +91,7 @@ impl Evaluation {
         let required = self.function.required();
         let outcome =
             evaluate(&Order { uri, task, unit: texts.get(required, row), at: texts.get(required + 1, row) });
-        EVALUATED.fetch_add(1, Ordering::Relaxed);
+        EVALUATED_COUNT.fetch_add(1, Ordering::Relaxed);
         outcome
     }
 }

@@ -1,7 +1,7 @@
 //! `sagnac_key`: the identity of a job with this engine.
 
 use super::texts::Texts;
-use crate::ENGINE;
+use crate::ENGINE_VERSION;
 use crate::evaluate::{hash_of_file, hexadecimal};
 use crate::stores::fetch;
 use datafusion::arrow::array::StringArray;
@@ -21,14 +21,14 @@ pub struct Key {
 }
 
 /// Arguments that name a file whose contents count.
-const FILES: std::ops::RangeInclusive<usize> = 3..=5;
+const FILE_ARGUMENTS: std::ops::RangeInclusive<usize> = 3..=5;
 /// Arguments in all.
-const ARGUMENTS: usize = 7;
+const ARGUMENT_COUNT: usize = 7;
 
 impl Key {
     /// The function.
     pub fn new() -> Key {
-        Key { signature: Signature::exact(vec![DataType::Utf8; ARGUMENTS], Volatility::Stable) }
+        Key { signature: Signature::exact(vec![DataType::Utf8; ARGUMENT_COUNT], Volatility::Stable) }
     }
 }
 
@@ -62,11 +62,11 @@ impl ScalarUDFImpl for Key {
         let mut read: HashMap<&str, String> = HashMap::new();
         let mut keys = Vec::with_capacity(rows);
         for row in 0..rows {
-            let mut hash = Sha256::new().chain_update(ENGINE);
-            for argument in 0..ARGUMENTS {
+            let mut hash = Sha256::new().chain_update(ENGINE_VERSION);
+            for argument in 0..ARGUMENT_COUNT {
                 let text = texts.get(argument, row);
                 let part = match text {
-                    Some(name) if FILES.contains(&argument) => {
+                    Some(name) if FILE_ARGUMENTS.contains(&argument) => {
                         read.entry(name).or_insert_with(|| contents(name)).as_str()
                     }
                     other => other.unwrap_or_default(),

@@ -4,7 +4,7 @@ use statrs::distribution::{ChiSquared, ContinuousCDF, Normal};
 use statrs::function::gamma::ln_gamma;
 
 /// Probabilities below this are computed by their logarithms.
-const SMALL: f64 = 1e-290;
+const MIN_DIRECT_PROBABILITY: f64 = 1e-290;
 /// The least probability that is reported.
 const MIN_PROBABILITY: f64 = 1e-300;
 
@@ -19,7 +19,7 @@ pub fn ln_chi_square_tail(value: f64, dof: f64) -> f64 {
         return 0.0;
     }
     let exact = ChiSquared::new(dof).map_or(1.0, |d| d.sf(value));
-    if exact > SMALL {
+    if exact > MIN_DIRECT_PROBABILITY {
         return exact.min(1.0).ln();
     }
     // The continued fraction of the incomplete gamma function (Abramowitz and Stegun 6.5.31) by Lentz's method.
@@ -44,7 +44,7 @@ pub fn ln_chi_square_tail(value: f64, dof: f64) -> f64 {
 /// ln of the probability that χ² with `dof` degrees of freedom is below `value`.
 fn ln_chi_square_below(value: f64, dof: f64) -> f64 {
     let below = ChiSquared::new(dof).map_or(1.0, |d| d.cdf(value));
-    if below > SMALL {
+    if below > MIN_DIRECT_PROBABILITY {
         return below.ln();
     }
     // The series of the incomplete gamma function (Abramowitz and Stegun 6.5.29).
@@ -84,7 +84,7 @@ pub fn normal_two_sided(z: f64) -> f64 {
 /// Natural logarithm of [`normal_two_sided`], without a floor.
 pub fn ln_normal_two_sided(z: f64) -> f64 {
     let exact = 2.0 * Normal::standard().sf(z.abs());
-    if exact > SMALL { exact.min(1.0).ln() } else { ln_chi_square_tail(z * z, 1.0) }
+    if exact > MIN_DIRECT_PROBABILITY { exact.min(1.0).ln() } else { ln_chi_square_tail(z * z, 1.0) }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use nalgebra::{Cholesky, DMatrix, Dyn};
 
 /// Size below which a triangle is inverted column by column.
-const DIRECT: usize = 24;
+const MAX_DIRECT_SIZE: usize = 24;
 
 /// V⁻¹ = L⁻ᵀL⁻¹.
 pub fn inverse(factor: &Cholesky<f64, Dyn>) -> DMatrix<f64> {
@@ -15,7 +15,7 @@ pub fn inverse(factor: &Cholesky<f64, Dyn>) -> DMatrix<f64> {
 fn triangle(l: &DMatrix<f64>) -> DMatrix<f64> {
     let n = l.nrows();
     let mut out = DMatrix::zeros(n, n);
-    if n <= DIRECT {
+    if n <= MAX_DIRECT_SIZE {
         for j in 0..n {
             out[(j, j)] = 1.0 / l[(j, j)];
             for i in j + 1..n {

@@ -9,7 +9,7 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 /// Lengths whose plans are kept. All threads share them: the tables of a long record are large.
 const MAX_PLANS: usize = 16;
-static PLANS: Mutex<Vec<Plan>> = Mutex::new(vec![]);
+static CACHED_PLANS: Mutex<Vec<Plan>> = Mutex::new(vec![]);
 
 /// What transforms of one length share.
 #[derive(Clone)]
@@ -22,7 +22,7 @@ struct Plan {
 }
 
 /// Longest series whose working memory each thread keeps, samples: fresh memory costs as much as a tenth of a transform.
-const KEPT: usize = 1 << 20;
+const MAX_KEPT_SAMPLES: usize = 1 << 20;
 
 /// Working memory of transforms.
 #[derive(Default)]
@@ -32,11 +32,11 @@ struct Work {
 }
 
 thread_local! {
-    static WORK: RefCell<Work> = RefCell::default();
+    static THREAD_WORK: RefCell<Work> = RefCell::default();
 }
 
 fn plan(n: usize) -> Plan {
-    let mut plans = PLANS.lock().unwrap_or_else(PoisonError::into_inner);
+    let mut plans = CACHED_PLANS.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(at) = plans.iter().position(|p| p.n == n) {
         let found = plans.remove(at);
         plans.push(found.clone());
@@ -69,11 +69,11 @@ pub fn dct2(values: &[f64]) -> Vec<f64> {
     ordered.extend(values.chunks(2).map(|pair| pair[0]));
     ordered.extend(values.chunks_exact(2).rev().map(|pair| pair[1]));
     let plan = plan(n);
-    WORK.with_borrow_mut(|work| {
+    THREAD_WORK.with_borrow_mut(|work| {
         work.spectrum.resize(n / 2 + 1, Complex::ZERO);
         work.scratch.resize(plan.forward.get_scratch_len(), Complex::ZERO);
         let out = transformed(ordered, &plan, work);
-        if n > KEPT {
+        if n > MAX_KEPT_SAMPLES {
             *work = Work::default();
         }
         out
@@ -191,7 +191,7 @@ pub fn sinusoid_modes(n: usize, omega: f64, phase: f64) -> [Vec<f64>; 2] {
 /// The largest length up to `n` without a prime factor above 11, at which transforms are several times faster, or else above
 /// 31. It leaves out a few samples at the end, a five-hundredth at most; `n` itself where that is not enough.
 pub fn fast_length(n: usize) -> usize {
-    const PRIMES: [usize; 11] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31];
+    const SMALL_PRIMES: [usize; 11] = [2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31];
     let with = |primes: &[usize]| {
         let fast = |length: &usize| {
             let mut rest: usize = *length;
@@ -205,7 +205,7 @@ pub fn fast_length(n: usize) -> usize {
         (n - n / 500..=n).rev().find(fast)
     };
     // Up to 11 there are vector instructions for each factor.
-    with(&PRIMES[..5]).or_else(|| with(&PRIMES)).unwrap_or(n)
+    with(&SMALL_PRIMES[..5]).or_else(|| with(&SMALL_PRIMES)).unwrap_or(n)
 }
 
 #[cfg(test)]

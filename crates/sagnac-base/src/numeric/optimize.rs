@@ -46,9 +46,9 @@ pub fn bisect(mut inside: f64, mut outside: f64, times: usize, holds: impl Fn(f6
 /// The argument of the minimum of a function with a single minimum between `low` and `high`, by `times` golden sections
 /// (Kiefer 1953): each leaves 0.618 of the span.
 pub fn golden_section(mut low: f64, mut high: f64, times: usize, of: impl Fn(f64) -> f64) -> f64 {
-    const RATIO: f64 = 0.618_033_988_749_895;
+    const GOLDEN_SECTION_RATIO: f64 = 0.618_033_988_749_895;
     for _ in 0..times {
-        let (a, b) = (high - RATIO * (high - low), low + RATIO * (high - low));
+        let (a, b) = (high - GOLDEN_SECTION_RATIO * (high - low), low + GOLDEN_SECTION_RATIO * (high - low));
         if of(a) < of(b) { high = b } else { low = a }
     }
     0.5 * (low + high)

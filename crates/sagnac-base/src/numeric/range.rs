@@ -5,19 +5,19 @@
 
 /// Largest magnitude that is taken for a number. No sensor gives more; beyond, one field could make every figure of a
 /// record overflow.
-pub const LARGEST: f64 = 1e60;
+pub const MAX_MAGNITUDE: f64 = 1e60;
 
 /// Magnitudes below this are zero: no sensor resolves them, and their squares would vanish.
-pub const SMALLEST: f64 = 1e-60;
+pub const MIN_MAGNITUDE: f64 = 1e-60;
 
 /// True for a number that can be reckoned with: neither NaN nor infinite nor absurdly large.
 pub fn usable(value: f64) -> bool {
-    value.abs() <= LARGEST
+    value.abs() <= MAX_MAGNITUDE
 }
 
-/// The value with zero in place of magnitudes below [`SMALLEST`], and of −0.
+/// The value with zero in place of magnitudes below [`MIN_MAGNITUDE`], and of −0.
 pub fn settled(value: f64) -> f64 {
-    if value.abs() < SMALLEST { 0.0 } else { value }
+    if value.abs() < MIN_MAGNITUDE { 0.0 } else { value }
 }
 
 /// A closed interval of numbers, both ends included. One with `low > high` holds none.

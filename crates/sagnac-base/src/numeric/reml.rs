@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use std::ops::ControlFlow;
 
 /// Steps of the ascent.
-const STEPS: usize = 60;
+const ASCENT_STEPS: usize = 60;
 
 /// A linear model fitted by restricted maximum likelihood.
 #[derive(Debug, Clone)]
@@ -138,7 +138,7 @@ pub fn fit(
     let mut variance_components: Vec<f64> = units.iter().map(|u| u * share).collect();
     let mut state = evaluate(y, x, fixed, components, &variance_components)?;
     let mut damping = Damping { value: 1e-3, eased_by: 0.2, least: 1e-6, raised_by: 8.0, least_raised: 1e-4 };
-    for _ in 0..STEPS {
+    for _ in 0..ASCENT_STEPS {
         if components.is_empty() {
             break;
         }
@@ -311,7 +311,7 @@ fn inverse_of(information: DMatrix<f64>) -> DMatrix<f64> {
     information.clone().pseudo_inverse(least).unwrap_or(information)
 }
 
-/// What the covariance of the coefficients lacks because the variance components, and with them the weights, are estimated: weights
+/// Part that the covariance of the coefficients lacks because the variance components, and with them the weights, are estimated: weights
 /// that scatter about the best ones make coefficients less certain, and the covariance at the variance components found is too small
 /// by as much again (Kackar and Harville 1984; Kenward and Roger 1997). Of the variance components that are not at their end of zero,
 /// since those that are do not scatter to both sides. `products` are those of the projector with the components.

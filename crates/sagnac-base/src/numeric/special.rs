@@ -11,12 +11,12 @@ pub fn hurwitz_zeta_3(q: f64) -> f64 {
     if q <= 0.0 {
         return f64::INFINITY;
     }
-    const DIRECT: u32 = 16;
+    const DIRECT_TERMS: u32 = 16;
     let mut sum = 0.0;
-    for j in (0..DIRECT).rev() {
+    for j in (0..DIRECT_TERMS).rev() {
         sum += (q + f64::from(j)).powi(-3);
     }
-    let a = q + f64::from(DIRECT);
+    let a = q + f64::from(DIRECT_TERMS);
     let inverse2 = 1.0 / (a * a);
     // ∫ x^-3 from a, half the first term, then Bernoulli terms: s/12, s(s+1)(s+2)/720, s..(s+4)/30240, ...
     sum + inverse2

@@ -24,11 +24,11 @@ const MIN_ON_GRID: f64 = 0.8;
 /// Longest time before the first crossing, and in a step that is not passed through, that is taken for movement: a share of it.
 const TURN_SHARE: f64 = 0.25;
 /// Stretches whose means are set against the noise.
-const STRETCHES: usize = 24;
+const STRETCH_COUNT: usize = 24;
 /// Values in a stretch at least.
 const MIN_IN_STRETCH: usize = 8;
 /// Probability by chance below which means of stretches scatter by more than noise.
-const MOVES: f64 = 1e-3;
+const MOTION_SIGNIFICANCE: f64 = 1e-3;
 
 /// The step of readings on a grid that is coarse against their range; `None` where there is none.
 pub fn coarse_step(values: &[f64]) -> Option<f64> {
@@ -120,7 +120,7 @@ pub fn between_steps(values: &[f64]) -> Option<Vec<f64>> {
 /// neighbouring values show. Missing values are NaN.
 pub fn is_steady(values: &[f64]) -> bool {
     let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
-    let length = finite.len() / STRETCHES;
+    let length = finite.len() / STRETCH_COUNT;
     if length < MIN_IN_STRETCH {
         return false;
     }
@@ -133,7 +133,7 @@ pub fn is_steady(values: &[f64]) -> bool {
         finite.chunks_exact(length).map(|c| c.iter().sum::<f64>() / length as f64).collect();
     let middle = means.iter().sum::<f64>() / means.len() as f64;
     let square: f64 = means.iter().map(|m| (m - middle).powi(2)).sum();
-    chi_square_tail(square * length as f64 / white, (means.len() - 1) as f64) > MOVES
+    chi_square_tail(square * length as f64 / white, (means.len() - 1) as f64) > MOTION_SIGNIFICANCE
 }
 
 #[cfg(test)]

@@ -1,6 +1,6 @@
 //! What a unit measures, in words.
 
-use super::{BASES, Unit};
+use super::{BASE_COUNT, Unit};
 use crate::message::{Arg, Note, note};
 
 impl Unit {
@@ -11,7 +11,7 @@ impl Unit {
                 return Note::new(*name).into();
             }
         }
-        const NAMES: [&str; BASES] = [
+        const BASE_NAMES: [&str; BASE_COUNT] = [
             "dimension.base.angle",
             "dimension.base.time",
             "dimension.base.temperature",
@@ -22,7 +22,7 @@ impl Unit {
             "dimension.base.current",
             "dimension.base.count",
         ];
-        let powers = NAMES.into_iter().zip(self.dimension).filter(|(_, halves)| *halves != 0);
+        let powers = BASE_NAMES.into_iter().zip(self.dimension).filter(|(_, halves)| *halves != 0);
         let powers = powers.map(|(name, halves)| {
             let exponent = Arg::Stated(f64::from(halves) / 2.0);
             note!("dimension.power", base = Note::new(name), exponent)

@@ -15,6 +15,7 @@
 //!
 //! Other units exist at the edges only: in files that are read and in numbers that are shown.
 
+mod arithmetic;
 mod describe;
 mod dimension;
 mod error;
@@ -27,7 +28,7 @@ pub use error::UnitError;
 use parse::Parser;
 pub use rate::RateUnit;
 use std::fmt;
-use symbols::{CELSIUS, FAHRENHEIT};
+use symbols::{CELSIUS_SYMBOLS, FAHRENHEIT_SYMBOLS};
 
 /// A conversion of values: `value * factor + offset`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -89,8 +90,8 @@ impl Unit {
             return Err(parser.grammar("unit_error.reason.rest"));
         }
         let offset = match trimmed {
-            name if CELSIUS.contains(&name) => 273.15,
-            name if FAHRENHEIT.contains(&name) => 459.67 * 5.0 / 9.0,
+            name if CELSIUS_SYMBOLS.contains(&name) => 273.15,
+            name if FAHRENHEIT_SYMBOLS.contains(&name) => 459.67 * 5.0 / 9.0,
             _ => 0.0,
         };
         Ok(Unit { text: trimmed.to_owned(), factor, offset, dimension })
@@ -214,6 +215,21 @@ mod tests {
             ("м/с²", "m/s^2"),
             ("об/мин", "rpm"),
             ("град/√ч", "deg/sqrt(h)"),
+            ("rad s^-1", "rad/s"),
+            ("rad.s-1", "rad/s"),
+            ("rad s-1", "rad/s"),
+            ("rad*s**-1", "rad/s"),
+            ("deg s-1", "deg/s"),
+            ("deg·s⁻¹", "deg/s"),
+            ("Degrees/s", "deg/s"),
+            ("DPS", "dps"),
+            ("Deg/Sec", "deg/s"),
+            ("radps", "rad/s"),
+            ("degrees/second", "deg/s"),
+            ("m s^-2", "m/s^2"),
+            ("m/s2", "m/s^2"),
+            ("m.s-2", "m/s^2"),
+            ("°F", "degF"),
         ] {
             assert!((factor(a, b) - 1.0).abs() < 1e-14, "{a} {b}");
         }
@@ -232,6 +248,22 @@ mod tests {
         }
         assert!((f.convert(68.0, &c).unwrap() - 20.0).abs() < 1e-12);
         assert_eq!(factor("ppm/K", "ppm/degC"), 1.0);
+    }
+
+    #[test]
+    fn prefixes_count_and_no_suggestion_leaves_one_out() {
+        for (a, b, by) in
+            [("mdps", "dps", 1e-3), ("udps", "dps", 1e-6), ("kHz", "Hz", 1e3), ("mradps", "rad/s", 1e-3)]
+        {
+            assert!((factor(a, b) / by - 1.0).abs() < 1e-12, "{a}");
+        }
+        for odd in ["cdps", "xdps", "zrad"] {
+            assert!(
+                matches!(Unit::parse(odd), Err(UnitError::Unknown { suggestion: None, .. })),
+                "{odd}: {:?}",
+                Unit::parse(odd)
+            );
+        }
     }
 
     #[test]

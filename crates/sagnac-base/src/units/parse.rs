@@ -1,8 +1,11 @@
 //! The grammar of units: products, powers, roots.
 
-use super::dimension::{BASES, Dimension};
+use super::dimension::{BASE_COUNT, Dimension};
 use super::error::UnitError;
-use super::symbols::{SUGGESTED, symbol};
+use super::symbols::{SUGGESTED_SYMBOLS, differ_by_prefix, symbol};
+
+/// Characters between the symbols of a product.
+const BLANKS: [char; 3] = [' ', '\t', '\u{a0}'];
 
 pub(super) struct Parser<'a> {
     pub text: &'a str,
@@ -16,12 +19,12 @@ impl Parser<'_> {
     }
 
     fn skip_space(&mut self) {
-        self.rest = self.rest.trim_start_matches([' ', '\t', '\u{a0}']);
+        self.rest = self.rest.trim_start_matches(BLANKS);
     }
 
+    /// Takes the sign with the blanks before it; where it is another, the blanks stay.
     fn take(&mut self, c: char) -> bool {
-        self.skip_space();
-        match self.rest.strip_prefix(c) {
+        match self.rest.trim_start_matches(BLANKS).strip_prefix(c) {
             Some(rest) => {
                 self.rest = rest;
                 true
@@ -37,9 +40,13 @@ impl Parser<'_> {
         }
         let (mut factor, mut dimension) = self.power()?;
         loop {
+            let next = self.rest.trim_start_matches(BLANKS);
             let divide = if self.take('/') {
                 true
-            } else if ['*', '·', '⋅', '∙', '×'].into_iter().any(|sign| self.take(sign)) {
+            } else if ['*', '·', '⋅', '∙', '×', '.'].into_iter().any(|sign| self.take(sign)) {
+                false
+            } else if next.len() < self.rest.len() && next.starts_with(char::is_alphabetic) {
+                // A blank multiplies, as in `rad s^-1`.
                 false
             } else {
                 break;
@@ -57,7 +64,18 @@ impl Parser<'_> {
 
     fn power(&mut self) -> Result<(f64, Dimension), UnitError> {
         let (factor, dimension) = self.atom()?;
-        let halves: i8 = if self.take('^') {
+        let signed = |rest: &str| {
+            let digits = rest.strip_prefix('-').unwrap_or(rest);
+            digits.starts_with(|c: char| ('1'..='6').contains(&c))
+        };
+        let halves: i8 = if self.take('^')
+            || self.rest.trim_start_matches(BLANKS).strip_prefix("**").is_some_and(|r| {
+                self.rest = r;
+                true
+            }) {
+            self.exponent()?
+        } else if signed(self.rest) && dimension != [0; BASE_COUNT] {
+            // Without a sign of a power: `s-1`, `s2`.
             self.exponent()?
         } else {
             let sign = if self.take('⁻') { -1 } else { 1 };
@@ -71,7 +89,7 @@ impl Parser<'_> {
     }
 
     fn raise(&self, factor: f64, dimension: Dimension, halves: i8) -> Result<(f64, Dimension), UnitError> {
-        let mut out = [0; BASES];
+        let mut out = [0; BASE_COUNT];
         for (o, d) in out.iter_mut().zip(dimension) {
             let twice = i16::from(d) * i16::from(halves);
             if twice % 2 != 0 {
@@ -114,6 +132,7 @@ impl Parser<'_> {
             return self.raise(factor, dimension, 1);
         }
         let end = self.rest.find(|c: char| "/*·⋅∙×^¹²³⁻() \t\u{a0}√".contains(c)).unwrap_or(self.rest.len());
+        let end = self.split(end);
         let (name, rest) = self.rest.split_at(end);
         if name.is_empty() {
             return Err(self.grammar("unit_error.reason.symbol"));
@@ -125,12 +144,24 @@ impl Parser<'_> {
         }
         symbol(name).ok_or_else(|| UnitError::Unknown {
             symbol: name.to_owned(),
-            suggestion: SUGGESTED
+            suggestion: SUGGESTED_SYMBOLS
                 .iter()
                 .map(|s| (strsim::damerau_levenshtein(&name.to_lowercase(), &s.to_lowercase()), *s))
-                .filter(|(distance, s)| *distance <= 1 + s.len() / 4)
+                .filter(|(distance, s)| *distance <= 1 + s.len() / 4 && !differ_by_prefix(name, s))
                 .min_by_key(|(distance, _)| *distance)
                 .map(|(_, s)| s.to_owned()),
         })
+    }
+    /// The end of the symbol that begins the rest, at most at `end`: before a point that multiplies, or before an exponent.
+    fn split(&self, end: usize) -> usize {
+        let whole = self.rest.get(..end).unwrap_or_default();
+        if symbol(whole).is_some() {
+            return end;
+        }
+        let mut ends = whole
+            .char_indices()
+            .filter(|(_, c)| *c == '.' || *c == '-' || c.is_ascii_digit())
+            .map(|(i, _)| i);
+        ends.rfind(|&i| whole.get(..i).is_some_and(|head| symbol(head).is_some())).unwrap_or(end)
     }
 }

@@ -8,7 +8,7 @@ pub(crate) const SLOW_NOISE: [&str; 4] =
 pub(super) const NOISE_OF_FIT: [&str; 3] = ["angle_random_walk", "angle_random_walk_white", "quantization"];
 
 /// Every measurand of a gyro at rest that follows from the noise of the record.
-pub(crate) const NOISE: [&str; 17] = [
+pub(crate) const NOISE_MEASURANDS: [&str; 17] = [
     "angle_random_walk",
     "angle_random_walk_white",
     "angle_random_walk_readout",

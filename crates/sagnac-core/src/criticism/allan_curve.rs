@@ -21,7 +21,7 @@ const HARMLESS_DIFFERENCE: f64 = 0.02;
 /// Least degrees of freedom of a point that is read.
 const MIN_EDF: f64 = 4.0;
 /// Coverage of the intervals that are compared.
-const COVERAGE: f64 = 0.95;
+const INTERVAL_COVERAGE: f64 = 0.95;
 
 /// A coefficient as the curve reads it, everything else taken out.
 struct Reading {
@@ -89,12 +89,12 @@ fn reading(
     };
     let known = described.propagate(level).standard_uncertainty;
     let dof = 0.5 / (0.5 / seen_line.dof + known * known);
-    let bounds = Spread::ChiSquare { dof }.interval(ratio, COVERAGE)?;
+    let bounds = Spread::ChiSquare { dof }.interval(ratio, INTERVAL_COVERAGE)?;
     let share = expected.iter().map(share).sum::<f64>() / expected.len() as f64;
     let of = |r: f64| coefficient * ((r * r - (1.0 - share)).max(0.0) / share).sqrt();
     Some(Reading {
         value: of(ratio),
-        interval: Interval { low: of(bounds.low), high: of(bounds.high), coverage: COVERAGE },
+        interval: Interval { low: of(bounds.low), high: of(bounds.high), coverage: INTERVAL_COVERAGE },
         from_s: seen_line.from_s,
         to_s: seen_line.to_s,
     })
@@ -110,10 +110,10 @@ fn unclaimed(curve: &Curve, described: &Described, term: NoiseType, tau0_s: f64)
     // The ordinate at the reading time is the coefficient, times 0.664 for flicker.
     let unit = unit_allan_variance(term, reading_time_s(term)).sqrt();
     let of = |ordinate: f64| (ordinate.powi(2) - expected.powi(2)).max(0.0).sqrt() / unit;
-    let bounds = Spread::ChiSquare { dof: line.dof }.interval(line.value, COVERAGE)?;
+    let bounds = Spread::ChiSquare { dof: line.dof }.interval(line.value, INTERVAL_COVERAGE)?;
     Some(Reading {
         value: of(line.value),
-        interval: Interval { low: of(bounds.low), high: of(bounds.high), coverage: COVERAGE },
+        interval: Interval { low: of(bounds.low), high: of(bounds.high), coverage: INTERVAL_COVERAGE },
         from_s: line.from_s,
         to_s: line.to_s,
     })

@@ -20,7 +20,7 @@ mod warm_up;
 mod white_floor;
 
 #[cfg(test)]
-pub(crate) use affected::{NOISE, SLOW_NOISE};
+pub(crate) use affected::{NOISE_MEASURANDS, SLOW_NOISE};
 
 use crate::estimate::{Estimate, Finding, Objection};
 use crate::evidence::{ComparisonEvidence, GyroEvidence};

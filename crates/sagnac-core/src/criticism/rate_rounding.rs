@@ -3,7 +3,7 @@
 //! Rounding of angle increments carries its remainder on, and means lose nothing. Rounding of a rate forgets it: unless noise moves
 //! the rate by about half a step from sample to sample, the noise that is left is that of the steps, or none at all.
 
-use super::affected::NOISE;
+use super::affected::NOISE_MEASURANDS;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::GyroEvidence;
 use crate::message::note;
@@ -19,6 +19,6 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
         RateRounding::Constant => (note!("criticism_found.constant_rate"), Some("static_bias")),
     };
     let advice = note!("criticism_advice.rate_rounding");
-    let measurands = NOISE.into_iter().chain(more).collect();
+    let measurands = NOISE_MEASURANDS.into_iter().chain(more).collect();
     vec![Finding { measurands, holds: Holds::Nothing, found, advice }]
 }

@@ -5,7 +5,7 @@
 //! by chance only. A filter leaves less power at the lowest frequencies than any noise of a gyro has. Either
 //! way random walk and flicker look smaller than they are.
 
-use super::affected::{NOISE, SLOW_NOISE};
+use super::affected::{NOISE_MEASURANDS, SLOW_NOISE};
 use crate::estimate::{Finding, Holds, normal_probability};
 use crate::evidence::{Course, GyroEvidence};
 use crate::message::{Arg, note};
@@ -125,7 +125,7 @@ fn hole(gyro: &GyroEvidence) -> Option<Finding> {
         measurands: if slow_alone {
             SLOW_NOISE.to_vec()
         } else {
-            NOISE.into_iter().chain(["static_bias"]).collect()
+            NOISE_MEASURANDS.into_iter().chain(["static_bias"]).collect()
         },
         holds: Holds::Nothing,
         found: note!("criticism_found.hole", to_hz = Arg::rounded(to_hz, 2), ratio = Arg::rounded(ratio, 2)),

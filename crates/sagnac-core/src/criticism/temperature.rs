@@ -3,7 +3,7 @@
 //! A model of noise takes what follows a temperature for slow noise. Means over a few dozen parts of the recording and a
 //! parabola over temperature know nothing of that model.
 
-use super::affected::NOISE;
+use super::affected::NOISE_MEASURANDS;
 use crate::estimate::{Finding, Holds};
 use crate::evidence::{GyroEvidence, Pair};
 use crate::message::{Arg, note};
@@ -42,7 +42,7 @@ pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
     });
     let Some((name, followed)) = found.max_by(|a, b| a.1.share.total_cmp(&b.1.share)) else { return vec![] };
     vec![Finding {
-        measurands: NOISE.into_iter().chain(["static_bias"]).collect(),
+        measurands: NOISE_MEASURANDS.into_iter().chain(["static_bias"]).collect(),
         holds: Holds::Nothing,
         found: note!(
             "criticism_found.temperature",

@@ -6,7 +6,7 @@ use crate::rate_table::noise::Rows;
 use nalgebra::DVector;
 
 /// Rows of all stretches together.
-const PARTS: usize = 160;
+const TOTAL_ROWS: usize = 160;
 
 /// Rows of one stretch at least: what happens within it tells its noise.
 const LEAST_PARTS: usize = 6;
@@ -125,7 +125,7 @@ pub fn cut(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option
     let mut beside = vec![vec![]; blocks.list.first().map_or(0, |b| b.beside.len())];
     for (number, (from, to)) in stretches.iter().enumerate() {
         let length = to - from;
-        let parts = (PARTS * length / total.max(1)).max(LEAST_PARTS).min(length);
+        let parts = (TOTAL_ROWS * length / total.max(1)).max(LEAST_PARTS).min(length);
         for k in 0..parts {
             let list = &blocks.list[from + length * k / parts..from + length * (k + 1) / parts];
             let weighted = |value: &dyn Fn(&Block) -> f64| {

@@ -15,9 +15,9 @@ use crate::numeric::reml;
 use nalgebra::{DMatrix, DVector};
 
 /// Strengths of flicker tried.
-const STRENGTHS: usize = 14;
+const STRENGTH_COUNT: usize = 14;
 /// Largest B over what a record can show.
-const LARGEST: f64 = 20.0;
+const MAX_STRENGTH_RATIO: f64 = 20.0;
 /// Weight, of the largest, below which a strength is left out.
 const LEAST_WEIGHT: f64 = 1e-3;
 
@@ -37,8 +37,8 @@ pub fn means(cut: &Cut, runs: &DMatrix<f64>, fixed: &DMatrix<f64>) -> Option<Vec
     let flicker = cut.rows.flicker();
     let noise = all.iter().zip(&plain.variance_components).fold(fixed.clone(), |sum, (v, s)| sum + v * *s);
     let visible = visible(cut, &noise, &flicker).filter(|v| *v > 0.0 && v.is_finite())?;
-    let width = LARGEST.ln_1p() / STRENGTHS as f64;
-    let mut possible: Vec<PossibleMeans> = (0..STRENGTHS)
+    let width = MAX_STRENGTH_RATIO.ln_1p() / STRENGTH_COUNT as f64;
+    let mut possible: Vec<PossibleMeans> = (0..STRENGTH_COUNT)
         .filter_map(|i| {
             // Equal steps of ln(B + visible) carry equal density.
             let b = visible * ((i as f64 + 0.5) * width).exp_m1();

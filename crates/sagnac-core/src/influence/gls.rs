@@ -4,7 +4,7 @@ use crate::numeric::reml::{self, Fit};
 use nalgebra::{DMatrix, DVector};
 
 /// Share of the whole covariance below which a component does not count.
-const SHARE: f64 = 1e-3;
+const MIN_VARIANCE_SHARE: f64 = 1e-3;
 
 /// Fits a model as [`reml::fit`]; components without a share in the noise are left out of it, and so is the doubt about
 /// them: how slow noise that is not seen might move the mean of the whole record is no part of a single mean. The first
@@ -33,5 +33,5 @@ pub fn shown(fit: &Fit, components: &[DMatrix<f64>]) -> Vec<usize> {
     let parts: Vec<f64> =
         components.iter().zip(&fit.variance_components).map(|(v, s)| s * v.trace()).collect();
     let total: f64 = parts.iter().sum();
-    (0..components.len()).filter(|k| parts[*k] > SHARE * total).collect()
+    (0..components.len()).filter(|k| parts[*k] > MIN_VARIANCE_SHARE * total).collect()
 }

@@ -6,7 +6,7 @@ use crate::numeric::order::SortNumbers;
 use crate::rate_table::blocks::Blocks;
 
 /// Share of the range of a level within which it counts as the same.
-const SAME: f64 = 0.03;
+const SAME_LEVEL_SHARE: f64 = 0.03;
 
 /// One interval at constant level.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +43,7 @@ pub fn find(blocks: &Blocks, test: &ComparisonTest, axes: &[String], files: &[Fi
     found.reference = test.reference;
     let largest =
         found.list.iter().flat_map(|i| &i.levels).fold(0.0, |m: f64, l| m.max((l - test.reference).abs()));
-    found.tolerance = SAME * largest;
+    found.tolerance = SAME_LEVEL_SHARE * largest;
     let list = std::mem::take(&mut found.list);
     for interval in list {
         match settled(blocks, interval.blocks, test.settling_s, test.minimum_interval_s) {
@@ -127,7 +127,7 @@ fn tolerance(values: &[f64]) -> f64 {
     changes.sort_ascending();
     let median = changes.get(changes.len() / 2).copied().unwrap_or(0.0);
     // Median of |difference| of white noise is 0.6745·√2 σ.
-    (6.0 * median / 0.954).max(SAME * range)
+    (6.0 * median / 0.954).max(SAME_LEVEL_SHARE * range)
 }
 
 impl Intervals {

@@ -6,7 +6,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 use statrs::distribution::{ContinuousCDF, FisherSnedecor};
 
 /// Probability below which a quantity is taken to go with the levels.
-pub const FOLLOWS: f64 = 1e-3;
+pub const MAX_CHANCE_PROBABILITY: f64 = 1e-3;
 
 /// A recorded quantity that was looked at.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,7 +41,7 @@ impl Following {
 
     /// True where it goes with the levels by more than chance.
     pub fn follows(&self) -> bool {
-        self.by_chance < FOLLOWS
+        self.by_chance < MAX_CHANCE_PROBABILITY
     }
 }
 

@@ -15,13 +15,13 @@ use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Draws of the errors.
-const DRAWS: usize = 4000;
+const ERROR_DRAWS: usize = 4000;
 /// Standard deviations of a difference within which a run may be the extreme one.
 const MAY_BE: f64 = 3.0;
 /// Pairs of which bounds are drawn; of the others none comes near.
-const PAIRS: usize = 60;
+const MAX_PAIRS: usize = 60;
 /// Quarters of a normal score at which the confidence distribution is tabled.
-const SCORES: std::ops::RangeInclusive<i32> = -12..=12;
+const SCORE_QUARTERS: std::ops::RangeInclusive<i32> = -12..=12;
 
 /// Means of runs in one noise that they may have.
 #[derive(Debug, Clone)]
@@ -63,7 +63,7 @@ pub fn range(list: &[PossibleMeans]) -> Option<Range> {
     sizes.sort_ascending();
     let pairs = pairs(&mean, &noise, &errors);
     let value = quantile(&sizes, 0.5);
-    let points = SCORES
+    let points = SCORE_QUARTERS
         .map(|q| 0.25 * f64::from(q))
         .map(|z| {
             let p = normal_probability(z);
@@ -83,14 +83,14 @@ fn width(values: impl Iterator<Item = f64>) -> f64 {
 /// Errors of the means, each noise with its share of the draws, stretched as its scale is uncertain.
 fn draws(list: &[PossibleMeans]) -> Option<Vec<DVector<f64>>> {
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x0072_616e_6765);
-    let mut all = Vec::with_capacity(DRAWS + list.len());
+    let mut all = Vec::with_capacity(ERROR_DRAWS + list.len());
     for p in list {
         let eigen = p.noise.clone().symmetric_eigen();
         let root =
             &eigen.eigenvectors * DMatrix::from_diagonal(&eigen.eigenvalues.map(|v| v.max(0.0).sqrt()));
         let dof = p.dof.clamp(1.0, 1e9);
         let scatter = ChiSquared::new(dof).ok()?;
-        for _ in 0..(p.weight * DRAWS as f64).round() as usize {
+        for _ in 0..(p.weight * ERROR_DRAWS as f64).round() as usize {
             let z = DVector::from_iterator(
                 p.values.len(),
                 (0..p.values.len()).map(|_| StandardNormal.sample(&mut rng)),
@@ -160,7 +160,7 @@ fn pairs(mean: &DVector<f64>, noise: &DMatrix<f64>, errors: &[DVector<f64>]) -> 
         .map(|(i, k)| (mean[i] - mean[k] + 2.5 * deviation(noise, i, k), i, k))
         .collect();
     all.sort_descending_by(|a| a.0);
-    all.truncate(PAIRS);
+    all.truncate(MAX_PAIRS);
     all.into_iter()
         .map(|(_, i, k)| {
             let mut drawn: Vec<f64> = errors.iter().map(|e| mean[i] - mean[k] + e[i] - e[k]).collect();

@@ -24,11 +24,11 @@ const SEARCH_RATIO: f64 = 2.0;
 /// Ratio of neighbouring time constants about the best one.
 const REFINEMENT_RATIO: f64 = 1.2;
 /// Longest time constant, in lengths of the longest interval.
-const LONGEST: f64 = 8.0;
+const MAX_TIME_CONSTANT_INTERVALS: f64 = 8.0;
 /// Loss of twice the log-likelihood up to which a time constant comes into question with 95 %.
 const IN_QUESTION: f64 = 3.84;
 /// Coverage of the intervals that two estimates of one change are compared by.
-const COVERAGE: f64 = 0.95;
+const COMPARED_COVERAGE: f64 = 0.95;
 
 /// A response that was seen.
 #[derive(Debug, Clone, PartialEq)]
@@ -152,7 +152,7 @@ impl Courses<'_> {
         let mut lengths: Vec<f64> = self.cut.rows.length_s.clone();
         lengths.sort_ascending();
         let low = *lengths.get(lengths.len() / 2)?;
-        let high = LONGEST * self.changes.lengths().fold(0.0, f64::max);
+        let high = MAX_TIME_CONSTANT_INTERVALS * self.changes.lengths().fold(0.0, f64::max);
         let count = ((high / low).ln() / SEARCH_RATIO.ln()).ceil().max(1.0) as i32;
         let tried: Vec<Tried> =
             (0..=count).filter_map(|i| self.tried(x, low * SEARCH_RATIO.powi(i))).collect();
@@ -195,7 +195,7 @@ impl Courses<'_> {
             let values = list.iter().map(|t| t.fit.coefficient(at).value);
             let (low, high) =
                 values.fold((c.value, c.value), |(low, high), v| (f64::min(low, v), f64::max(high, v)));
-            let half = 0.5 * (high - low) / normal_quantile(0.5 + 0.5 * COVERAGE);
+            let half = 0.5 * (high - low) / normal_quantile(0.5 + 0.5 * COMPARED_COVERAGE);
             Combination { standard: c.standard.hypot(half), ..c }
         };
         Some((0..x.ncols()).map(of).collect())
@@ -216,7 +216,7 @@ impl ByMeans {
     pub fn contradicts(&self) -> bool {
         let half = |c: &Combination| {
             let spread = Spread::StudentT { standard_uncertainty: c.standard, dof: c.dof };
-            spread.interval(0.0, COVERAGE).map_or(f64::INFINITY, |i| i.high)
+            spread.interval(0.0, COMPARED_COVERAGE).map_or(f64::INFINITY, |i| i.high)
         };
         (self.means.value - self.model.value).abs() > half(&self.means) + half(&self.model)
     }

@@ -6,9 +6,9 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 /// Fewest values that a capability is stated for.
 pub const LEAST_VALUES: usize = 5;
 /// Confidence in the lower bounds.
-pub const CONFIDENCE: f64 = 0.95;
+pub const BOUND_CONFIDENCE: f64 = 0.95;
 
-/// An index with its one-sided lower bound at [`CONFIDENCE`].
+/// An index with its one-sided lower bound at [`BOUND_CONFIDENCE`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Index {
     /// Value.
@@ -61,7 +61,7 @@ impl Capability {
 /// Lower bound of Cp: the deviation is at most that of the χ² quantile.
 fn cp_bound(cp: f64, values: usize) -> Option<f64> {
     let dof = values as f64 - 1.0;
-    let quantile = ChiSquared::new(dof).ok()?.inverse_cdf(1.0 - CONFIDENCE);
+    let quantile = ChiSquared::new(dof).ok()?.inverse_cdf(1.0 - BOUND_CONFIDENCE);
     Some(cp * (quantile / dof).sqrt())
 }
 
@@ -69,7 +69,7 @@ fn cp_bound(cp: f64, values: usize) -> Option<f64> {
 fn cpk_bound(cpk: f64, values: usize) -> f64 {
     let n = values as f64;
     let variance = 1.0 / (9.0 * n) + cpk * cpk / (2.0 * (n - 1.0));
-    cpk - normal_quantile(CONFIDENCE) * variance.sqrt()
+    cpk - normal_quantile(BOUND_CONFIDENCE) * variance.sqrt()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use crate::estimate::{normal_probability, normal_quantile};
 use crate::numeric::optimize::{bisect, golden_section, golden_section_maximum};
 
 /// Sections of a search; each leaves 0.618 of the span.
-const SECTIONS: usize = 60;
+const SEARCH_SECTIONS: usize = 60;
 
 /// A normal sample in which some values are only bounded.
 #[derive(Debug, Clone, PartialEq)]
@@ -29,7 +29,7 @@ impl Sample {
     /// The mean and standard deviation of largest likelihood; `None` below two different values.
     pub fn fit(&self) -> Option<Normal> {
         let (low, high) = self.span()?;
-        let mean = golden_section_maximum(low, high, SECTIONS, |mean| self.profile(mean).1);
+        let mean = golden_section_maximum(low, high, SEARCH_SECTIONS, |mean| self.profile(mean).1);
         Some(Normal { mean, deviation: self.profile(mean).0 })
     }
 
@@ -40,7 +40,7 @@ impl Sample {
         let drop = 0.5 * normal_quantile(0.5 + 0.5 * coverage).powi(2);
         let least = self.profile(best.mean).1 - drop;
         let end = |outside: f64| {
-            bisect(best.mean, outside, SECTIONS, |mean| self.profile(mean).1 >= least).middle()
+            bisect(best.mean, outside, SEARCH_SECTIONS, |mean| self.profile(mean).1 >= least).middle()
         };
         Some((end(low), end(high)))
     }
@@ -62,7 +62,8 @@ impl Sample {
     fn profile(&self, mean: f64) -> (f64, f64) {
         let far = self.values.iter().chain(&self.bounds).map(|v| (v - mean).abs()).fold(0.0, f64::max);
         let far = far.max(f64::MIN_POSITIVE).ln();
-        let log = golden_section(far - 12.0, far + 3.0, SECTIONS, |l| -self.log_likelihood(mean, l.exp()));
+        let log =
+            golden_section(far - 12.0, far + 3.0, SEARCH_SECTIONS, |l| -self.log_likelihood(mean, l.exp()));
         (log.exp(), self.log_likelihood(mean, log.exp()))
     }
 

@@ -16,7 +16,7 @@ pub const EWMA_WEIGHT: f64 = 0.2;
 /// Limits of such a mean in its standard deviations, for a false alarm in 500 values (Lucas and Saccucci 1990).
 pub const EWMA_LIMIT: f64 = 2.962;
 /// Limits of an individual value in standard deviations.
-pub const LIMIT: f64 = 3.0;
+pub const LIMIT_DEVIATIONS: f64 = 3.0;
 
 /// Mean range of two values of a normal law in standard deviations, d₂ of ISO 7870-2 for n = 2: 1.128.
 pub fn d2() -> f64 {
@@ -26,7 +26,7 @@ pub fn d2() -> f64 {
 /// Upper limit of a range of two values in mean ranges, D₄ of ISO 7870-2 for n = 2: 3.267.
 pub fn d4() -> f64 {
     let d3 = (2.0 - 4.0 / PI).sqrt();
-    1.0 + LIMIT * d3 / d2()
+    1.0 + LIMIT_DEVIATIONS * d3 / d2()
 }
 
 /// A value with its standard uncertainty.
@@ -68,7 +68,7 @@ impl Rule {
     /// How many of how many values in a row lie beyond how many standard deviations.
     fn pattern(self) -> (usize, usize, f64) {
         match self {
-            Rule::Beyond => (1, 1, LIMIT),
+            Rule::Beyond => (1, 1, LIMIT_DEVIATIONS),
             Rule::TwoOfThree => (2, 3, 2.0),
             Rule::FourOfFive => (4, 5, 1.0),
             Rule::Eight => (8, 8, 0.0),
@@ -159,7 +159,7 @@ fn points(values: &[Measured], center: f64, process: f64) -> Vec<Point> {
             let ewma_reach = EWMA_LIMIT * ewma_variance.sqrt();
             let until = deviations.get(..=i).unwrap_or_default();
             Point {
-                reach: LIMIT * variance(v).sqrt(),
+                reach: LIMIT_DEVIATIONS * variance(v).sqrt(),
                 range: i.checked_sub(1).and_then(|b| Some((v.value - values.get(b)?.value).abs())),
                 ewma,
                 ewma_reach,
@@ -195,7 +195,7 @@ mod tests {
         // ISO 7870-2, table 2, n = 2; E2 = 3 / d2 is 2.660.
         assert!((d2() - 1.128).abs() < 5e-4, "{}", d2());
         assert!((d4() - 3.267).abs() < 5e-4, "{}", d4());
-        assert!((LIMIT / d2() - 2.660).abs() < 2e-3);
+        assert!((LIMIT_DEVIATIONS / d2() - 2.660).abs() < 2e-3);
     }
 
     #[test]

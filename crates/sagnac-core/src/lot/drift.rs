@@ -5,7 +5,7 @@ use crate::estimate::normal_quantile;
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Coverage of the intervals.
-pub const COVERAGE: f64 = 0.95;
+pub const INTERVAL_COVERAGE: f64 = 0.95;
 
 /// The course of a quantity of one unit.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,7 +37,7 @@ pub fn drift(times: &[f64], values: &[Measured], common: f64) -> Option<Drift> {
     }
     let own = |v: &Measured| (v.standard * v.standard - common * common).max(0.0);
     let (first, last) = (values.first()?, values.last().filter(|_| values.len() > 1)?);
-    let z = normal_quantile(0.5 + 0.5 * COVERAGE);
+    let z = normal_quantile(0.5 + 0.5 * INTERVAL_COVERAGE);
     let variances: Vec<f64> = values.iter().map(own).collect();
     Some(Drift {
         change: last.value - first.value,

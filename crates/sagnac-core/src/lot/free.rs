@@ -6,11 +6,11 @@ use crate::numeric::optimize::bisect;
 use statrs::function::beta::beta_reg;
 
 /// Points of the quadrature over the ratio of two order statistics, and halvings of the search for a factor.
-const FINE: (u32, usize) = (400, 60);
-/// The same where factors are only compared.
-const COARSE: (u32, usize) = (60, 20);
+const FINE_SEARCH: (u32, usize) = (400, 60);
+/// Points and halvings, as in [`FINE_SEARCH`], where factors are only compared.
+const COARSE_SEARCH: (u32, usize) = (60, 20);
 /// Ranks that are compared.
-const RANKS: usize = 12;
+const COMPARED_RANKS: usize = 12;
 
 /// The example of STAT-17 in CMH-17: 18 strengths.
 #[cfg(test)]
@@ -57,7 +57,7 @@ pub fn hanson_koopmans_upper(ascending: &[f64], promise: Promise) -> Option<f64>
 /// The factor of the bound of Hanson and Koopmans from the largest of `n` values and the one at `rank` below it, which is 1 for
 /// the largest. `None` for a rank that does not stand below the largest.
 pub fn hanson_koopmans_factor(n: usize, rank: usize, promise: Promise) -> Option<f64> {
-    factor(n, rank, promise, FINE)
+    factor(n, rank, promise, FINE_SEARCH)
 }
 
 fn factor(n: usize, rank: usize, promise: Promise, (points, halvings): (u32, usize)) -> Option<f64> {
@@ -94,12 +94,12 @@ fn best_rank(n: usize, promise: Promise) -> Option<usize> {
     let quantile = normal_quantile(promise.proportion);
     let score = |from_top: f64| normal_quantile((n as f64 + 1.0 - from_top - 0.375) / (n as f64 + 0.25));
     let miss = |rank: usize| {
-        let factor = factor(n, rank, promise, COARSE)?;
+        let factor = factor(n, rank, promise, COARSE_SEARCH)?;
         let low = score(rank as f64);
         Some((low + factor * (score(1.0) - low) - quantile).abs())
     };
     (2..=n)
-        .step_by((n / RANKS).max(1))
+        .step_by((n / COMPARED_RANKS).max(1))
         .filter_map(|rank| miss(rank).map(|miss| (rank, miss)))
         .min_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(rank, _)| rank)

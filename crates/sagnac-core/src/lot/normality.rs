@@ -4,15 +4,15 @@ use crate::estimate::normal_probability;
 use crate::numeric::order::SortNumbers;
 
 /// Values from which the test is made.
-pub const LEAST: usize = 8;
+pub const MIN_VALUES: usize = 8;
 
 /// The probability that a normal sample fits worse than these values (D'Agostino and Stephens 1986, table 4.9). `None` below
-/// [`LEAST`] values, or where all are the same.
+/// [`MIN_VALUES`] values, or where all are the same.
 pub fn normality(values: &[f64]) -> Option<f64> {
     let n = values.len() as f64;
     let mean = values.iter().sum::<f64>() / n;
     let deviation = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)).sqrt();
-    if values.len() < LEAST || !(deviation > 0.0 && deviation.is_finite()) {
+    if values.len() < MIN_VALUES || !(deviation > 0.0 && deviation.is_finite()) {
         return None;
     }
     let mut z: Vec<f64> = values.iter().map(|v| (v - mean) / deviation).collect();

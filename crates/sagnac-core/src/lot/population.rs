@@ -22,7 +22,7 @@ pub const LOTS_FOR_SPREAD: usize = 5;
 /// The probability of the test of Anderson and Darling below which the law is not taken for normal.
 pub const NOT_NORMAL: f64 = 0.05;
 /// The share of the variance up to which errors are nothing.
-const NOTHING: f64 = 1e-4;
+const NEGLIGIBLE_ERROR_SHARE: f64 = 1e-4;
 /// Difference of bounds, in the deviation of the values, up to which they are one.
 const ONE_BOUND: f64 = 1e-6;
 
@@ -137,7 +137,8 @@ impl Population {
         let several = arranged.lots.len() > 1;
         let apart = several && arranged.lots.iter().any(|l| l.values.len() > 1);
         let largest = errors.last().copied().unwrap_or(0.0);
-        let simple = arranged.bounded.is_empty() && !apart && largest * largest <= NOTHING * variance;
+        let simple =
+            arranged.bounded.is_empty() && !apart && largest * largest <= NEGLIGIBLE_ERROR_SHARE * variance;
         let draws = draws(&arranged.lots, &arranged.bounded, variance, apart);
         let normality = arranged.bounded.is_empty().then(|| normality(&values)).flatten();
         Some(Population {

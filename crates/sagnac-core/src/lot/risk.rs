@@ -4,9 +4,9 @@
 use crate::estimate::normal_probability;
 
 /// Points of the quadrature over the true value.
-const POINTS: u32 = 800;
+const QUADRATURE_POINTS: u32 = 800;
 /// Deviations of the population that it reaches to.
-const REACH: f64 = 8.0;
+const REACH_DEVIATIONS: f64 = 8.0;
 
 /// A population and a test, on the scale on which both are normal.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,22 +40,26 @@ impl Judged {
         let accepted = |z: f64| normal_probability((limit - mean - z * units) / measurement);
         let density = |z: f64| (-0.5 * z * z).exp() / (2.0 * std::f64::consts::PI).sqrt();
         let consumer =
-            integral(at.max(-REACH), at.max(-REACH).max(0.0) + REACH, |z| density(z) * accepted(z));
+            integral(at.max(-REACH_DEVIATIONS), at.max(-REACH_DEVIATIONS).max(0.0) + REACH_DEVIATIONS, |z| {
+                density(z) * accepted(z)
+            });
         let producer =
-            integral(at.min(REACH).min(0.0) - REACH, at.min(REACH), |z| density(z) * (1.0 - accepted(z)));
+            integral(at.min(REACH_DEVIATIONS).min(0.0) - REACH_DEVIATIONS, at.min(REACH_DEVIATIONS), |z| {
+                density(z) * (1.0 - accepted(z))
+            });
         Some(Risk { consumer, producer })
     }
 }
 
 /// Simpson's rule.
 fn integral(from: f64, to: f64, of: impl Fn(f64) -> f64) -> f64 {
-    let step = (to - from) / f64::from(POINTS);
+    let step = (to - from) / f64::from(QUADRATURE_POINTS);
     let weight = |i: u32| match i {
-        0 | POINTS => 1.0,
+        0 | QUADRATURE_POINTS => 1.0,
         i if i % 2 == 1 => 4.0,
         _ => 2.0,
     };
-    let sum: f64 = (0..=POINTS).map(|i| weight(i) * of(from + step * f64::from(i))).sum();
+    let sum: f64 = (0..=QUADRATURE_POINTS).map(|i| weight(i) * of(from + step * f64::from(i))).sum();
     (sum * step / 3.0).max(0.0)
 }
 

@@ -7,17 +7,17 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Seed: the same lot always has the same bounds.
-const SEED: u64 = 0x006c_6f74;
+const SAMPLER_SEED: u64 = 0x006c_6f74;
 /// Draws that are left out, until the start is forgotten.
 const LEFT_OUT: usize = 300;
 /// Draws that are kept.
-const KEPT: usize = 1000;
-/// Of so many draws one is kept: those that follow each other are alike.
-const THINNED: usize = 3;
+const KEPT_DRAWS: usize = 1000;
+/// Draws of which one is kept: those that follow each other are alike.
+const DRAWS_PER_KEPT: usize = 3;
 /// Width of a slice, in the logarithm of a variance.
-const WIDTH: f64 = 1.5;
+const SLICE_WIDTH_LN: f64 = 1.5;
 /// Steps in which a slice is widened, and in which it is narrowed.
-const STEPS: usize = 40;
+const MAX_SLICE_STEPS: usize = 40;
 
 /// One draw: the variances, and what the values tell with them.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,16 +40,16 @@ pub(super) fn draws(lots: &[Lot], bounded: &[Bounded], start: f64, between_lots:
         lots: lots.to_vec(),
         logs: [start.ln(), (0.3 * start).ln()],
         between_lots,
-        rng: Xoshiro256PlusPlus::seed_from_u64(SEED),
+        rng: Xoshiro256PlusPlus::seed_from_u64(SAMPLER_SEED),
     };
-    let mut kept = Vec::with_capacity(KEPT);
-    for i in 0..LEFT_OUT + KEPT * THINNED {
+    let mut kept = Vec::with_capacity(KEPT_DRAWS);
+    for i in 0..LEFT_OUT + KEPT_DRAWS * DRAWS_PER_KEPT {
         state.slice(0);
         if between_lots {
             state.slice(1);
         }
         let draw = Draw { variances: state.variances(), level: level(&state.lots, state.variances()) };
-        if i >= LEFT_OUT && i % THINNED == 0 {
+        if i >= LEFT_OUT && i % DRAWS_PER_KEPT == 0 {
             kept.push(draw);
         }
         if !bounded.is_empty() {
@@ -89,21 +89,21 @@ impl State {
         };
         let here = if which == 0 { from[0] } else { from[1] };
         let least = density(here) + self.rng.random::<f64>().max(f64::MIN_POSITIVE).ln();
-        let mut low = here - WIDTH * self.rng.random::<f64>();
-        let mut high = low + WIDTH;
-        for _ in 0..STEPS {
+        let mut low = here - SLICE_WIDTH_LN * self.rng.random::<f64>();
+        let mut high = low + SLICE_WIDTH_LN;
+        for _ in 0..MAX_SLICE_STEPS {
             if density(low) <= least {
                 break;
             }
-            low -= WIDTH;
+            low -= SLICE_WIDTH_LN;
         }
-        for _ in 0..STEPS {
+        for _ in 0..MAX_SLICE_STEPS {
             if density(high) <= least {
                 break;
             }
-            high += WIDTH;
+            high += SLICE_WIDTH_LN;
         }
-        for _ in 0..STEPS {
+        for _ in 0..MAX_SLICE_STEPS {
             let x = low + (high - low) * self.rng.random::<f64>();
             if density(x) > least {
                 self.logs = with(x);

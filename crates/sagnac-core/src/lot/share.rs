@@ -3,7 +3,7 @@
 use statrs::distribution::{Beta, ContinuousCDF};
 
 /// Coverage of the interval.
-pub const COVERAGE: f64 = 0.95;
+pub const INTERVAL_COVERAGE: f64 = 0.95;
 
 /// A share of a population, from how many of some there were.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,7 +25,7 @@ impl Share {
             return None;
         }
         let (k, n) = (count as f64, of as f64);
-        let tail = 0.5 * (1.0 - COVERAGE);
+        let tail = 0.5 * (1.0 - INTERVAL_COVERAGE);
         let low = if count == 0 { 0.0 } else { Beta::new(k, n - k + 1.0).ok()?.inverse_cdf(tail) };
         let high = if count == of { 1.0 } else { Beta::new(k + 1.0, n - k).ok()?.inverse_cdf(1.0 - tail) };
         Some(Share { count, of, low, high })

@@ -18,18 +18,19 @@ pub const SIBLINGS_A_QUANTITY: usize = 4;
 pub const LEAST_SIBLINGS: usize = 8;
 
 /// Share of the siblings that mean and covariance rest on.
-const CORE: f64 = 0.75;
+const CORE_SHARE: f64 = 0.75;
 /// Share of the variance of a quantity that the others leave open, at least: below, it follows from them.
-const OWN: f64 = 1e-3;
+const MIN_OWN_VARIANCE_SHARE: f64 = 1e-3;
 /// Standard deviation over the mean up to which values are the same.
-const ROUNDING: f64 = 1e-12;
+const ROUNDING_DEVIATION: f64 = 1e-12;
 /// Concentration steps at most.
-const STEPS: usize = 20;
-/// Draws that are as far at which drawing ends, and draws at most.
-const ENOUGH: usize = 200;
-const DRAWS: usize = 19_999;
+const MAX_CONCENTRATION_STEPS: usize = 20;
+/// Draws as far as the unit after which drawing ends.
+const MAX_EXCEEDANCES: usize = 200;
+/// Draws at most.
+const MAX_DRAWS: usize = 19_999;
 /// Seed of the draws: a report is a function of its inputs alone.
-const SEED: u64 = 0x5a67_6e61_6320_0031;
+const DRAWS_SEED: u64 = 0x5a67_6e61_6320_0031;
 
 /// How far a unit is from its siblings.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,9 +75,9 @@ impl Core {
     /// Mean and covariance of all, then of those that are nearest to them, until the same are nearest. One sibling a column.
     fn of(siblings: &DMatrix<f64>) -> Option<Core> {
         let count = siblings.ncols();
-        let kept = ((CORE * count as f64).ceil() as usize).min(count);
+        let kept = ((CORE_SHARE * count as f64).ceil() as usize).min(count);
         let mut chosen: Vec<usize> = (0..count).collect();
-        for _ in 0..STEPS {
+        for _ in 0..MAX_CONCENTRATION_STEPS {
             let distances2 = Core::over(siblings, &chosen)?.distances2(siblings.clone())?;
             let mut order: Vec<usize> = (0..count).collect();
             order.sort_ascending_by(|a| distances2[*a]);
@@ -97,13 +98,17 @@ impl Core {
         let covariance = &values * values.transpose() / (chosen.len() as f64 - 1.0);
         let deviations = covariance.diagonal().map(f64::sqrt);
         // A quantity that is the same in all differs by its rounding.
-        if deviations.iter().zip(mean.iter()).any(|(deviation, mean)| *deviation <= ROUNDING * mean.abs()) {
+        if deviations
+            .iter()
+            .zip(mean.iter())
+            .any(|(deviation, mean)| *deviation <= ROUNDING_DEVIATION * mean.abs())
+        {
             return None;
         }
         let root = covariance.cholesky()?.unpack();
         // The part of each quantity that those before it do not have.
         let own = root.diagonal().zip_map(&deviations, |own, all| (own / all).powi(2));
-        own.iter().all(|share| *share >= OWN).then_some(Core { mean, deviations, root })
+        own.iter().all(|share| *share >= MIN_OWN_VARIANCE_SHARE).then_some(Core { mean, deviations, root })
     }
 
     /// Squares of the distances of some units, one a column.
@@ -126,9 +131,9 @@ fn columns(siblings: &[Vec<f64>]) -> DMatrix<f64> {
 
 /// Probability of such a distance for a unit and `n` siblings of one normal population in `p` quantities.
 fn chance(distance2: f64, n: usize, p: usize) -> f64 {
-    let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(DRAWS_SEED);
     let mut as_far = 0;
-    for drawn in 1..=DRAWS {
+    for drawn in 1..=MAX_DRAWS {
         let mut normal = |_, _| -> f64 { StandardNormal.sample(&mut rng) };
         let siblings = DMatrix::from_fn(p, n, &mut normal);
         let unit: Vec<f64> = (0..p).map(|j| normal(j, 0)).collect();
@@ -136,11 +141,11 @@ fn chance(distance2: f64, n: usize, p: usize) -> f64 {
         if found.is_some_and(|d| d >= distance2) {
             as_far += 1;
         }
-        if as_far == ENOUGH {
+        if as_far == MAX_EXCEEDANCES {
             return as_far as f64 / drawn as f64;
         }
     }
-    (as_far + 1) as f64 / (DRAWS + 1) as f64
+    (as_far + 1) as f64 / (MAX_DRAWS + 1) as f64
 }
 
 #[cfg(test)]

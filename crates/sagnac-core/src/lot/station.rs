@@ -3,7 +3,7 @@
 use statrs::distribution::{ContinuousCDF, StudentsT};
 
 /// Coverage of all intervals together.
-pub const COVERAGE: f64 = 0.95;
+pub const FAMILY_COVERAGE: f64 = 0.95;
 
 /// Mean of a group less that of all other values.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,7 +21,7 @@ impl Difference {
     }
 }
 
-/// Each group against all others together (Welch 1947). The intervals of all groups hold together with [`COVERAGE`]
+/// Each group against all others together (Welch 1947). The intervals of all groups hold together with [`FAMILY_COVERAGE`]
 /// (Bonferroni). `None` for a group of fewer than two values, or whose others are.
 pub fn against_others(groups: &[Vec<f64>]) -> Vec<Option<Difference>> {
     let each = |i: usize| -> Option<Difference> {
@@ -32,7 +32,7 @@ pub fn against_others(groups: &[Vec<f64>]) -> Vec<Option<Difference>> {
         let variance = own.of_mean + others.of_mean;
         let dof = variance * variance
             / (own.of_mean.powi(2) / (own.n - 1.0) + others.of_mean.powi(2) / (others.n - 1.0));
-        let tail = (1.0 - COVERAGE) / (2.0 * groups.len() as f64);
+        let tail = (1.0 - FAMILY_COVERAGE) / (2.0 * groups.len() as f64);
         let reach = StudentsT::new(0.0, 1.0, dof).ok()?.inverse_cdf(1.0 - tail);
         Some(Difference { value: own.mean - others.mean, half_width: reach * variance.sqrt() })
     };

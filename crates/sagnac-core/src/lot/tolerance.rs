@@ -4,7 +4,7 @@ use crate::estimate::{normal_probability, normal_quantile};
 use crate::numeric::optimize::bisect;
 
 /// Points of the quadrature; its error is below 1e-12 from 200 on, since the integrand is smooth and falls to nothing.
-const POINTS: u32 = 600;
+const QUADRATURE_POINTS: u32 = 600;
 
 /// A proportion of the population that a bound holds for, and the confidence in that.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -52,8 +52,8 @@ impl Spread {
             w
         };
         let (low, high) = (end(-1.0), end(1.0));
-        let step = (high - low) / f64::from(POINTS);
-        let points: Vec<(f64, f64)> = (0..=POINTS)
+        let step = (high - low) / f64::from(QUADRATURE_POINTS);
+        let points: Vec<(f64, f64)> = (0..=QUADRATURE_POINTS)
             .map(|i| low + step * f64::from(i))
             .map(|w| (w.exp(), log_density(w).exp()))
             .collect();

@@ -43,7 +43,7 @@ pub(super) fn row(
 ) -> Estimate {
     let method = "sine_response";
     match &e.sine {
-        Some(fit) => of(&OfSine { fit, method }, &fit.fit.coefficient(sine::SLOPE)),
+        Some(fit) => of(&OfSine { fit, method }, &fit.fit.coefficient(sine::SLOPE_COLUMN)),
         None => m.not_identifiable(&e.channel, None, method).note(note!("on_table.no_sine")),
     }
 }

@@ -15,8 +15,10 @@ pub fn spread(random: &Combination, factor: f64, others: &[f64]) -> Spread {
 /// Share of the standard uncertainty below which an even contribution is as good as a normal one.
 const HARDLY_EVEN: f64 = 0.5;
 
-/// Points of the even contribution that are averaged over, and of the curve.
-const POINTS: (usize, usize) = (400, 160);
+/// Points of the even contribution that are averaged over.
+const AVERAGED_POINTS: usize = 400;
+/// Points of the curve.
+const CURVE_POINTS: usize = 160;
 
 /// The spread of a value with one more contribution, of which all values up to `most` to either side are as likely. Twice the
 /// standard uncertainty would be more than there can be of it.
@@ -25,7 +27,7 @@ pub fn evenly(rest: Spread, value: f64, most: f64) -> Spread {
     if most <= HARDLY_EVEN * u {
         return spread(&Combination { value, standard: u, dof }, 1.0, &[most / 3f64.sqrt()]);
     }
-    let (fine, count) = POINTS;
+    let (fine, count) = (AVERAGED_POINTS, CURVE_POINTS);
     let shift = |i: usize| most * ((2 * i + 1) as f64 / fine as f64 - 1.0);
     let u = u.max(most / fine as f64);
     let rest = Spread::StudentT { standard_uncertainty: u, dof };

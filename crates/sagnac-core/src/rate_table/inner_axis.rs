@@ -5,7 +5,7 @@ use super::blocks::{Block, Blocks};
 /// Least rate of the inner axis that is a turn, deg/h.
 const MIN_TURN_RATE_DEG_H: f64 = 360.0;
 /// Share of the largest rate above which an axis turns.
-const TURNS: f64 = 0.1;
+const TURNING_RATE_SHARE: f64 = 0.1;
 /// Least time of turning, s.
 const LEAST_S: f64 = 1.0;
 
@@ -38,7 +38,7 @@ impl InnerAxis {
         if largest < MIN_TURN_RATE_DEG_H {
             return out;
         }
-        let turns = |b: &Block| b.table_rate.abs() > TURNS * largest;
+        let turns = |b: &Block| b.table_rate.abs() > TURNING_RATE_SHARE * largest;
         let turning = || blocks.list.iter().filter(|b| turns(b));
         let lasts_s = turning().map(|b| f64::from(b.samples)).sum::<f64>() * blocks.interval_s;
         if lasts_s < LEAST_S {

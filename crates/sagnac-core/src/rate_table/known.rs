@@ -12,7 +12,7 @@ use nalgebra::{DMatrix, DVector};
 pub const LEAST_SPAN_DEG_H: f64 = 0.1;
 
 /// Parts that all stretches of a channel are cut into.
-const PARTS: usize = 200;
+const TOTAL_PARTS: usize = 200;
 
 /// A stretch as it was found: blocks from the first to before the end.
 #[derive(Debug, Clone, PartialEq)]
@@ -64,7 +64,7 @@ pub(super) fn cut(blocks: &Blocks, stretches: &[&Stretch], channel: usize) -> Op
     let mut rows = Rows::default();
     for (number, s) in stretches.iter().enumerate() {
         let length = s.blocks.1 - s.blocks.0;
-        let parts = (PARTS * length / total.max(1)).clamp(2.min(length), length);
+        let parts = (TOTAL_PARTS * length / total.max(1)).clamp(2.min(length), length);
         for k in 0..parts {
             let list = &blocks.list[s.blocks.0 + length * k / parts..s.blocks.0 + length * (k + 1) / parts];
             let usable = list.iter().filter(|b| b.gyro.get(channel).is_some_and(|g| g.is_finite()));

@@ -17,10 +17,10 @@ use rand_distr::{ChiSquared, Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Draws of the errors.
-const DRAWS: usize = 2000;
+const ERROR_DRAWS: usize = 2000;
 
-/// Normal scores at which the confidence distribution is tabled.
-const SCORES: std::ops::RangeInclusive<i32> = -12..=12;
+/// Quarters of a normal score at which the confidence distribution is tabled.
+const SCORE_QUARTERS: std::ops::RangeInclusive<i32> = -12..=12;
 
 /// The largest magnitude as far as it is known.
 #[derive(Debug, Clone, PartialEq)]
@@ -45,7 +45,7 @@ pub fn largest(values: &[f64], covariance: &DMatrix<f64>, dof: &dyn Fn(usize) ->
     let dof = dof(at).max(1.0);
     let scatter = ChiSquared::new(dof).ok()?;
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x005a_676e_6163);
-    let draws: Vec<DVector<f64>> = (0..DRAWS)
+    let draws: Vec<DVector<f64>> = (0..ERROR_DRAWS)
         .map(|_| {
             let z = DVector::from_iterator(n, (0..n).map(|_| StandardNormal.sample(&mut rng)));
             let stretch = (dof / scatter.sample(&mut rng)).sqrt();
@@ -57,10 +57,10 @@ pub fn largest(values: &[f64], covariance: &DMatrix<f64>, dof: &dyn Fn(usize) ->
     sizes.sort_ascending();
     let chance = draws.iter().filter(|e| e.iter().fold(0.0, |m: f64, v| m.max(v.abs())) >= observed).count()
         as f64
-        / DRAWS as f64;
+        / ERROR_DRAWS as f64;
     let quantile = |p: f64| {
-        let x = p * (DRAWS - 1) as f64;
-        let i = (x.floor() as usize).min(DRAWS - 2);
+        let x = p * (ERROR_DRAWS - 1) as f64;
+        let i = (x.floor() as usize).min(ERROR_DRAWS - 2);
         sizes[i] + (x - i as f64) * (sizes[i + 1] - sizes[i])
     };
     let any_shape = |p: f64| {
@@ -70,7 +70,7 @@ pub fn largest(values: &[f64], covariance: &DMatrix<f64>, dof: &dyn Fn(usize) ->
         });
         bounds.fold(0.0, f64::max)
     };
-    let curve: Vec<(f64, f64)> = SCORES
+    let curve: Vec<(f64, f64)> = SCORE_QUARTERS
         .map(|z| 0.25 * f64::from(z))
         .map(|z| {
             let p = normal_probability(z);

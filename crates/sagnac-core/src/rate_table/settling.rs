@@ -3,7 +3,7 @@
 use super::blocks::Block;
 
 /// Part of a step at its end by which its rate is determined.
-const END: f64 = 0.25;
+const STEP_END_SHARE: f64 = 0.25;
 /// Deviations of the rate of a block from which the table was not at its rate yet.
 const BEYOND_NOISE: f64 = 8.0;
 /// The same, as a share of the largest rate of the test.
@@ -11,7 +11,7 @@ const OF_LARGEST: f64 = 1e-5;
 /// The same, as a share of the rate of the step: a table is not steadier.
 const OF_RATE: f64 = 2e-3;
 /// Blocks at their rate that still may lie before one that is not.
-const BETWEEN: usize = 2;
+const MAX_BLOCKS_BETWEEN: usize = 2;
 
 /// A step whose evaluated part begins too early.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,7 +44,7 @@ pub fn of_step(
             (time_s(w[1].first_index), length_s, (w[1].angle_first - w[0].angle_first) / length_s)
         })
         .collect();
-    let last = rates.get(((1.0 - END) * rates.len() as f64) as usize..)?;
+    let last = rates.get(((1.0 - STEP_END_SHARE) * rates.len() as f64) as usize..)?;
     if last.len() < 8 || rates.iter().any(|r| !r.2.is_finite()) {
         return None;
     }
@@ -58,7 +58,7 @@ pub fn of_step(
         } else {
             since += 1;
         }
-        if since > BETWEEN {
+        if since > MAX_BLOCKS_BETWEEN {
             break;
         }
     }

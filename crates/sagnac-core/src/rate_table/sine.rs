@@ -10,11 +10,13 @@ use crate::numeric::optimize::golden_section;
 use crate::numeric::reml::{self, Fit};
 use nalgebra::{DMatrix, DVector};
 
-/// Phase at full scale between which κ is sought, rad.
-const PHASES: (f64, f64) = (0.02, 3.0);
+/// Smallest phase at full scale at which κ is sought, rad.
+const MIN_PHASE_RAD: f64 = 0.02;
+/// Largest phase at full scale at which κ is sought, rad.
+const MAX_PHASE_RAD: f64 = 3.0;
 
-/// Points of the search over them.
-const GRID: usize = 60;
+/// Phases at which the search over them begins.
+const PHASE_GRID_POINTS: usize = 60;
 
 /// A fitted sine.
 #[derive(Debug, Clone)]
@@ -41,9 +43,10 @@ pub struct Sine {
     pub rows: Vec<(usize, f64)>,
 }
 
-/// Position of the columns.
-pub const SLOPE: usize = 1;
-const KAPPA: usize = 3;
+/// Position of the column of the slope.
+pub const SLOPE_COLUMN: usize = 1;
+/// Position of the column of κ.
+const KAPPA_COLUMN: usize = 3;
 /// Position of the change of the amplitude with temperature, 1e-6/degC times the slope.
 pub const GAIN_OVER_TEMPERATURE: usize = 5;
 
@@ -116,11 +119,11 @@ pub fn fit(steps: &Steps, channel: usize) -> Option<Sine> {
     let varies = range.is_finite() && range > 0.0;
     let temperature = if varies { temperatures.iter().map(|t| t - mean).collect() } else { vec![] };
     let data = Data { rate, y: DVector::from_vec(outputs), temperature };
-    if n < data.columns(PHASES.1 / full).len() + 3 {
+    if n < data.columns(MAX_PHASE_RAD / full).len() + 3 {
         return None;
     }
     let kappa = search(|phase| data.left(phase / full)) / full;
-    if !(kappa * full > PHASES.0 * 1.02 && kappa * full < PHASES.1 * 0.98) {
+    if !(kappa * full > MIN_PHASE_RAD * 1.02 && kappa * full < MAX_PHASE_RAD * 0.98) {
         return None;
     }
     let mut columns = data.columns(kappa);
@@ -128,7 +131,7 @@ pub fn fit(steps: &Steps, channel: usize) -> Option<Sine> {
     if !is_linearly_independent(&bend, &columns[..2]) {
         return None;
     }
-    columns.insert(KAPPA, bend);
+    columns.insert(KAPPA_COLUMN, bend);
     let x = DMatrix::from_columns(&columns);
     let sizes: Vec<f64> = x.column_iter().map(|c| c.norm()).collect();
     let grid = Rows {
@@ -144,8 +147,8 @@ pub fn fit(steps: &Steps, channel: usize) -> Option<Sine> {
     let dof = (n - columns.len()) as f64;
     let plain = ordinary(&x, &data.y)?;
     let left = &data.y - &x * plain;
-    let slope = fitted.coefficient(SLOPE);
-    let bent = fitted.coefficient(KAPPA);
+    let slope = fitted.coefficient(SLOPE_COLUMN);
+    let bent = fitted.coefficient(KAPPA_COLUMN);
     let straight = DMatrix::from_columns(&[columns[0].clone(), DVector::from_vec(data.rate.clone())]);
     let of_line = &data.y - &straight * ordinary(&straight, &data.y)?;
     let rms = |r: &DVector<f64>| (r.norm_squared() / n as f64).sqrt() / mean_slope.abs();
@@ -176,10 +179,10 @@ fn ordinary(x: &DMatrix<f64>, y: &DVector<f64>) -> Option<DVector<f64>> {
 
 /// The phase at full scale with the least cost: a grid, then golden sections.
 fn search(cost: impl Fn(f64) -> f64) -> f64 {
-    let (from, to) = PHASES;
-    let at = |i: usize| from * (to / from).powf(i as f64 / (GRID - 1) as f64);
-    let best = (0..GRID).min_by(|a, b| cost(at(*a)).total_cmp(&cost(at(*b)))).unwrap_or(0);
-    golden_section(at(best.saturating_sub(1)), at((best + 1).min(GRID - 1)), 60, cost)
+    let (from, to) = (MIN_PHASE_RAD, MAX_PHASE_RAD);
+    let at = |i: usize| from * (to / from).powf(i as f64 / (PHASE_GRID_POINTS - 1) as f64);
+    let best = (0..PHASE_GRID_POINTS).min_by(|a, b| cost(at(*a)).total_cmp(&cost(at(*b)))).unwrap_or(0);
+    golden_section(at(best.saturating_sub(1)), at((best + 1).min(PHASE_GRID_POINTS - 1)), 60, cost)
 }
 
 #[cfg(test)]

@@ -1,15 +1,15 @@
-//! What the angle of the table, from sample to sample, says of the unit of the stamps.
+//! The unit of the stamps by the angle of the table from sample to sample.
 
 use super::blocks::TURN_ARCSEC;
 use super::steps::TableRun;
 use crate::numeric::order::SortNumbers;
 
-/// Rates, as shares of the largest, that tell.
-const TELLS: f64 = 0.05;
-/// Steps that must tell the same.
-const AGREE: f64 = 0.8;
-/// Relative difference within which they do.
-const WITHIN: f64 = 0.02;
+/// Share of the largest rate from which on a step tells the unit.
+const MIN_RATE_SHARE: f64 = 0.05;
+/// Share of the steps that must tell the same unit.
+const MIN_AGREEING_SHARE: f64 = 0.8;
+/// Relative difference of time factors within which steps tell the same unit.
+const MAX_RELATIVE_DIFFERENCE: f64 = 0.02;
 
 /// The time that passes by angle and rate of the table over the time by the stamps, where it is the same at most steps.
 /// Whole turns between two readings are no motion here: the rate by which they would be counted may rest on a wrong time.
@@ -21,7 +21,7 @@ pub fn time_factor(run: &TableRun) -> Option<f64> {
     let largest = steps.iter().fold(0.0, |m: f64, s| m.max(s.nominal.abs()));
     let mut factors: Vec<f64> = steps
         .iter()
-        .filter(|s| s.nominal.abs() > TELLS * largest)
+        .filter(|s| s.nominal.abs() > MIN_RATE_SHARE * largest)
         .filter_map(|s| {
             let inside = |row: u64| (s.first_row..s.end_row).contains(&row);
             let moved = blocks.list.windows(2).filter(|w| w[1].continues && inside(w[0].first_row));
@@ -42,6 +42,6 @@ pub fn time_factor(run: &TableRun) -> Option<f64> {
     }
     factors.sort_ascending();
     let middle = factors[factors.len() / 2];
-    let alike = factors.iter().filter(|f| (*f / middle - 1.0).abs() < WITHIN).count();
-    (alike as f64 >= AGREE * factors.len() as f64).then_some(middle)
+    let alike = factors.iter().filter(|f| (*f / middle - 1.0).abs() < MAX_RELATIVE_DIFFERENCE).count();
+    (alike as f64 >= MIN_AGREEING_SHARE * factors.len() as f64).then_some(middle)
 }

@@ -6,7 +6,7 @@ use super::setup::Setup;
 use crate::numeric::order::SortByNumber;
 
 /// Parts of all steps together: correlated noise is handled as a matrix over them.
-const PARTS: usize = 260;
+const TOTAL_PARTS: usize = 260;
 
 /// Most parts of one step.
 const MOST_PARTS: usize = 12;
@@ -134,7 +134,7 @@ pub fn find(blocks: &Blocks, setup: &Setup) -> Steps {
     };
     let mut steps = Steps::default();
     let wanted = spans.len().max(1);
-    let parts_each = (PARTS / wanted).clamp(1, MOST_PARTS);
+    let parts_each = (TOTAL_PARTS / wanted).clamp(1, MOST_PARTS);
     let mut before: Option<f64> = None;
     for (from, to) in spans {
         let nominal = median(rate[from..to].to_vec());

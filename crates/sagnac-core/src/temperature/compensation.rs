@@ -8,7 +8,7 @@ use serde::Serialize;
 use std::fmt::Write;
 
 /// Points of the table.
-const POINTS: usize = 25;
+const TABLE_POINTS: usize = 25;
 
 /// A compensation table: the bias of a gyro over temperature, as numbers that firmware can use.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -49,8 +49,9 @@ impl Compensation {
         let c = &p.best.fitted.solved.coefficients;
         let separable = a.separable(|s| s.rate.max(s.lag));
         let of = |at: Option<usize>| at.and_then(|i| c.get(i)).copied().unwrap_or(0.0);
-        let temperature_deg_c: Vec<f64> =
-            (0..POINTS).map(|i| p.span.temperature(2.0 * i as f64 / (POINTS - 1) as f64 - 1.0)).collect();
+        let temperature_deg_c: Vec<f64> = (0..TABLE_POINTS)
+            .map(|i| p.span.temperature(2.0 * i as f64 / (TABLE_POINTS - 1) as f64 - 1.0))
+            .collect();
         let mut polynomial = powers(c.as_slice().get(..a.order).unwrap_or_default());
         polynomial[0] += a.level_deg_h;
         Compensation {

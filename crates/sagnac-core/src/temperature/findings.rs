@@ -18,7 +18,7 @@ const MAX_BLOCKS: usize = 2048;
 /// Shortest block of the model, s.
 const MIN_BLOCK_S: f64 = 2.0;
 /// Sweeps over what is not known.
-const SWEEPS: usize = 360;
+const SAMPLER_SWEEPS: usize = 360;
 /// Weight, of the largest, below which an order is left out.
 const MIN_WEIGHT: f64 = 0.03;
 /// Temperatures, degC, that a record must cover to say anything over temperature.
@@ -186,7 +186,7 @@ fn analyse(
     let weights = weights(&orders, chosen.order);
     let models: Vec<(Posterior, f64)> = weights
         .into_iter()
-        .filter_map(|(order, w)| Some((posterior::sample(&course, terms(order), span, SWEEPS)?, w)))
+        .filter_map(|(order, w)| Some((posterior::sample(&course, terms(order), span, SAMPLER_SWEEPS)?, w)))
         .collect();
     let posterior = posterior::average(models, chosen.order)?;
     let order = chosen.order;
@@ -255,10 +255,11 @@ fn averaged_residual(course: &Course, modelled: &[f64], each: usize) -> Vec<(f64
 /// Root of the mean over temperature of the mean square at each, and the share of the degrees of freedom that even weights
 /// leave: a temperature where little time was spent counts as much as a long dwell.
 fn rms_over_temperature(residual: &[(f64, f64, f64)], span: &Span) -> (f64, f64) {
-    const BINS: usize = 20;
-    let mut bins = [(0.0, 0usize); BINS];
+    const TEMPERATURE_BINS: usize = 20;
+    let mut bins = [(0.0, 0usize); TEMPERATURE_BINS];
     for (_, t, r) in residual {
-        let at = (0.5 * (span.argument(*t) + 1.0) * BINS as f64).clamp(0.0, BINS as f64 - 1.0);
+        let at = (0.5 * (span.argument(*t) + 1.0) * TEMPERATURE_BINS as f64)
+            .clamp(0.0, TEMPERATURE_BINS as f64 - 1.0);
         let bin = &mut bins[at as usize];
         bin.0 += r * r;
         bin.1 += 1;
@@ -327,7 +328,8 @@ impl Analysis {
 
     /// Whether a term with so much inflation of its variance can be stated singly.
     pub fn separable(&self, inflation: impl Fn(&Separation) -> f64) -> bool {
-        self.parted && self.separation.as_ref().is_some_and(|s| inflation(s) < separate::INSEPARABLE)
+        self.parted
+            && self.separation.as_ref().is_some_and(|s| inflation(s) < separate::INSEPARABLE_INFLATION)
     }
 
     /// Static bias at a temperature, deg/h, the constant included, by the best fit.

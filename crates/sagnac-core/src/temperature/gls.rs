@@ -14,7 +14,8 @@ use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 
 /// Terms of the noise: N in deg/sqrt(h), B in deg/h, K in deg/h/sqrt(h).
-pub const TERMS: [NoiseType; 3] = [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk];
+pub const COURSE_NOISE_TERMS: [NoiseType; 3] =
+    [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk];
 
 /// Unit variances of the modes 1, 2, ... of a series of block means.
 #[derive(Debug, Clone)]
@@ -50,13 +51,13 @@ pub struct Fitted {
 
 /// Σ aᵢbᵢwᵢ, in lanes: a single sum waits for every addition before.
 fn weighted_dot(a: &[f64], b: &[f64], w: &[f64]) -> f64 {
-    const LANES: usize = 8;
-    let mut sums = [0.0; LANES];
-    let (ca, cb, cw) = (a.chunks_exact(LANES), b.chunks_exact(LANES), w.chunks_exact(LANES));
+    const SIMD_LANES: usize = 8;
+    let mut sums = [0.0; SIMD_LANES];
+    let (ca, cb, cw) = (a.chunks_exact(SIMD_LANES), b.chunks_exact(SIMD_LANES), w.chunks_exact(SIMD_LANES));
     let rest: f64 =
         ca.remainder().iter().zip(cb.remainder()).zip(cw.remainder()).map(|((x, y), w)| x * y * w).sum();
     for ((x, y), w) in ca.zip(cb).zip(cw) {
-        for i in 0..LANES {
+        for i in 0..SIMD_LANES {
             sums[i] += x[i] * y[i] * w[i];
         }
     }
@@ -74,7 +75,7 @@ impl Solved {
 impl Modes {
     /// For `blocks` means over `block_s`.
     pub fn new(blocks: usize, block_s: f64) -> Modes {
-        let unit = |k: usize| TERMS.map(|t| unit_mode_variance(t, k, blocks, block_s));
+        let unit = |k: usize| COURSE_NOISE_TERMS.map(|t| unit_mode_variance(t, k, blocks, block_s));
         Modes { block_s, units: (1..blocks.max(1)).map(unit).collect() }
     }
 

@@ -16,25 +16,26 @@ use super::sampler::Draw;
 use crate::estimate::{Spread, chi_square_tail, normal_probability, normal_quantile};
 
 /// States at which the likelihood is tabled.
-const STATES: usize = 30;
+const TABULATED_STATES: usize = 30;
 /// Lags of a table.
-const LAGS: usize = 37;
+const TABLE_LAGS: usize = 37;
 /// Lags that are tried to find where a table must reach.
-const TRIED: usize = 28;
+const TRIAL_LAGS: usize = 28;
 /// Shortest of them, as a share of the longest.
 const MIN_LAG_SHARE: f64 = 0.001;
 /// Loss of log-likelihood from which a lag is out of question at the best noise.
-const LOST: f64 = 14.0;
+const MAX_LOG_LIKELIHOOD_LOSS: f64 = 14.0;
 /// Loss of log-likelihood up to which a lag comes into question where degrees of freedom are counted.
 const IN_QUESTION: f64 = 5.0;
-/// Shares of the longest lag that come into question: from the first on there are more degrees of freedom than one, from the
-/// second on as many as there can be.
-const TOLD: (f64, f64) = (0.1, 0.4);
+/// Share of the longest lag in question from which on there are more degrees of freedom than one.
+const ONE_DOF_LAG_SHARE: f64 = 0.1;
+/// Share of the longest lag in question from which on there are [`MOST_DOF`].
+const MOST_DOF_LAG_SHARE: f64 = 0.4;
 /// Degrees of freedom where every lag comes into question: by simulation of units without any effect, whose largest
 /// likelihoods exceed that of no effect as χ² with two to three does.
 const MOST_DOF: f64 = 3.0;
 /// Points between two lags of a table at which coefficients are read.
-const BETWEEN: usize = 4;
+const POINTS_PER_LAG: usize = 4;
 
 /// A coefficient at one lag: mean and standard deviation.
 pub type Coefficient = (f64, f64);
@@ -65,8 +66,8 @@ pub struct Profile {
 
 /// Lags to be tabled, by the log-likelihood at the best noise and by the lags drawn: everything that comes into question.
 pub fn grid(draws: &[Draw], longest_s: f64, log_likelihood: impl Fn(f64) -> Option<f64>) -> Vec<f64> {
-    let ratio = (1.0 / MIN_LAG_SHARE).powf(1.0 / (TRIED - 2) as f64);
-    let tried: Vec<f64> = (0..TRIED)
+    let ratio = (1.0 / MIN_LAG_SHARE).powf(1.0 / (TRIAL_LAGS - 2) as f64);
+    let tried: Vec<f64> = (0..TRIAL_LAGS)
         .map(|i| if i == 0 { 0.0 } else { longest_s * MIN_LAG_SHARE * ratio.powi(i as i32 - 1) })
         .map(|lag| lag.min(longest_s))
         .collect();
@@ -75,16 +76,16 @@ pub fn grid(draws: &[Draw], longest_s: f64, log_likelihood: impl Fn(f64) -> Opti
     let drawn = || draws.iter().filter_map(|d| d.shape.first().copied());
     let mut low = drawn().fold(longest_s, f64::min);
     let mut high = drawn().fold(0.0, f64::max);
-    for (i, l) in logs.iter().enumerate().filter(|(_, l)| **l > top - LOST) {
+    for (i, l) in logs.iter().enumerate().filter(|(_, l)| **l > top - MAX_LOG_LIKELIHOOD_LOSS) {
         let _ = l;
         low = low.min(tried[i.saturating_sub(1)]);
-        high = high.max(tried[(i + 1).min(TRIED - 1)]);
+        high = high.max(tried[(i + 1).min(TRIAL_LAGS - 1)]);
     }
     let reach = 0.25 * (high - low).max(0.01 * longest_s);
     let (low, high) = ((low - reach).max(0.0), (high + reach).min(longest_s));
     // Denser at short lags where the table begins at none.
     let power = if low < 0.05 * high { 2.0 } else { 1.0 };
-    (0..LAGS).map(|i| low + (high - low) * (i as f64 / (LAGS - 1) as f64).powf(power)).collect()
+    (0..TABLE_LAGS).map(|i| low + (high - low) * (i as f64 / (TABLE_LAGS - 1) as f64).powf(power)).collect()
 }
 
 /// The tables at a part of the states; `at_lag` is what a state says at a position of the grid.
@@ -93,7 +94,7 @@ pub fn profiles(
     (grid, longest_s): (&[f64], f64),
     at_lag: impl Fn(usize, &Draw) -> Option<AtLag>,
 ) -> Vec<Profile> {
-    let step = draws.len().div_ceil(STATES).max(1);
+    let step = draws.len().div_ceil(TABULATED_STATES).max(1);
     let table = |draw: &Draw| -> Vec<AtLag> { (0..grid.len()).filter_map(|at| at_lag(at, draw)).collect() };
     let states = draws.iter().skip(step / 2).step_by(step);
     states
@@ -113,7 +114,8 @@ impl Profile {
         let asked = || self.lags.iter().filter(|l| l.log_likelihood > top - IN_QUESTION).map(|l| l.lag_s);
         let width = asked().fold(0.0, f64::max) - asked().fold(f64::INFINITY, f64::min);
         let share = width / self.longest_s.max(f64::MIN_POSITIVE);
-        1.0 + (MOST_DOF - 1.0) * ((share - TOLD.0) / (TOLD.1 - TOLD.0)).clamp(0.0, 1.0)
+        1.0 + (MOST_DOF - 1.0)
+            * ((share - ONE_DOF_LAG_SHARE) / (MOST_DOF_LAG_SHARE - ONE_DOF_LAG_SHARE)).clamp(0.0, 1.0)
     }
 
     /// Probability of a shorter lag, by the signed root of the profile; it never falls.
@@ -141,8 +143,8 @@ impl Profile {
         let known: Vec<(f64, f64, f64)> = self.lags.iter().filter_map(one).collect();
         let mut all: Vec<(f64, f64, f64)> = known.last().copied().into_iter().collect();
         for (a, b) in known.iter().zip(known.iter().skip(1)) {
-            for k in 0..BETWEEN {
-                let share = k as f64 / BETWEEN as f64;
+            for k in 0..POINTS_PER_LAG {
+                let share = k as f64 / POINTS_PER_LAG as f64;
                 let between = |a: f64, b: f64| a + share * (b - a);
                 all.push((between(a.0, b.0), between(a.1, b.1), between(a.2, b.2)));
             }
@@ -180,7 +182,7 @@ pub fn coefficient(parts: &[Profile], of: impl Fn(&AtLag) -> Option<Coefficient>
             .zip(&tables)
             .flat_map(|(p, t)| {
                 let top = p.top();
-                t.iter().filter(move |c| c.0 > top - LOST)
+                t.iter().filter(move |c| c.0 > top - MAX_LOG_LIKELIHOOD_LOSS)
             })
             .map(|c| (c.1, 6.0 * c.2))
     };

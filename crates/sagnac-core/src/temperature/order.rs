@@ -18,7 +18,7 @@ use std::f64::consts::PI;
 /// Highest degree of the polynomial that is tried.
 pub const MAX_ORDER: usize = 6;
 /// Blocks of the record for this purpose at most.
-const BLOCKS: usize = 480;
+const MAX_BLOCKS: usize = 480;
 
 /// One degree of the polynomial with its score in cross-validation.
 #[derive(Debug, Clone, PartialEq)]
@@ -43,7 +43,7 @@ pub fn try_orders(
     terms: impl Fn(usize) -> Terms,
     highest: usize,
 ) -> Vec<Tried> {
-    let coarse = course.merged(course.len().div_ceil(BLOCKS));
+    let coarse = course.merged(course.len().div_ceil(MAX_BLOCKS));
     let modes = Modes::new(coarse.len(), coarse.block_s);
     let data = modes.of(&coarse.rate_deg_h);
     (1..=highest.min(MAX_ORDER))
@@ -60,14 +60,14 @@ pub fn try_orders(
 }
 
 /// Loss of score, in natural logarithms, that a lower order may cost in any case.
-const WITHIN: f64 = 1.5;
+const ALLOWED_SCORE_LOSS: f64 = 1.5;
 
 /// The lowest order that predicts the stretches as well as the best one does, within one standard error of the difference.
 pub fn choose(tried: &[Tried]) -> Option<&Tried> {
     let best = tried.iter().max_by(|a, b| a.log_score.total_cmp(&b.log_score))?;
     tried.iter().find(|t| {
         let losses: Vec<f64> = best.scores.iter().zip(&t.scores).map(|(b, t)| b - t).collect();
-        losses.iter().sum::<f64>() <= standard_error(&losses).max(WITHIN)
+        losses.iter().sum::<f64>() <= standard_error(&losses).max(ALLOWED_SCORE_LOSS)
     })
 }
 

@@ -36,9 +36,9 @@ pub struct Best {
 }
 
 /// Lags tried as a start, shares of the longest.
-const LAGS: [f64; 10] = [0.0, 0.004, 0.012, 0.03, 0.06, 0.1, 0.18, 0.3, 0.5, 0.85];
+const START_LAG_SHARES: [f64; 10] = [0.0, 0.004, 0.012, 0.03, 0.06, 0.1, 0.18, 0.3, 0.5, 0.85];
 /// Plays tried as a start, shares of the widest.
-const PLAYS: [f64; 4] = [0.07, 0.2, 0.4, 0.8];
+const START_PLAY_SHARES: [f64; 4] = [0.07, 0.2, 0.4, 0.8];
 /// Range of the play, shares of the span.
 const PLAY_RANGE: (f64, f64) = (0.005, 0.15);
 /// Play that a body has over any span, degC, and the share of the span that it is not wider than.
@@ -88,13 +88,13 @@ pub fn best(course: &Course, terms: Terms, span: Span) -> Option<(Best, f64)> {
     let play = |share: f64| share * widest_play(width);
     let start = Shape { lag_s: 0.03 * longest, play_deg_c: play(0.2) };
     let mut noise = s.modes.fit(&s.data, &s.columns(&start), None)?.noise;
-    let plays: &[f64] = if terms.hysteresis { &PLAYS } else { &PLAYS[..1] };
+    let plays: &[f64] = if terms.hysteresis { &START_PLAY_SHARES } else { &START_PLAY_SHARES[..1] };
     let mut found: Option<(f64, Shape)> = None;
     let mut without_lag = f64::NEG_INFINITY;
     for turn in 0..2 {
         found = None;
         without_lag = f64::NEG_INFINITY;
-        for lag in LAGS {
+        for lag in START_LAG_SHARES {
             for p in plays {
                 let shape = Shape { lag_s: lag * longest, play_deg_c: play(*p) };
                 let Some(l) = s.solve(&shape, &noise).map(|s| s.log_likelihood) else { continue };

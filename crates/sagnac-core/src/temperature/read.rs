@@ -11,7 +11,7 @@ use rand_xoshiro::Xoshiro256PlusPlus;
 /// Draws of the coefficients at each state.
 const DRAWS_PER_STATE: usize = 12;
 /// Normal scores at which a spread is kept.
-const SCORES: usize = 65;
+const SCORE_COUNT: usize = 65;
 /// Largest score.
 const MAX_SCORE: f64 = 3.2;
 
@@ -47,7 +47,7 @@ impl Reading {
 }
 
 fn scores() -> impl Iterator<Item = f64> {
-    (0..SCORES).map(|i| MAX_SCORE * (2.0 * i as f64 / (SCORES - 1) as f64 - 1.0))
+    (0..SCORE_COUNT).map(|i| MAX_SCORE * (2.0 * i as f64 / (SCORE_COUNT - 1) as f64 - 1.0))
 }
 
 /// A number that is linear in the coefficients: `weights` of the coefficients at a state.

@@ -11,7 +11,7 @@ use super::posterior::Best;
 use nalgebra::DMatrix;
 
 /// Inflation of the variance from which terms count as one.
-pub const INSEPARABLE: f64 = 200.0;
+pub const INSEPARABLE_INFLATION: f64 = 200.0;
 
 /// How far each term is told from the others.
 #[derive(Debug, Clone, Copy, PartialEq)]

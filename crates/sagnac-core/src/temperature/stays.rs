@@ -5,7 +5,7 @@
 //! decays: it leaves the band or it does not. A departure counts where it is far outside the white noise that neighbouring
 //! means show.
 //!
-//! What was smoothed before delivery has no such noise left, and its transient is that of the filter. It shows by deviations
+//! A record smoothed before delivery has no such noise left, and its transient is that of the filter. It shows by deviations
 //! that grow with the averaging time from the shortest one on.
 
 use crate::estimate::normal_quantile;
@@ -13,7 +13,7 @@ use crate::estimate::normal_quantile;
 /// Probability that white noise alone leaves the band somewhere in a record, all lengths of means together.
 const BY_CHANCE: f64 = 2e-3;
 /// Lengths of means, and independent places of one length in the length of the record over that of the mean, that are counted.
-const LOOKS: f64 = 60.0;
+const INDEPENDENT_LOOKS: f64 = 60.0;
 /// Longest running mean, as a share of the record.
 const MAX_SHARE: f64 = 0.125;
 /// Longest averaging time in blocks at which smoothing is looked for.
@@ -80,7 +80,7 @@ impl Course<'_> {
         let mut window = 1;
         while window <= longest {
             let deviation = (white / window as f64).sqrt();
-            let looks = LOOKS * residual.len() as f64 / window as f64;
+            let looks = INDEPENDENT_LOOKS * residual.len() as f64 / window as f64;
             let least = normal_quantile(1.0 - 0.5 * BY_CHANCE / looks);
             for i in first..=residual.len().saturating_sub(window) {
                 let mean = |sums: &[f64]| (sums[i + window] - sums[i]) / window as f64;

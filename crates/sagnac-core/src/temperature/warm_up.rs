@@ -1,6 +1,6 @@
 //! The time after switching on that a unit needs: one or two decays in slow noise.
 //!
-//! What is judged is the transient itself and not its noise: the last time at which it is farther from its final value
+//! The transient itself is judged and not its noise: the time is the last at which it is farther from its final value
 //! than the band allows. Two decays are always allowed for: a second one that is not plainly there widens the interval.
 //!
 //! The time is counted against the mean over the final part of a record, which is no final value where the bias drifts
@@ -32,7 +32,7 @@ const MAX_BLOCKS: usize = 2048;
 /// Logarithm of the ratio of two time constants at least, in the search for the best.
 const MIN_LOG_RATIO: f64 = 0.4;
 /// Sweeps over what is not known.
-const SWEEPS: usize = 500;
+const SAMPLER_SWEEPS: usize = 500;
 
 /// The warm-up time of a record, with the transient behind it.
 #[derive(Debug, Clone)]
@@ -115,7 +115,7 @@ pub fn find(means: &Means, rate: usize, test: &WarmUpTest, start: Start) -> Opti
     let (shape, fitted) = best(&modes, &data, &of, (low, high))?;
     let ranges: Vec<Range> = shape.iter().map(|_| Range { low, high, log: true, step: 0.3 }).collect();
     let model: (sampler::Columns<'_>, _) = (&of, sampler::Coefficients::Scaled);
-    let draws: Vec<Draw> = sampler::sample(&modes, &data, model, &ranges, (&shape, &fitted), SWEEPS);
+    let draws: Vec<Draw> = sampler::sample(&modes, &data, model, &ranges, (&shape, &fitted), SAMPLER_SWEEPS);
     if draws.is_empty() {
         return None;
     }

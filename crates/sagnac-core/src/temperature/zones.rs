@@ -17,13 +17,13 @@ const MIN_SAMPLES: u64 = 8;
 /// Shortest and longest mean aimed at, s.
 const LENGTH_S: (f64, f64) = (1.0, 10.0);
 /// States of the slow noise that its spread is counted with.
-const STATES: usize = 32;
+const SPREAD_STATES: usize = 32;
 /// Share of the distribution without white noise from which none is claimed.
 const MAX_ABSENT_SHARE: f64 = 0.05;
 /// Deviation of the logarithm of B up to which it is seen; beyond, draws alone say what it may be.
 const MAX_LOG_DEVIATION: f64 = 0.5;
 /// Lags of second differences that are counted as correlated.
-const LAGS: usize = 12;
+const CORRELATED_LAGS: usize = 12;
 
 /// White noise in one zone of temperature.
 #[derive(Debug, Clone, PartialEq)]
@@ -56,7 +56,9 @@ fn covariances() -> Vec<[f64; 3]> {
         |h: fn(f64) -> f64| move |k: i32| h(f64::from(k + 1)) - 2.0 * h(f64::from(k)) + h(f64::from(k - 1));
     let flicker = twice(|t| if t == 0.0 { 0.0 } else { -t * t * t.abs().ln() / std::f64::consts::TAU });
     let walk = twice(|t| -t.abs().powi(3) / 12.0);
-    (0..=LAGS as i32).map(|j| [of_seconds(white, j), of_seconds(flicker, j), of_seconds(walk, j)]).collect()
+    (0..=CORRELATED_LAGS as i32)
+        .map(|j| [of_seconds(white, j), of_seconds(flicker, j), of_seconds(walk, j)])
+        .collect()
 }
 
 /// N with its spread: the variance of a mean that `count` second differences show (`seen`), less what slow noise adds to it
@@ -101,7 +103,7 @@ fn states_of(draws: &[Draw], log_deviation: f64, average_h: f64) -> Vec<[f64; 2]
     let drawn = all.iter().map(|s| (s[0] - mean).powi(2)).sum::<f64>() / all.len() as f64 / (mean * mean);
     let seen = log_deviation < MAX_LOG_DEVIATION && drawn < MAX_LOG_DEVIATION * MAX_LOG_DEVIATION;
     let further = if seen { (log_deviation.powi(2) - drawn).max(0.0).sqrt() } else { 0.0 };
-    let count = STATES.min(all.len());
+    let count = SPREAD_STATES.min(all.len());
     (0..count)
         .map(|i| {
             let [b, k] = all[(2 * i + 1) * all.len() / (2 * count)];

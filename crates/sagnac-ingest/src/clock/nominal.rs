@@ -33,6 +33,12 @@ pub enum ClockError {
         /// Rows over span, Hz.
         rate_hz: f64,
     },
+    /// The stamps give a rate that no gyro is sampled at.
+    #[error("the time stamps mean {rate_hz} rows a second, which no gyro is sampled at")]
+    Absurd {
+        /// Rows a second, Hz.
+        rate_hz: f64,
+    },
     /// The declared rate is no positive number.
     #[error("the declared sample rate {rate_hz} Hz is not a positive number")]
     Rate {

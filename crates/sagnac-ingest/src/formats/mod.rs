@@ -4,22 +4,36 @@
 mod bag;
 #[cfg(feature = "hdf5")]
 mod hdf5;
+#[cfg(feature = "json")]
+mod json;
+#[cfg(any(feature = "json", feature = "text", feature = "ulog", feature = "xlsx"))]
+mod loaded;
 #[cfg(feature = "matlab")]
 mod matlab;
 #[cfg(feature = "mcap")]
 mod mcap;
+#[cfg(feature = "text")]
+mod novatel;
 #[cfg(feature = "numpy")]
 mod numpy;
 #[cfg(feature = "parquet")]
 mod parquet;
 #[cfg(feature = "raw")]
 mod raw;
+#[cfg(feature = "text")]
+mod sample_list;
+#[cfg(feature = "xlsx")]
+mod spreadsheet;
+#[cfg(feature = "rosbag2")]
+mod sqlite_bag;
 #[cfg(feature = "tdms")]
 mod tdms;
 #[cfg(feature = "text")]
 mod text;
-#[cfg(any(feature = "mcap", feature = "bag"))]
+#[cfg(any(feature = "mcap", feature = "bag", feature = "rosbag2"))]
 mod topics;
+#[cfg(feature = "ulog")]
+mod ulog;
 
 use crate::format::{Candidate, Format};
 
@@ -44,6 +58,18 @@ pub static FORMATS: &[&dyn Format] = &[
     &mcap::Mcap,
     #[cfg(feature = "bag")]
     &bag::RosBag,
+    #[cfg(feature = "rosbag2")]
+    &sqlite_bag::SqliteBag,
+    #[cfg(feature = "ulog")]
+    &ulog::ULog,
+    #[cfg(feature = "xlsx")]
+    &spreadsheet::Spreadsheet,
+    #[cfg(feature = "json")]
+    &json::JsonObjects,
+    #[cfg(feature = "text")]
+    &sample_list::SampleList,
+    #[cfg(feature = "text")]
+    &novatel::RawImu,
     #[cfg(feature = "text")]
     &text::DelimitedText,
 ];
@@ -59,7 +85,7 @@ pub(crate) struct FormatFeature {
 }
 
 /// Every format, compiled in or not, in the order of [`FORMATS`].
-pub(crate) static FEATURES: [FormatFeature; 10] = [
+pub(crate) static FEATURES: [FormatFeature; 16] = [
     FormatFeature { id: "raw", feature: "raw", recognises: |f| f.options.layout.is_some() },
     FormatFeature { id: "parquet", feature: "parquet", recognises: |f| f.head.starts_with(b"PAR1") },
     FormatFeature { id: "npy", feature: "numpy", recognises: |f| f.head.starts_with(b"\x93NUMPY") },
@@ -80,6 +106,28 @@ pub(crate) static FEATURES: [FormatFeature; 10] = [
     FormatFeature { id: "tdms", feature: "tdms", recognises: |f| f.head.starts_with(b"TDSm") },
     FormatFeature { id: "mcap", feature: "mcap", recognises: |f| f.head.starts_with(b"\x89MCAP0\r\n") },
     FormatFeature { id: "rosbag", feature: "bag", recognises: |f| f.head.starts_with(b"#ROSBAG") },
+    FormatFeature {
+        id: "rosbag2",
+        feature: "rosbag2",
+        recognises: |f| f.head.starts_with(b"SQLite format 3\0"),
+    },
+    FormatFeature { id: "ulog", feature: "ulog", recognises: |f| f.head.starts_with(b"ULog\x01\x12\x35") },
+    FormatFeature {
+        id: "xlsx",
+        feature: "xlsx",
+        recognises: |f| f.head.starts_with(b"PK\x03\x04") && f.head.windows(3).any(|w| w == b"xl/"),
+    },
+    FormatFeature {
+        id: "json",
+        feature: "json",
+        recognises: |f| f.head.trim_ascii_start().starts_with(b"{\""),
+    },
+    FormatFeature { id: "slist", feature: "text", recognises: |f| f.head.starts_with(b"TIMESERIES ") },
+    FormatFeature {
+        id: "rawimu",
+        feature: "text",
+        recognises: |f| f.head.starts_with(b"%RAWIMU") || f.head.starts_with(b"#RAWIMU"),
+    },
     FormatFeature { id: "csv", feature: "text", recognises: |f| !f.head.contains(&0) },
 ];
 

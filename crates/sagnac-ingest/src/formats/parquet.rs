@@ -50,6 +50,8 @@ impl Format for Parquet {
         }
         let columns = metadata.schema_descr().columns().iter().map(|c| describe(c)).collect();
         Ok(Opened {
+            labels: Vec::new(),
+            bad_blocks: Vec::new(),
             columns,
             rows_estimate: Some(rows),
             cut_off: Vec::new(),
@@ -93,6 +95,7 @@ fn describe(column: &ColumnDescriptor) -> Column {
         },
         epoch_s: None,
         rollover_s: None,
+        judged: None,
     }
 }
 

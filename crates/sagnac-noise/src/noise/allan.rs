@@ -10,7 +10,7 @@ use super::data::DeviationPoint;
 use super::difference_sums::{all_modified, all_overlapping, with_reflection};
 use super::family::Estimator;
 use super::part::{Head, MergeError, PartStart};
-use super::phase::{BLOCK, Compensated, PhaseBuilder, PhaseEnd};
+use super::phase::{Compensated, PHASE_BLOCK_SAMPLES, PhaseBuilder, PhaseEnd};
 use super::stretches::StretchLengths;
 use super::strided::{PhaseShift, StridedSums};
 use super::tau_grid::TauGrid;
@@ -365,7 +365,7 @@ impl Store {
                     if k > 0 || !continues {
                         sums.end_stretch();
                     }
-                    stretch.chunks(BLOCK).for_each(|block| sums.push(block));
+                    stretch.chunks(PHASE_BLOCK_SAMPLES).for_each(|block| sums.push(block));
                 }
             }
         }

@@ -9,7 +9,7 @@
 /// alone gives a half; with noise of half a step a sample it is 0.7 from the first octave on.
 const COARSE_SHARE: f64 = 0.7;
 /// Octaves that are looked at: a pattern of two levels that alternate is large in the first alone.
-const OCTAVES: usize = 3;
+const EXAMINED_OCTAVES: usize = 3;
 /// The same of the shortest time that is used.
 const MIN_STEPS_MOVED: f64 = 2.0;
 
@@ -21,7 +21,7 @@ pub fn highest_hz(step_deg_h: f64, tau0_s: f64, points: &[(u64, f64)]) -> Option
     let step_arcsec = step_deg_h * tau0_s;
     let steps = |(m, deviation): &(u64, f64)| deviation * (*m as f64 * tau0_s) / step_arcsec;
     points.first().filter(|p| p.0 == 1)?;
-    let coarse = points.iter().take(OCTAVES).any(|p| steps(p) < COARSE_SHARE);
+    let coarse = points.iter().take(EXAMINED_OCTAVES).any(|p| steps(p) < COARSE_SHARE);
     if step_arcsec.is_nan() || step_arcsec <= 0.0 || !coarse {
         return None;
     }
@@ -31,7 +31,7 @@ pub fn highest_hz(step_deg_h: f64, tau0_s: f64, points: &[(u64, f64)]) -> Option
 
 /// Allan deviation of single samples, in steps, below which noise does not carry a rounded rate from step to step: half a step of noise
 /// beside that of rounding. Above it the mean is off by less than 0.3 % of a step (Widrow and Kollár).
-const UNCARRIED: f64 = 0.577;
+const MIN_DITHER_STEPS: f64 = 0.577;
 /// Growth of the squared deviation times τ² from one sample to four from which a remainder is not carried on. It grows
 /// fourfold where samples are independent, and less than 2.5 times where the angle was rounded.
 const FORGOTTEN_GROWTH: f64 = 3.0;
@@ -68,7 +68,7 @@ impl RateRounding {
 fn is_forgotten(step_deg_h: f64, points: &[(u64, f64)]) -> bool {
     let at = |m: u64| points.iter().find(|p| p.0 == m).map(|p| p.1 * m as f64 / step_deg_h);
     let (Some(one), Some(four)) = (at(1), at(4)) else { return false };
-    one < UNCARRIED && four * four > FORGOTTEN_GROWTH * one * one
+    one < MIN_DITHER_STEPS && four * four > FORGOTTEN_GROWTH * one * one
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! What one pass over a rate channel leaves behind: the statistics from which everything about its noise is
+//! Statistics that one pass over a rate channel leaves behind: those from which everything about its noise is
 //! computed. All of bounded size, whatever the length of the record. Rates in deg/h, times in s.
 
 use serde::{Deserialize, Serialize};
@@ -14,7 +14,7 @@ pub struct BlockSeries {
     pub mean: Vec<f64>,
     /// Number of usable samples in each block.
     pub count: Vec<u32>,
-    /// What rounding took from each mean, deg/h: where the offset is large against the noise, a mean over many samples
+    /// Rounding error of each mean, deg/h: where the offset is large against the noise, a mean over many samples
     /// has more digits than one double holds. Empty: nothing.
     pub rounding: Vec<f64>,
 }

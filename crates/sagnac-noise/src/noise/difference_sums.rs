@@ -3,20 +3,20 @@
 use super::phase::Compensated;
 use crate::numeric::parallel;
 
-const LANES: usize = 8;
+const SIMD_LANES: usize = 8;
 /// Starting points taken through every averaging factor before the next are fetched from memory.
-const CHUNK: usize = 2048;
+const CHUNK_POINTS: usize = 2048;
 /// Starting points in one parallel task. Fixed, so that sums do not depend on the number of threads.
-const TASK: usize = 8 * CHUNK;
+const TASK_POINTS: usize = 8 * CHUNK_POINTS;
 
 /// Σ (c − 2b + a)² over the common length.
 pub(crate) fn second(a: &[f64], b: &[f64], c: &[f64]) -> f64 {
     let n = a.len().min(b.len()).min(c.len());
     let (a, b, c) = (&a[..n], &b[..n], &c[..n]);
-    let mut sums = [0.0; LANES];
-    let mut chunks = (a.chunks_exact(LANES), b.chunks_exact(LANES), c.chunks_exact(LANES));
+    let mut sums = [0.0; SIMD_LANES];
+    let mut chunks = (a.chunks_exact(SIMD_LANES), b.chunks_exact(SIMD_LANES), c.chunks_exact(SIMD_LANES));
     for ((a, b), c) in (&mut chunks.0).zip(&mut chunks.1).zip(&mut chunks.2) {
-        for k in 0..LANES {
+        for k in 0..SIMD_LANES {
             let d = (c[k] - b[k]) - (b[k] - a[k]);
             sums[k] += d * d;
         }
@@ -39,11 +39,15 @@ pub(crate) fn third(a: &[f64], b: &[f64], c: &[f64], d: &[f64]) -> f64 {
         let e = ((d - c) - (c - b)) - ((c - b) - (b - a));
         e * e
     };
-    let mut sums = [0.0; LANES];
-    let mut chunks =
-        (a.chunks_exact(LANES), b.chunks_exact(LANES), c.chunks_exact(LANES), d.chunks_exact(LANES));
+    let mut sums = [0.0; SIMD_LANES];
+    let mut chunks = (
+        a.chunks_exact(SIMD_LANES),
+        b.chunks_exact(SIMD_LANES),
+        c.chunks_exact(SIMD_LANES),
+        d.chunks_exact(SIMD_LANES),
+    );
     for (((a, b), c), d) in (&mut chunks.0).zip(&mut chunks.1).zip(&mut chunks.2).zip(&mut chunks.3) {
-        for k in 0..LANES {
+        for k in 0..SIMD_LANES {
             sums[k] += square(a[k], b[k], c[k], d[k]);
         }
     }
@@ -67,14 +71,14 @@ pub(crate) fn ending_from(x: &[f64], lag: usize, order: usize, from_end: usize) 
 /// Starting points go outside and factors inside, so that memory is read about once for all small factors; for octaves
 /// the point 2m of one factor is the point m of the next.
 pub(crate) fn all_overlapping(x: &[f64], factors: &[u64], order: usize) -> Vec<f64> {
-    let tasks: Vec<usize> = (0..x.len()).step_by(TASK).collect();
+    let tasks: Vec<usize> = (0..x.len()).step_by(TASK_POINTS).collect();
     let partial: Vec<Vec<f64>> = parallel::map_items(&tasks, |&task| {
         let mut sums = vec![0.0; factors.len()];
-        for from in (task..(task + TASK).min(x.len())).step_by(CHUNK) {
+        for from in (task..(task + TASK_POINTS).min(x.len())).step_by(CHUNK_POINTS) {
             for (sum, &m) in sums.iter_mut().zip(factors) {
                 let lag = m as usize;
                 let Some(end) = x.len().checked_sub(order * lag) else { break };
-                let to = (from + CHUNK).min(end);
+                let to = (from + CHUNK_POINTS).min(end);
                 if to <= from {
                     break;
                 }
@@ -94,7 +98,7 @@ pub(crate) fn all_modified(x: &[f64], factors: &[u64]) -> Vec<f64> {
     parallel::map_items(factors, |&m| {
         let m = m as usize;
         let Some(windows) = (x.len() + 1).checked_sub(3 * m) else { return 0.0 };
-        let task = TASK.max(4 * m);
+        let task = TASK_POINTS.max(4 * m);
         let sums: Vec<f64> =
             parallel::map(windows.div_ceil(task), |k| sliding(x, m, k * task, ((k + 1) * task).min(windows)));
         total(sums.into_iter())
@@ -108,7 +112,7 @@ fn sliding(x: &[f64], m: usize, from: usize, to: usize) -> f64 {
     sum.add(window * window);
     let mut j = from + 1;
     while j < to {
-        let end = (j + CHUNK).min(to);
+        let end = (j + CHUNK_POINTS).min(to);
         let mut partial = 0.0;
         for k in j..end {
             window += difference(k + m - 1) - difference(k - 1);

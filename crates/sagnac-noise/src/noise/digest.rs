@@ -15,10 +15,10 @@ use super::windows::{WindowMeans, WindowStatistics};
 use crate::numeric::range;
 
 /// Samples that go through all accumulators while they are in cache.
-const SLICE: usize = 8192;
+const SLICE_SAMPLES: usize = 8192;
 
 /// Samples in a push from which two threads are worth their start.
-const SIDE_BY_SIDE: usize = 2 * SLICE;
+const SIDE_BY_SIDE: usize = 2 * SLICE_SAMPLES;
 
 /// Neighbouring usable samples.
 struct Run<'a> {
@@ -30,7 +30,7 @@ struct Run<'a> {
 }
 
 /// Largest rate that can be used, deg/h: the largest number of a file in rad/s, rounded up.
-const MAX_RATE_DEG_H: f64 = 1e6 * range::LARGEST;
+const MAX_RATE_DEG_H: f64 = 1e6 * range::MAX_MAGNITUDE;
 
 /// What a digest of a rate channel holds: averaging times, deviations and window lengths.
 #[derive(Debug, Clone, PartialEq)]
@@ -227,8 +227,8 @@ impl RateAccumulator {
         }
         let mut at = first_index;
         let mut continues = continues && self.next_index == Some(first_index);
-        let mut runs = Vec::with_capacity(samples.len() / SLICE + 1);
-        for slice in samples.chunks(SLICE) {
+        let mut runs = Vec::with_capacity(samples.len() / SLICE_SAMPLES + 1);
+        for slice in samples.chunks(SLICE_SAMPLES) {
             let mut offset = 0;
             for samples in slice.split(|y| !usable(*y)) {
                 if !samples.is_empty() {

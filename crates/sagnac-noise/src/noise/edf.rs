@@ -20,7 +20,7 @@ pub enum PhaseModel {
 }
 
 /// Steps per averaging time beyond which a finer step no longer changes the result (relative 1e-4).
-const FINEST: f64 = 256.0;
+const MAX_STEPS_PER_TAU: f64 = 256.0;
 /// Averaging factor up to which the modified deviation of integrated rate is treated as the discrete average it is.
 const DISCRETE_AVERAGE_UP_TO: u64 = 32;
 
@@ -105,7 +105,7 @@ fn edf_of_terms(
         (_, PhaseModel::BandLimited) if direct => filtered(t, factor, alpha),
         _ => generalised(t, alpha + 2),
     };
-    let steps = full.min(FINEST);
+    let steps = full.min(MAX_STEPS_PER_TAU);
     let terms = (terms * steps / full).max(1.0);
     let differenced = |t: f64| {
         let pair = |k: f64| covariance(t - k) + covariance(t + k);

@@ -46,11 +46,11 @@ struct Span {
     count: u64,
 }
 
-const EMPTY: Span = Span { min: f64::INFINITY, max: f64::NEG_INFINITY, mean: 0.0, count: 0 };
+const EMPTY_SPAN: Span = Span { min: f64::INFINITY, max: f64::NEG_INFINITY, mean: 0.0, count: 0 };
 
 impl Span {
     fn of(values: &[f64]) -> Span {
-        let (mut span, mut sum) = (EMPTY, 0.0);
+        let (mut span, mut sum) = (EMPTY_SPAN, 0.0);
         let reference = values.iter().copied().find(|v| v.is_finite()).unwrap_or(0.0);
         for v in values.iter().filter(|v| v.is_finite()) {
             span.min = if *v < span.min { *v } else { span.min };
@@ -102,7 +102,7 @@ impl EnvelopeAccumulator {
         }
         let needed = ((last >> self.shift) - self.first_bin) as usize + 1;
         if self.bins.len() < needed {
-            self.bins.resize(needed, EMPTY);
+            self.bins.resize(needed, EMPTY_SPAN);
         }
         let (mut rest, mut at) = (samples, first_index);
         while !rest.is_empty() {
@@ -143,7 +143,7 @@ impl EnvelopeAccumulator {
             other.halve();
         }
         let needed = (end(self).max(end(&other)) - self.first_bin) as usize;
-        self.bins.resize(needed, EMPTY);
+        self.bins.resize(needed, EMPTY_SPAN);
         let from = (other.first_bin - self.first_bin) as usize;
         for (slot, span) in self.bins.iter_mut().skip(from).zip(other.bins) {
             *slot = slot.join(span);
@@ -169,7 +169,7 @@ impl EnvelopeAccumulator {
     /// Joins neighbouring spans.
     fn halve(&mut self) {
         let odd = (self.first_bin & 1) as usize;
-        let mut out = vec![EMPTY; (self.bins.len() + odd).div_ceil(2)];
+        let mut out = vec![EMPTY_SPAN; (self.bins.len() + odd).div_ceil(2)];
         for (k, span) in self.bins.iter().enumerate() {
             if let Some(slot) = out.get_mut((k + odd) / 2) {
                 *slot = slot.join(*span);

@@ -7,8 +7,8 @@
 use super::data::NoiseType;
 use super::evidence::Evidence;
 use super::identification::StandardThresholds;
-use super::identification::claims::{IDENTIFIABLE, LIMIT_RISE, MIN_RIVAL_RATIO, rival_of};
-use super::identification::linear_fit::{Likelihood, RAMP, Structure, position, toggled};
+use super::identification::claims::{LIMIT_RISE, MAX_IDENTIFIABLE_SIGMA, MIN_RIVAL_RATIO, rival_of};
+use super::identification::linear_fit::{Likelihood, RAMP_INDEX, Structure, position, toggled};
 use super::identification::profile::Profile;
 use super::model::{NoiseModel, TERMS};
 use crate::estimate::{chi_square_quantile, normal_probability, normal_quantile};
@@ -183,10 +183,10 @@ impl Case {
     /// Root of the rise of the deviance at `value` over its minimum.
     fn score(&self, structure: &Structure, value: f64) -> Option<f64> {
         let held = self.deviance(structure, Some((self.term, value)))?;
-        let top = if self.term == RAMP {
+        let top = if self.term == RAMP_INDEX {
             // At a held ramp the likelihood is the plain one, also at the maximum.
             let best = self.likelihood.maximise(structure, None, None)?;
-            self.deviance(structure, Some((RAMP, best.ramp)))?
+            self.deviance(structure, Some((RAMP_INDEX, best.ramp)))?
         } else {
             self.deviance(structure, None)?
         };
@@ -196,15 +196,16 @@ impl Case {
     /// Terms left free when the term is tested: the ramp is one for rate random walk, and where the unit has one.
     fn claim_structure(&self) -> Structure {
         let mut all = [true; 5];
-        all[RAMP] =
-            self.structure[RAMP] || self.term == RAMP || self.term == position(NoiseType::RateRandomWalk);
+        all[RAMP_INDEX] = self.structure[RAMP_INDEX]
+            || self.term == RAMP_INDEX
+            || self.term == position(NoiseType::RateRandomWalk);
         all
     }
 
     /// Root of the likelihood ratio by which the term is claimed.
     fn claim_score(&self) -> Option<f64> {
         let all = self.claim_structure();
-        if self.term == RAMP {
+        if self.term == RAMP_INDEX {
             return self.score(&all, 0.0);
         }
         let without = self.deviance(&toggled(&all, self.term, false), None)?;
@@ -225,7 +226,7 @@ impl Case {
         let bound =
             self.likelihood.variance_bound(&self.model, structure)[self.term][self.term].max(0.0).sqrt();
         let value = self.model.coefficient(TERMS[self.term]).abs();
-        if self.term == RAMP { bound / value } else { bound / (2.0 * value * value) }
+        if self.term == RAMP_INDEX { bound / value } else { bound / (2.0 * value * value) }
     }
 }
 
@@ -251,7 +252,7 @@ impl Pair {
         // Beyond its own size a term is not seen at all, and the laws below, made for small scatter, would run away.
         let sigma = self.here.relative_sigma(&self.here.structure).min(1.0);
         // The square of the coefficient is estimated like a χ², whose median lies below its mean.
-        let shift = if self.here.term == RAMP { 0.0 } else { 2.0 / 3.0 * sigma * sigma };
+        let shift = if self.here.term == RAMP_INDEX { 0.0 } else { 2.0 / 3.0 * sigma * sigma };
         Some(Score { mean: mean - shift * slope, sd: (slope.abs() * sigma).clamp(0.3, 3.0) })
     }
 
@@ -271,16 +272,16 @@ impl Pair {
         let scatter = self.scatter(Case::claim_score)?;
         let needs = |relative: f64| scatter.needs(StandardThresholds::default().of(term, relative).sqrt());
         let (known, hardly) = (needs(0.0), needs(f64::INFINITY));
-        let turning = ((relative / IDENTIFIABLE).powi(2) - 1.0) / relative;
+        let turning = ((relative / MAX_IDENTIFIABLE_SIGMA).powi(2) - 1.0) / relative;
         Some(turning.min(hardly.max(known)).max(known.min(hardly)))
     }
 }
 
 /// ∫ φ(u) f(u) du over the standard normal.
 fn normal_mean(f: impl Fn(f64) -> f64) -> f64 {
-    const STEPS: i32 = 800;
-    let width = 16.0 / f64::from(STEPS);
-    (0..STEPS)
+    const QUADRATURE_STEPS: i32 = 800;
+    let width = 16.0 / f64::from(QUADRATURE_STEPS);
+    (0..QUADRATURE_STEPS)
         .map(|i| {
             let u = -8.0 + (f64::from(i) + 0.5) * width;
             (-0.5 * u * u).exp() / (2.0 * std::f64::consts::PI).sqrt() * f(u) * width
@@ -329,7 +330,7 @@ fn pass_probability(
     let limited = -pair
         .scatter(|c| {
             let mut nuisance = [true; 5];
-            nuisance[RAMP] = c.structure[RAMP] || c.term == RAMP;
+            nuisance[RAMP_INDEX] = c.structure[RAMP_INDEX] || c.term == RAMP_INDEX;
             c.score(&nuisance, limit)
         })?
         .needs(LIMIT_RISE.sqrt());

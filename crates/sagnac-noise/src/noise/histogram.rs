@@ -3,11 +3,11 @@
 use super::part::{Head, MergeError};
 
 /// Samples in a block whose mean is taken off.
-const BLOCK: usize = 1024;
+const BLOCK_SAMPLES: usize = 1024;
 /// A shorter rest of a stretch than this is left out.
 const MIN_BLOCK: usize = 64;
 /// Bins from −8 to +8 scale units.
-const BINS: usize = 128;
+const BIN_COUNT: usize = 128;
 const HALF_RANGE: f64 = 8.0;
 /// Fourth powers beyond are summed in other units: many of them would leave the range of a double.
 const MAX_POWER: f64 = 1e150;
@@ -60,14 +60,14 @@ pub struct HistogramAccumulator {
 impl HistogramAccumulator {
     /// An empty accumulator.
     pub fn new() -> Self {
-        HistogramAccumulator { counts: vec![0; BINS], ..Self::default() }
+        HistogramAccumulator { counts: vec![0; BIN_COUNT], ..Self::default() }
     }
 
     /// The accumulator of a part with `samples_before` samples of its stretch before it. `scale`, deg/h, as
     /// [`HistogramAccumulator::scale`] of another part gives it, makes the bins: parts are merged only with the same bins.
     pub fn of_part(samples_before: u64, scale: Option<f64>) -> Self {
-        let beyond = (samples_before % BLOCK as u64) as usize;
-        let head = Head::new(samples_before, (BLOCK - beyond) % BLOCK);
+        let beyond = (samples_before % BLOCK_SAMPLES as u64) as usize;
+        let head = Head::new(samples_before, (BLOCK_SAMPLES - beyond) % BLOCK_SAMPLES);
         HistogramAccumulator { head, scale: scale.filter(|s| *s > 0.0 && s.is_finite()), ..Self::new() }
     }
 
@@ -129,10 +129,10 @@ impl HistogramAccumulator {
         }
         let mut rest = self.head.take(samples, continues);
         while !rest.is_empty() {
-            let (now, later) = rest.split_at((BLOCK - self.pending.len()).min(rest.len()));
+            let (now, later) = rest.split_at((BLOCK_SAMPLES - self.pending.len()).min(rest.len()));
             self.pending.extend_from_slice(now);
             rest = later;
-            if self.pending.len() == BLOCK {
+            if self.pending.len() == BLOCK_SAMPLES {
                 self.flush();
             }
         }
@@ -151,7 +151,7 @@ impl HistogramAccumulator {
         Histogram {
             scale,
             from: -HALF_RANGE * scale,
-            bin_width: 2.0 * HALF_RANGE * scale / BINS as f64,
+            bin_width: 2.0 * HALF_RANGE * scale / BIN_COUNT as f64,
             counts: self.counts,
             below: self.below,
             above: self.above,
@@ -192,7 +192,7 @@ impl HistogramAccumulator {
                 two += square;
                 three += square * u;
                 four += square * square;
-                let bin = (u + HALF_RANGE) * (BINS as f64 / (2.0 * HALF_RANGE));
+                let bin = (u + HALF_RANGE) * (BIN_COUNT as f64 / (2.0 * HALF_RANGE));
                 if bin < 0.0 {
                     self.below += 1;
                 } else if let Some(count) = self.counts.get_mut(bin as usize) {
@@ -208,7 +208,7 @@ impl HistogramAccumulator {
                 self.powers[1] += three;
                 self.powers[2] += four;
             }
-        } else if let Some(count) = self.counts.get_mut(BINS / 2) {
+        } else if let Some(count) = self.counts.get_mut(BIN_COUNT / 2) {
             // A flat record so far: every deviation is 0.
             *count += self.pending.len() as u64;
         }

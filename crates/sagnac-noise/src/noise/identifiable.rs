@@ -3,7 +3,7 @@
 use super::composite::{Composite, Parameter};
 use super::data::NoiseType;
 use super::evidence::Evidence;
-use super::identification::claims::IDENTIFIABLE;
+use super::identification::claims::MAX_IDENTIFIABLE_SIGMA;
 use super::identification::linear_fit::{Likelihood, Structure, position};
 use super::model::{NoiseModel, TERMS};
 use nalgebra::{DMatrix, DVector};
@@ -35,7 +35,7 @@ pub fn hours_until_identifiable(term: NoiseType, model: &NoiseModel, tau0_s: f64
 }
 
 fn shortest(bound: impl Fn(f64) -> Option<f64>) -> Option<f64> {
-    let enough = |h: f64| bound(h).is_some_and(|r| r <= IDENTIFIABLE);
+    let enough = |h: f64| bound(h).is_some_and(|r| r <= MAX_IDENTIFIABLE_SIGMA);
     let (mut low, mut high) = (0.0, 1.0);
     while !enough(high) {
         low = high;
@@ -145,6 +145,6 @@ mod tests {
             small,
             1.0,
         );
-        assert!((at.unwrap() / IDENTIFIABLE - 1.0).abs() < 0.06, "{at:?}");
+        assert!((at.unwrap() / MAX_IDENTIFIABLE_SIGMA - 1.0).abs() < 0.06, "{at:?}");
     }
 }

@@ -6,8 +6,11 @@
 //! floor being an average of limited number itself. The rate is shared among all bins searched (Šidák). What stands out
 //! from the wide floor must stand out from its nearest neighbours as well: beside the zeros of an averaging filter the
 //! spectrum bends more than a power law over many bins can.
+//!
+//! A line is coherent where its power lies within the few modes that a sinusoid fills ([`is_coherent`]).
 
 use super::data::WelchSpectrum;
+use super::evidence::{Evidence, FineBin};
 use crate::estimate::normal_probability;
 use statrs::function::beta::beta_reg;
 
@@ -22,9 +25,9 @@ const FIRST_FLOOR_BIN: usize = 2;
 /// where the neighbours span most of an octave, and above.
 const FLOOR_ERROR: [f64; 2] = [0.05, 0.02];
 /// Half width, in bins, of what a pure line fills under a Hann window.
-const LOBE: usize = 2;
+const HALF_LOBE_BINS: usize = 2;
 /// Bins on each side that a line must stand out from.
-const NEAREST: usize = 12;
+const NEAR_HALF_WIDTH_BINS: usize = 12;
 /// Variance of a median against a mean (π/2) times the correlation of neighbouring bins under a Hann window
 /// (1 + 2·(4/9 + 1/36)).
 const FLOOR_INFLATION: f64 = std::f64::consts::FRAC_PI_2 * 1.9444;
@@ -90,7 +93,7 @@ pub fn find_lines(spectrum: &WelchSpectrum, tau0_s: f64, false_alarm_rate: f64) 
     let probability = |k: usize| {
         let wide = corrected(tail(density, (floor.level[k], floor.spread[k]), k, averages), searched);
         // Most bins stand out from nothing, and their neighbours need not be looked at.
-        if wide > false_alarm_rate || half_width(k) <= NEAREST {
+        if wide > false_alarm_rate || half_width(k) <= NEAR_HALF_WIDTH_BINS {
             return wide;
         }
         wide.max(corrected(tail(density, nearest(density, k, averages), k, averages), searched))
@@ -105,13 +108,13 @@ pub fn find_lines(spectrum: &WelchSpectrum, tau0_s: f64, false_alarm_rate: f64) 
         let from = k;
         let mut to = k;
         while let Some(next) =
-            (to + 1..(to + 2 + LOBE).min(end)).find(|j| probability(*j) <= false_alarm_rate)
+            (to + 1..(to + 2 + HALF_LOBE_BINS).min(end)).find(|j| probability(*j) <= false_alarm_rate)
         {
             to = next;
         }
         let peak = (from..=to).max_by(|a, b| (density[*a]).total_cmp(&density[*b])).unwrap_or(from);
         lines.push(line(spectrum, &floor.level, tau0_s, (from, peak, to), probability(peak)));
-        k = to + 1 + LOBE;
+        k = to + 1 + HALF_LOBE_BINS;
     }
     group_harmonics(&mut lines);
     LineSearch { lines, floor: floor.level, searched }
@@ -132,7 +135,8 @@ fn line(
     let (side, neighbour) = if above >= below { (1.0, above) } else { (-1.0, below) };
     let ratio = (neighbour.max(0.0) / excess(peak).max(f64::MIN_POSITIVE)).sqrt();
     let offset = side * ((2.0 * ratio - 1.0) / (ratio + 1.0)).clamp(0.0, 0.5);
-    let lobe: f64 = (from.min(peak.saturating_sub(LOBE))..=to.max(peak + LOBE)).map(excess).sum();
+    let lobe: f64 =
+        (from.min(peak.saturating_sub(HALF_LOBE_BINS))..=to.max(peak + HALF_LOBE_BINS)).map(excess).sum();
     // A pure line on a bin fills 1.5 times its peak, any other more.
     let power = lobe.max(1.5 * excess(peak));
     SpectralLine {
@@ -240,7 +244,7 @@ fn log_floor(logs: &[f64], k: usize, scratch: &mut Vec<(f64, f64)>) -> (f64, f64
     let (from, to) = neighbours(k, logs.len());
     let centre = (k as f64).ln();
     scratch.clear();
-    let outside = (from..=to).filter(|j| j.abs_diff(k) > LOBE);
+    let outside = (from..=to).filter(|j| j.abs_diff(k) > HALF_LOBE_BINS);
     scratch.extend(outside.map(|j| ((j as f64).ln() - centre, logs[j])));
     if scratch.len() < 2 { (logs[k], 1.0) } else { along_slope(scratch) }
 }
@@ -270,15 +274,15 @@ fn to_mean(averages: f64) -> f64 {
 /// Floor of the nearest neighbours and its variance in units of that of a bin: their median, or the one along their
 /// slope where that is larger. On a steep flank the first is the level at the middle, whatever it bends.
 fn nearest(density: &[f64], k: usize, averages: f64) -> (f64, f64) {
-    let from = k.saturating_sub(NEAREST).max(FIRST_FLOOR_BIN);
-    let to = (k + NEAREST).min(density.len().saturating_sub(2));
+    let from = k.saturating_sub(NEAR_HALF_WIDTH_BINS).max(FIRST_FLOOR_BIN);
+    let to = (k + NEAR_HALF_WIDTH_BINS).min(density.len().saturating_sub(2));
     let logs: Vec<f64> =
         density.get(from..=to).unwrap_or_default().iter().map(|p| p.max(f64::MIN_POSITIVE).ln()).collect();
     let mut points: Vec<(f64, f64)> = vec![];
     let centre = k - from;
     points.extend(
         (0..logs.len())
-            .filter(|j| j.abs_diff(centre) > LOBE)
+            .filter(|j| j.abs_diff(centre) > HALF_LOBE_BINS)
             .map(|j| (((from + j) as f64 / k as f64).ln(), logs[j])),
     );
     let mut plain: Vec<f64> = points.iter().map(|p| p.1).collect();
@@ -318,6 +322,45 @@ fn upper_f(ratio: f64, numerator: f64, denominator: f64) -> f64 {
 
 fn corrected(probability: f64, family: usize) -> f64 {
     -(family as f64 * (-probability).ln_1p()).exp_m1()
+}
+
+/// Share of the power over the floor that a line has in its core.
+const CORE_SHARE: f64 = 0.7;
+/// Half width of the core in modes, where a line of any phase and frequency keeps nine tenths of its power, and in
+/// bins of a windowed periodogram.
+const CORE_HALF_WIDTH: [usize; 2] = [3, 2];
+/// Bins of the periodogram to each side that a disturbance may fill.
+const WINDOW_BINS: f64 = 8.0;
+/// Excess, in standard deviations of noise, that is needed to tell.
+const MIN_SCORE: f64 = 6.0;
+
+/// True for a line that keeps its phase over the record: its power lies within the few modes that a sinusoid fills. False where
+/// it is spread over more of them, as that of a disturbance that decays; true where the evidence cannot tell.
+pub fn is_coherent(evidence: &Evidence, line: &SpectralLine) -> bool {
+    let near = |bin: &&FineBin, reach: f64| (bin.frequency_hz - line.frequency_hz).abs() <= reach;
+    let reach_hz = WINDOW_BINS * line.resolution_hz;
+    let ring: Vec<f64> = evidence
+        .fine()
+        .iter()
+        .filter(|b| near(b, 3.0 * reach_hz) && !near(b, reach_hz))
+        .map(|b| b.power)
+        .collect();
+    let window: Vec<&FineBin> = evidence.fine().iter().filter(|b| near(b, reach_hz)).collect();
+    let single = window.windows(2).all(|w| w[0].precedes(w[1]));
+    if ring.len() < 8 || window.len() < 5 || !single {
+        return true;
+    }
+    let floor = ring.iter().sum::<f64>() / ring.len() as f64;
+    let dof = window.first().map_or(1.0, |b| b.dof);
+    let excess: f64 = window.iter().map(|b| b.power - floor).sum();
+    let sigma = floor * (2.0 * window.len() as f64 / dof).sqrt();
+    if excess < MIN_SCORE * sigma {
+        return true;
+    }
+    let peak = (0..window.len()).max_by(|a, b| window[*a].power.total_cmp(&window[*b].power)).unwrap_or(0);
+    let half = if dof > 1.5 { CORE_HALF_WIDTH[1] } else { CORE_HALF_WIDTH[0] };
+    let core = window.get(peak.saturating_sub(half)..(peak + half + 1).min(window.len())).unwrap_or(&[]);
+    core.iter().map(|b| b.power - floor).sum::<f64>() >= CORE_SHARE * excess
 }
 
 #[cfg(test)]

@@ -1,3 +1,7 @@
+use super::super::composite::{Composite, Damped, Line};
+use super::super::data::BlockSeries;
+use super::super::model::NoiseModel;
+use super::super::simulate::{Setup, Simulator};
 use super::super::welch::WelchAccumulator;
 use super::*;
 use rand::SeedableRng;
@@ -147,6 +151,39 @@ fn the_floor_of_nearest_bins_of_a_level_spectrum_is_its_level() {
     assert!((spread * 20.0 - 1.0).abs() < 0.01, "{spread}");
     // The bins of a line do not count.
     let mut density = vec![2.0; 400];
-    density[200 - LOBE..=200 + LOBE].fill(1e6);
+    density[200 - HALF_LOBE_BINS..=200 + HALF_LOBE_BINS].fill(1e6);
     assert_eq!(nearest(&density, 200, 50.0), (floor, spread));
+}
+
+fn evidence(model: &Composite, seed: u64) -> Evidence {
+    let n = 36_000;
+    let mean = Simulator::of(model, &Setup::for_record(seed, 1.0, n as u64)).take(n);
+    let blocks = BlockSeries { block_len: 1, first_index: 0, count: vec![1; n], mean, rounding: vec![] };
+    Evidence::new(&blocks, None, 1.0, &[])
+}
+
+fn line(frequency_hz: f64) -> SpectralLine {
+    SpectralLine {
+        frequency_hz,
+        resolution_hz: 1.0 / 2048.0,
+        amplitude_deg_h: 0.1,
+        excess: 10.0,
+        false_alarm_probability: 0.0,
+        harmonic_of: None,
+        harmonic_order: 1,
+        sinusoid: None,
+    }
+}
+
+#[test]
+fn lines_are_told_from_disturbances_that_decay() {
+    let white = Composite::from(NoiseModel { n: 0.0023, ..Default::default() });
+    for seed in 0..20 {
+        let frequency_hz = 0.05 + 1.7e-3 * seed as f64;
+        let steady = Composite { lines: vec![Line { amplitude_deg_h: 0.05, frequency_hz }], ..white.clone() };
+        assert!(is_coherent(&evidence(&steady, seed), &line(frequency_hz)), "line at {frequency_hz}");
+        let process = Damped { rms_deg_h: 0.08, frequency_hz, decay_time_s: 1000.0 };
+        let decaying = Composite { quasi_periodic: vec![process], ..white.clone() };
+        assert!(!is_coherent(&evidence(&decaying, seed), &line(frequency_hz)), "{frequency_hz}");
+    }
 }

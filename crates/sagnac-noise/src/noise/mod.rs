@@ -8,7 +8,7 @@
 //! | step | modules |
 //! |---|---|
 //! | one pass over the samples | [`digest`], made of [`allan`], [`welch`], [`block_series`], [`windows`], [`histogram`], [`envelope`]; [`part`]: passes that are merged |
-//! | lines found and taken out | [`lines`], [`sinusoids`], [`coherence`] |
+//! | lines found and taken out | [`lines`], [`sinusoids`] |
 //! | powers by frequency with what each term is expected to give | [`evidence`] |
 //! | terms with intervals or limits | [`identification`]; [`spectral_record`] does lines, evidence and terms together |
 //! | what the curve of the same record says | [`slope`], [`whole`] |
@@ -23,7 +23,6 @@ pub mod allan;
 pub mod autocorrelation;
 pub mod block_series;
 pub mod coarse;
-pub mod coherence;
 pub mod composite;
 pub mod data;
 mod difference_sums;

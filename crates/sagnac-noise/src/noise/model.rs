@@ -151,7 +151,7 @@ pub fn unit_mean_variance(term: NoiseType, t_s: f64) -> f64 {
 /// The 1/f rate noise is not stationary: its lowest cosine modes hold a fixed share of the density at their
 /// frequency (0.774, 0.903, 0.931, ... for k = 1, 2, 3, ...), the same for any length of record.
 fn flicker_mode_ratio(mode: usize, blocks: usize) -> f64 {
-    static TABLE: std::sync::LazyLock<Vec<f64>> = std::sync::LazyLock::new(|| {
+    static RATIO_TABLE: std::sync::LazyLock<Vec<f64>> = std::sync::LazyLock::new(|| {
         (1..=TABLE_LEN).map(|k| exact_flicker_mode_ratio(k, TABLE_BLOCKS)).collect()
     });
     const TABLE_LEN: usize = 48;
@@ -159,7 +159,7 @@ fn flicker_mode_ratio(mode: usize, blocks: usize) -> f64 {
     if mode == 0 || blocks == 0 {
         return 1.0;
     }
-    let shortfall = match TABLE.get(mode - 1) {
+    let shortfall = match RATIO_TABLE.get(mode - 1) {
         Some(ratio) => 1.0 - ratio,
         None => 0.2028 / mode as f64,
     };

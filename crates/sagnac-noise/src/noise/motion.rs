@@ -91,6 +91,38 @@ pub fn motion(
     }
 }
 
+/// First and last time at which an axis turned, s after the first sample of the recording: where means over 1 s leave the
+/// middle one by far more than the noise. `None` where none does.
+pub fn turned_from_to(
+    blocks: &BlockSeries,
+    tau0_s: f64,
+    sample_noise_deg_h: Option<f64>,
+) -> Option<(f64, f64)> {
+    let block_s = blocks.block_len.max(1) as f64 * tau0_s;
+    let eighth = (blocks.mean.len() / 8).max(1);
+    let merged = ((1.0 / block_s).ceil() as usize).clamp(1, eighth);
+    let means: Vec<f64> = blocks
+        .mean
+        .chunks(merged)
+        .map(|of| {
+            let finite = of.iter().filter(|m| m.is_finite());
+            finite.clone().sum::<f64>() / finite.count() as f64
+        })
+        .collect();
+    let mut sorted: Vec<f64> = means.iter().copied().filter(|m| m.is_finite()).collect();
+    let middle = sorted.len() / 2;
+    if sorted.is_empty() {
+        return None;
+    }
+    let median = *sorted.select_nth_unstable_by(middle, f64::total_cmp).1;
+    let samples = merged as f64 * blocks.block_len.max(1) as f64;
+    let noise = sample_noise_deg_h.unwrap_or(0.0) / samples.sqrt();
+    let turns = |m: &f64| (m - median).abs() > MAX_SCATTER_DEG_H.max(2.0 * MIN_NOISE_RATIO * noise);
+    let (first, last) = (means.iter().position(turns)?, means.iter().rposition(turns)?);
+    let at = |index: usize| blocks.first_index as f64 * tau0_s + (index * merged) as f64 * block_s;
+    Some((at(first), at(last + 1)))
+}
+
 /// The axes of a unit turn together: one that hardly shows it is not at rest either.
 pub fn together(mut axes: Vec<&mut Motion>) {
     if axes.iter().any(|m| m.is_motion()) {

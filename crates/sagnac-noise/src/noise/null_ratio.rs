@@ -12,21 +12,21 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Steps in a window.
-const STEPS: usize = 10;
+const STEPS_PER_WINDOW: usize = 10;
 /// Longest record that is simulated, steps.
 const MAX_STEPS: usize = 1100;
 /// Records.
-const RECORDS: usize = 2000;
-const SEED: u64 = 952;
+const SIMULATED_RECORDS: usize = 2000;
+const RECORDS_SEED: u64 = 952;
 
 /// Quantiles of 5, 50 and 95 % of the ratio of the standard deviation of means over `window_s` to the least overlapping
 /// Allan deviation at `taus_s`, for a record of `length_s` of angle random walk alone. Averaging times are rounded to
 /// tenths of a window; shorter ones hold no minimum of white noise. `None` for a record longer than 110 windows, of less
 /// than two, or where no averaging time is left.
 pub fn null_ratio(length_s: f64, window_s: f64, taus_s: &[f64]) -> Option<[f64; 3]> {
-    let step_s = window_s / STEPS as f64;
+    let step_s = window_s / STEPS_PER_WINDOW as f64;
     let count = (length_s / step_s).floor();
-    if !(2.0 * STEPS as f64..=MAX_STEPS as f64).contains(&count) {
+    if !(2.0 * STEPS_PER_WINDOW as f64..=MAX_STEPS as f64).contains(&count) {
         return None;
     }
     let count = count as usize;
@@ -40,9 +40,9 @@ pub fn null_ratio(length_s: f64, window_s: f64, taus_s: &[f64]) -> Option<[f64; 
     if factors.is_empty() {
         return None;
     }
-    let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(RECORDS_SEED);
     let mut sums = vec![0.0; count + 1];
-    let mut ratios: Vec<f64> = (0..RECORDS)
+    let mut ratios: Vec<f64> = (0..SIMULATED_RECORDS)
         .map(|_| {
             let mut sum = 0.0;
             for s in sums.iter_mut().skip(1) {
@@ -55,7 +55,7 @@ pub fn null_ratio(length_s: f64, window_s: f64, taus_s: &[f64]) -> Option<[f64; 
         })
         .collect();
     ratios.sort_ascending();
-    let at = |p: f64| ratios.get((p * RECORDS as f64) as usize).copied();
+    let at = |p: f64| ratios.get((p * SIMULATED_RECORDS as f64) as usize).copied();
     Some([at(0.05)?, at(0.5)?, at(0.95)?])
 }
 
@@ -67,8 +67,8 @@ fn allan_variance(sums: &[f64], m: usize) -> f64 {
 
 /// Variance of the means of consecutive windows.
 fn window_variance(sums: &[f64]) -> f64 {
-    let ends: Vec<f64> = sums.iter().step_by(STEPS).copied().collect();
-    let means: Vec<f64> = ends.windows(2).map(|w| (w[1] - w[0]) / STEPS as f64).collect();
+    let ends: Vec<f64> = sums.iter().step_by(STEPS_PER_WINDOW).copied().collect();
+    let means: Vec<f64> = ends.windows(2).map(|w| (w[1] - w[0]) / STEPS_PER_WINDOW as f64).collect();
     let n = means.len() as f64;
     let mean = means.iter().sum::<f64>() / n;
     means.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (n - 1.0)

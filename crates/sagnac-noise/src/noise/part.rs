@@ -16,7 +16,7 @@
 //! therefore be given how many samples of it precede ([`PartStart`]). It holds back its *head*, the samples or phases that
 //! windows begun before it need; merging replays the head into the earlier part.
 //!
-//! What cannot be merged, because one pass decides it from data that a part has not seen: a periodogram that chooses its
+//! Not to be merged, because one pass decides it from data that a part has not seen: a periodogram that chooses its
 //! segment length itself, once it has chosen; histograms of different bins; sums of the Allan family with different
 //! strides. Give parts the same segment length, scale and reach; else `merge` returns [`MergeError::Settings`]. The total
 //! deviation needs every phase and is merged only where all are kept.
@@ -149,7 +149,7 @@ impl Head {
         }
     }
 
-    /// What is left of the counts when a part with `later`, whose held samples have been replayed into this one, is
+    /// Updates the counts when a part with `later`, whose held samples have been replayed into this one, is
     /// joined to it.
     pub fn follow(&mut self, later: &Head) {
         self.taken += later.taken - later.held.len() as u64;

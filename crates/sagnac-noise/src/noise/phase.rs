@@ -3,9 +3,9 @@
 pub(crate) use crate::numeric::sums::{Compensated, two_sum};
 
 /// Samples in one step of the phase.
-pub(crate) const BLOCK: usize = 4096;
+pub(crate) const PHASE_BLOCK_SAMPLES: usize = 4096;
 
-/// Turns one unbroken stretch of rate into phase, a block of [`BLOCK`] samples at a time whatever the caller's blocks
+/// Turns one unbroken stretch of rate into phase, a block of [`PHASE_BLOCK_SAMPLES`] samples at a time whatever the caller's blocks
 /// are, so that results do not depend on how a record is cut into blocks.
 ///
 /// The mean of the first block is taken off: differences of the phase along a stretch do not see a constant rate, and
@@ -49,11 +49,11 @@ impl PhaseBuilder {
     /// Takes samples; `emit` gets phases in order, the first of a stretch being 0.
     pub(crate) fn push(&mut self, mut samples: &[f64], emit: &mut impl FnMut(&[f64])) {
         while !samples.is_empty() {
-            let take = (BLOCK - self.pending.len()).min(samples.len());
+            let take = (PHASE_BLOCK_SAMPLES - self.pending.len()).min(samples.len());
             let (now, rest) = samples.split_at(take);
             self.pending.extend_from_slice(now);
             samples = rest;
-            if self.pending.len() == BLOCK {
+            if self.pending.len() == PHASE_BLOCK_SAMPLES {
                 self.flush(emit);
             }
         }

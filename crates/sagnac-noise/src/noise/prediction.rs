@@ -19,10 +19,10 @@ use std::f64::consts::PI;
 const LEAST_LEFT: f64 = 0.06;
 /// Share of the variance that a ramp or a line brings into the prediction and that the observed value does not share: the
 /// fit weighs the record otherwise than a standard deviation does (set by simulation).
-const UNSHARED: f64 = 0.01;
+const UNSHARED_VARIANCE_SHARE: f64 = 0.01;
 /// The covariance is that of the bound; fits of slow terms reach it to within a factor of 1.09 in the deviation
 /// (measured), which is this in the degrees of freedom.
-const REACHED: f64 = 0.85;
+const FIT_EFFICIENCY: f64 = 0.85;
 
 /// How an observed standard deviation stands to the predicted one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
@@ -140,7 +140,7 @@ impl WindowPrediction {
         let scatter = if noise_total > 0.0 { 2.0 / edf * (noise_total / total).powi(2) } else { 0.0 };
         let known = (u_noise / total).powi(2);
         let shifted = ((u_total * u_total - u_noise * u_noise) / (total * total)).max(0.0);
-        let left = (scatter - known).max(LEAST_LEFT * scatter) + UNSHARED * shifted;
+        let left = (scatter - known).max(LEAST_LEFT * scatter) + UNSHARED_VARIANCE_SHARE * shifted;
         let phased = phased(&described.model, window_s, windows) / (total * total);
         let products = |part: fn(f64) -> f64| {
             crossed(&described.model, window_s, windows, noise_total, part) / (total * total)
@@ -183,7 +183,7 @@ impl WindowPrediction {
 
     /// Degrees of freedom with which E\[s²\] itself is known from the parameters; infinite when exactly.
     pub fn known_dof(&self) -> f64 {
-        REACHED * 0.5 * (self.sigma / self.uncertainty).powi(2)
+        FIT_EFFICIENCY * 0.5 * (self.sigma / self.uncertainty).powi(2)
     }
 }
 

@@ -28,9 +28,9 @@ const MIN_POWER_SHARE: f64 = 0.5;
 /// reaches them in one of 10¹³ modes.
 const MIN_SCORE_ALONE: f64 = 8.0;
 /// Modes to each side of a line over which it spreads where it wanders a little.
-const SKIRT: usize = 8;
+const SKIRT_MODES: usize = 8;
 /// Modes beyond whose power is the noise about it.
-const RING: usize = 12;
+const RING_MODES: usize = 12;
 /// Standard deviations by which the power of the skirt must stand above the noise.
 const MIN_SKIRT_SCORE: f64 = 5.0;
 
@@ -175,7 +175,8 @@ impl Means {
             let turns = (from..to).flat_map(|k| [turn - k as f64 * mode, turn + k as f64 * mode]);
             turns.filter(|t| *t > mode && *t < PI).map(|t| self.power(t)).collect()
         };
-        let (skirt, ring) = (beside(1, 1 + SKIRT), beside(1 + SKIRT, 1 + SKIRT + RING));
+        let (skirt, ring) =
+            (beside(1, 1 + SKIRT_MODES), beside(1 + SKIRT_MODES, 1 + SKIRT_MODES + RING_MODES));
         let noise = ring.iter().sum::<f64>() / ring.len().max(1) as f64;
         let n = self.count() as f64;
         let more = skirt.iter().map(|p| p - noise).sum::<f64>();

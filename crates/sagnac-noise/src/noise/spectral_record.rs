@@ -4,7 +4,6 @@
 //! averaged periodogram, whose segments are short, cannot tell them apart; the modes of the whole record can.
 
 use super::coarse;
-use super::coherence::is_coherent;
 use super::composite::{Damped, Described, Line, Parameter, Sampling};
 use super::data::{BlockSeries, WelchSpectrum};
 use super::digest::RateDigest;
@@ -13,7 +12,7 @@ use super::family::Estimator;
 use super::identification::{
     Options, RangedIdentification, describe_in_range, identify_in_range, identify_over,
 };
-use super::lines::{SpectralLine, find_lines, retain};
+use super::lines::{SpectralLine, find_lines, is_coherent, retain};
 use super::sinusoids;
 use crate::numeric::order::SortByNumber;
 use std::borrow::Cow;
@@ -44,9 +43,9 @@ pub struct RecordNoise {
 }
 
 /// A disturbance that decays in more than this share of the record is a line as far as the record shows.
-const COHERENT: f64 = 1.0 / 3.0;
+const COHERENT_DECAY_SHARE: f64 = 1.0 / 3.0;
 /// Times that the lines are settled anew.
-const ROUNDS: usize = 3;
+const REFINEMENT_ROUNDS: usize = 3;
 
 impl<'a> SpectralRecord<'a> {
     /// The statistics that one pass left, and lines found in its periodogram. `tau0_s` is the measured sample interval.
@@ -129,7 +128,7 @@ impl SpectralRecord<'_> {
         let mut lines = retain(&seen, |l| is_coherent(&whole, l));
         sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
         let mut ranged = describe_in_range(channel, &evidence(&lines), nyquist_hz, &options);
-        for _ in 0..ROUNDS {
+        for _ in 0..REFINEMENT_ROUNDS {
             let found = &ranged.identification.described.model.quasi_periodic;
             // A peak that is neither coherent nor explained is a line after all; so is a disturbance that hardly decays.
             let left = retain(&seen, |l| {
@@ -138,7 +137,7 @@ impl SpectralRecord<'_> {
             });
             let steady: Vec<SpectralLine> = found
                 .iter()
-                .filter(|q| q.decay_time_s > COHERENT * whole.span_s)
+                .filter(|q| q.decay_time_s > COHERENT_DECAY_SHARE * whole.span_s)
                 .map(|q| self.as_line(q, &whole))
                 .collect();
             if left.is_empty() && steady.is_empty() {

@@ -27,7 +27,7 @@ const MAX_CHANCE: f64 = 1e-7;
 /// Share of the variance that lines, narrow bands and rounding may each have where the spread of the values is judged.
 const MAX_PERIODIC_SHARE: f64 = 0.2;
 /// Lags at which the correlation of deviations is taken, samples.
-const LAGS: usize = 16;
+const CORRELATION_LAGS: usize = 16;
 /// Variance of neighbouring differences, halved, over the variance: samples outside wander within a block.
 const WHITE_RATIO: std::ops::RangeInclusive<f64> = 0.5..=2.0;
 
@@ -112,7 +112,7 @@ impl Deviations {
     ) -> Option<Deviations> {
         let mut all: Vec<f64> = Vec::new();
         let (mut differences, mut pairs) = (0.0, 0.0);
-        let mut products = [(0.0, 0.0); LAGS];
+        let mut products = [(0.0, 0.0); CORRELATION_LAGS];
         for stretch in stretches {
             let length = stretch.len().div_ceil(stretch.len().div_ceil(longest_block.max(1)).max(1));
             let blocks = stretch.chunks(length.max(1)).filter(|b| b.len() >= MIN_LINE_BLOCK);
@@ -147,7 +147,7 @@ impl Deviations {
             standard_deviation: deviation,
             neighbour_deviation: (0.5 * differences / pairs).sqrt(),
             excess_kurtosis: moment(4) / (variance * variance) - 3.0,
-            periodic_share: (2.0 * squares / LAGS as f64).sqrt(),
+            periodic_share: (2.0 * squares / CORRELATION_LAGS as f64).sqrt(),
             beyond: (0..=steps).map(at).collect(),
         })
     }

@@ -14,7 +14,7 @@ pub const MIN_SEGMENT: usize = 1 << 6;
 /// Segments that fit into a record at least, end to end, where the record allows.
 const MIN_SEGMENTS: usize = 16;
 /// Segments that a sample lies in.
-const OVERLAPPING: usize = 4;
+const SEGMENTS_PER_SAMPLE: usize = 4;
 
 /// What the averaged periodogram used and what it could not use.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -79,7 +79,7 @@ struct Engine {
     power: Vec<f64>,
     segments: u64,
     /// Pairs of segments that lie 1, 2 and 3 quarters of a segment apart.
-    pairs: [u64; OVERLAPPING - 1],
+    pairs: [u64; SEGMENTS_PER_SAMPLE - 1],
     unused: u64,
 }
 
@@ -253,7 +253,7 @@ impl Engine {
             leading: false,
             power: vec![0.0; length / 2 + 1],
             segments: 0,
-            pairs: [0; OVERLAPPING - 1],
+            pairs: [0; SEGMENTS_PER_SAMPLE - 1],
             unused: 0,
         }
     }
@@ -279,7 +279,7 @@ impl Engine {
 
     /// Samples from one segment to the next.
     fn hop(&self) -> usize {
-        self.window.len() / OVERLAPPING
+        self.window.len() / SEGMENTS_PER_SAMPLE
     }
 
     /// Samples of a stretch that are in none of its segments.

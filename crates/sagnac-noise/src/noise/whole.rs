@@ -17,12 +17,12 @@ use crate::estimate::{Estimate, chi_square_quantile};
 use crate::message::{Note, note};
 
 /// Share by which an amplitude may exceed half the range, for its own error.
-const ROUNDED: f64 = 1.02;
+const AMPLITUDE_ALLOWANCE: f64 = 1.02;
 /// Factor by which a part may exceed what the record allows it, in deviation, before that contradicts it: no model of a real
 /// output is better.
-const HARMLESS: f64 = 1.02;
+const DEVIATION_ALLOWANCE: f64 = 1.02;
 /// Probability with which chance makes a record show less of a part than this.
-const CHANCE: f64 = 1e-3;
+const BOUND_PROBABILITY: f64 = 1e-3;
 /// Least degrees of freedom of what a part is set against.
 const LEAST_EDF: f64 = 3.0;
 
@@ -43,7 +43,8 @@ impl Whole {
     pub fn of(digest: &RateDigest, octaves: &[BoundedPoint], highest_hz: Option<f64>) -> Whole {
         let tau0_s = digest.tau0_s;
         let shortest_s = highest_hz.map_or(0.0, |hz| 1.0 / hz);
-        let most = |deviation: f64, dof: f64| deviation.powi(2) * dof / chi_square_quantile(CHANCE, dof);
+        let most =
+            |deviation: f64, dof: f64| deviation.powi(2) * dof / chi_square_quantile(BOUND_PROBABILITY, dof);
         let variances = octaves
             .iter()
             .filter(|p| p.edf >= LEAST_EDF && p.point.m as f64 <= LARGEST_SHARE * digest.samples as f64)
@@ -63,8 +64,9 @@ impl Whole {
     /// Least value of a part against the largest of the record; `None` where it fits.
     fn excess(&self, part: &Composite, size: f64, least: f64) -> Option<(f64, f64)> {
         let share = if size > 0.0 { (least / size).powi(2) } else { 0.0 };
-        let beyond =
-            |(has, most): (f64, f64)| (has > HARMLESS.powi(2) * most).then(|| (has.sqrt(), most.sqrt()));
+        let beyond = |(has, most): (f64, f64)| {
+            (has > DEVIATION_ALLOWANCE.powi(2) * most).then(|| (has.sqrt(), most.sqrt()))
+        };
         let octaves = self.variances.iter();
         let at = octaves.map(|(tau_s, most)| (share * part.allan_variance(*tau_s, self.tau0_s), *most));
         let means = self.windows.iter().filter_map(|(window_s, n, variance)| {
@@ -73,7 +75,7 @@ impl Whole {
             let own =
                 if part.lines.is_empty() { edf_of_window_std(*n, *window_s, scatter)? } else { f64::MAX };
             let dof = own.min((*n - 1) as f64);
-            let most = variance * dof / chi_square_quantile(CHANCE, dof);
+            let most = variance * dof / chi_square_quantile(BOUND_PROBABILITY, dof);
             let has = share * part.expected_variance(*window_s, *n, self.tau0_s)?;
             most.is_finite().then_some((has, most))
         });
@@ -92,7 +94,7 @@ impl Whole {
                 }],
                 ..Default::default()
             };
-            let most = if amplitude > ROUNDED * self.half_range {
+            let most = if amplitude > AMPLITUDE_ALLOWANCE * self.half_range {
                 Some((amplitude, self.half_range))
             } else {
                 self.excess(&part, 1.0, 1.0)
@@ -166,7 +168,7 @@ impl Whole {
 
     fn process(&self, part: &Composite, rms: f64, estimate: &Estimate) -> Option<(f64, f64)> {
         let least = estimate.interval95().map_or(rms, |i| i.low);
-        if least > ROUNDED * self.half_range {
+        if least > AMPLITUDE_ALLOWANCE * self.half_range {
             return Some((least, self.half_range));
         }
         self.excess(part, rms, least)

@@ -7,7 +7,7 @@ use crate::measurand::{GyroEvidence, static_bias};
 use crate::noise::tails::{Deviations, Shortening, TailShape};
 use std::collections::BTreeMap;
 
-/// What is left of the warm-up on every channel, and what every channel shows. `constant`: conditions were; over
+/// Facts of every gyro channel, the rest of its warm-up among them. `constant`: conditions were; over
 /// temperature and while it warms up a unit is not steady, and `from_lines` are the deviations of its samples from its course.
 pub fn of_gyros(
     reading: &Reading<'_>,

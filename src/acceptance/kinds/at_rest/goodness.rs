@@ -2,7 +2,7 @@
 
 use crate::i18n::{Arg, Note, note};
 use crate::measurand::GyroEvidence;
-use crate::noise::residual::{GoodnessOfFit, Judged, TAIL, View};
+use crate::noise::residual::{GoodnessOfFit, Judged, TAIL_DEVIATIONS, View};
 use crate::record::GoodnessOfFitRecord;
 
 /// The views of a channel.
@@ -76,7 +76,7 @@ fn departure(judged: &Judged, fit: &GoodnessOfFit) -> Note {
             note!(
                 "goodness.amplitude",
                 n = found.map_or(0, |a| a.beyond),
-                sigma = Arg::Stated(TAIL),
+                sigma = Arg::Stated(TAIL_DEVIATIONS),
                 expected = figure(found.map_or(0.0, |a| a.expected_beyond)),
                 kurtosis = figure(found.map_or(0.0, |a| a.excess_kurtosis)),
                 skewness = figure(found.map_or(0.0, |a| a.skewness))

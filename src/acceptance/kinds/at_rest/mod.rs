@@ -21,8 +21,10 @@ use crate::config::procedure::Procedure;
 use crate::config::procedure::model::MeasurandSpec;
 use crate::estimate::{Estimate, Verdict};
 use crate::figure::Figure;
-use crate::i18n::note;
-use crate::measurand::GyroEvidence;
+use crate::i18n::{Arg, Note, note};
+use crate::measurand::{self, GyroEvidence, PowerModel};
+use crate::noise::composite::Parameter;
+use crate::noise::motion::turned_from_to;
 use crate::noise::tails::Deviations;
 use crate::noise::tau_grid::TauGrid;
 use crate::record::RunRecord;
@@ -38,8 +40,8 @@ pub struct AtRest;
 impl TestKind for AtRest {
     type Collector = RateDigests;
     type Evidence = RestEvidence;
-    const CHECKS: &'static [&'static str] = &["earth_rate", "noise_level", "warm_up", "distribution"];
-    const MISSING: &'static str = "unshown.nothing";
+    const OWN_CHECKS: &'static [&'static str] = &["earth_rate", "noise_level", "warm_up", "distribution"];
+    const MISSING_REASON: &'static str = "unshown.nothing";
 
     fn of(_: &Procedure) -> Option<AtRest> {
         Some(AtRest)
@@ -106,12 +108,25 @@ impl Evidence for RestEvidence {
     }
 
     fn estimates(&self, _: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate> {
+        let turned = turned(&self.gyros);
         let of = |gyro: &GyroEvidence| {
+            let turned = turned.clone();
             let moves = spec.measurand.needs_stillness && self.is_constant() && gyro.motion.is_motion();
             let estimates = spec.measurand.evaluate_gyro(gyro, &spec.options());
-            estimates.into_iter().map(move |e| if moves { without_noise(e, spec) } else { e })
+            estimates.into_iter().map(move |e| if moves { without_noise(e, spec, turned.clone()) } else { e })
         };
         self.gyros.iter().flat_map(of).collect()
+    }
+
+    fn correlation(&self, one: &Estimate, other: &Estimate) -> Option<f64> {
+        let gyro = self.gyros.iter().find(|g| g.channel == one.channel && g.channel == other.channel)?;
+        let fitted = |e: &Estimate| match measurand::find(e.id)?.power? {
+            PowerModel::NoiseTerm(term) if e.method == gyro.identification.method => {
+                Some(Parameter::Coefficient(term))
+            }
+            _ => None,
+        };
+        gyro.identification.described.correlation(fitted(one)?, fitted(other)?)
     }
 
     fn figures(&self, reading: &Reading<'_>) -> Vec<Figure> {
@@ -167,9 +182,23 @@ impl RestEvidence {
 }
 
 /// In place of the estimate of a noise that a recording with motion does not show.
-fn without_noise(estimate: Estimate, spec: &MeasurandSpec) -> Estimate {
+fn without_noise(estimate: Estimate, spec: &MeasurandSpec, turned: Note) -> Estimate {
     let empty = spec.measurand.not_identifiable(&estimate.channel, None, estimate.method);
-    empty.note(note!("note.moving"))
+    empty.note(turned)
+}
+
+/// That the unit turned, and from when to when: over all its axes, which turn together.
+fn turned(gyros: &[GyroEvidence]) -> Note {
+    let spans = gyros
+        .iter()
+        .filter(|g| g.motion.is_motion())
+        .filter_map(|g| turned_from_to(&g.digest.blocks, g.tau0_s, g.digest.quietest_deg_h));
+    match spans.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))) {
+        Some((from_s, to_s)) => {
+            note!("note.moving_from_to", from_s = Arg::decimals(from_s, 1), to_s = Arg::decimals(to_s, 1))
+        }
+        None => note!("note.moving"),
+    }
 }
 
 /// The compensation table of a channel with a model: TOML, JSON, C header.

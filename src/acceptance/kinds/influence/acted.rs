@@ -69,7 +69,9 @@ pub fn find(
         None
     };
     Ok(match by_noise {
-        Some((ratio, significance)) if significance >= Acted::SEEN => Acted::Inferred { ratio, significance },
+        Some((ratio, significance)) if significance >= Acted::MIN_SIGNIFICANCE => {
+            Acted::Inferred { ratio, significance }
+        }
         _ if test.declared => Acted::Declared,
         by_noise => Acted::NotShown { by_noise },
     })

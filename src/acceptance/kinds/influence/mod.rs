@@ -45,9 +45,9 @@ pub struct InfluenceEvidence {
 impl TestKind for UnderInfluence {
     type Collector = Collector;
     type Evidence = InfluenceEvidence;
-    const CHECKS: &'static [&'static str] =
+    const OWN_CHECKS: &'static [&'static str] =
         &["earth_rate", "noise_level", "temperature_in_step", "distribution"];
-    const MISSING: &'static str = "unshown.no_intervals";
+    const MISSING_REASON: &'static str = "unshown.no_intervals";
 
     fn of(procedure: &Procedure) -> Option<UnderInfluence> {
         Some(UnderInfluence { test: procedure.comparison_test.clone()? })

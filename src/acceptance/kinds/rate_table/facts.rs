@@ -8,7 +8,7 @@ use crate::rate_table::scale_factor::ScaleFactor;
 use crate::rate_table::settling::Unsettled;
 use crate::rate_table::{Setup, TableRun, stamps};
 
-/// What was found of the table and of how every channel follows it. `lines` are the gyro channels by position, each with its
+/// Facts of the table and of how every channel follows it. `lines` are the gyro channels by position, each with its
 /// line; `about_outer`: the table turns about its other axis.
 pub fn table_facts(
     request: &Request<'_>,

@@ -55,9 +55,9 @@ impl StepEvidence {
 impl TestKind for RateTable {
     type Collector = Collector;
     type Evidence = StepEvidence;
-    const CHECKS: &'static [&'static str] =
+    const OWN_CHECKS: &'static [&'static str] =
         &["earth_sign", "table_response", "table_reached", "table_agreement", "clock_by_turns"];
-    const MISSING: &'static str = "unshown.no_line";
+    const MISSING_REASON: &'static str = "unshown.no_line";
 
     fn of(procedure: &Procedure) -> Option<RateTable> {
         let setup = procedure.rate_table.clone().filter(|s| s.known.is_empty())?;

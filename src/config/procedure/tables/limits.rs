@@ -1,5 +1,6 @@
 //! The tables of a limits file; limits and references may stand in a procedure too.
 
+use super::derived::DerivedLimitKeys;
 use crate::config::diagnostics::Span;
 use crate::config::procedure::section::Section;
 use crate::config::spec::{TableSpec, Word};
@@ -31,6 +32,9 @@ pub(crate) struct LimitsTables {
     /// Limits, one table each.
     #[key(name = "limit")]
     pub limits: Vec<LimitKeys>,
+    /// Limits of quantities by a formula (`[[derived]]` of a procedure).
+    #[key(name = "derived_limit")]
+    pub derived_limits: Vec<DerivedLimitKeys>,
 }
 
 /// Identity of the limits, shown in the header of every report.

@@ -1,6 +1,7 @@
 //! The tables of a procedure file.
 
 pub(crate) mod conditions;
+pub(crate) mod derived;
 pub(crate) mod influence;
 pub mod limits;
 pub mod phases;
@@ -18,6 +19,7 @@ use crate::record::ClauseRecord;
 use crate::recording::{ColumnRef, Role};
 use crate::units::Unit;
 use conditions::{Conditions, Exclusion};
+use derived::{DerivedKeys, DerivedLimitKeys};
 use influence::{MagneticKeys, RepeatabilityKeys, SupplyKeys, VibrationKeys};
 use limits::{LimitKeys, ReferenceKeys, TypicalValues};
 use rate_table::RateTableKeys;
@@ -95,9 +97,15 @@ pub(in crate::config::procedure) struct ProcedureFile {
     /// Quantities to determine, one table each, in the order of the report.
     #[key(name = "measurand", required)]
     pub measurands: Vec<MeasurandKeys>,
+    /// Quantities by a formula over others, one table each.
+    #[key(name = "derived")]
+    pub derived: Vec<DerivedKeys>,
     /// Limits. A limits file may replace them.
     #[key(name = "limit")]
     pub limits: Vec<LimitKeys>,
+    /// Limits of quantities by a formula. A limits file may replace them.
+    #[key(name = "derived_limit")]
+    pub derived_limits: Vec<DerivedLimitKeys>,
     /// Published or data-sheet values shown for comparison.
     #[key(name = "reference")]
     pub references: Vec<ReferenceKeys>,

@@ -19,20 +19,26 @@ const WHITE_ALONE: f64 = 0.5;
 /// one before.
 const MIN_NOISE_SHARE: f64 = 1e-3;
 
-/// Strengths of a kind that share its confidence before the test, and the most that are tried where drift is stronger.
-const STRENGTHS: (usize, usize) = (14, 40);
+/// Strengths of a kind that share its confidence before the test.
+const PRIOR_STRENGTHS: usize = 14;
+
+/// Strengths of a kind that are tried at most, where drift is stronger.
+const MAX_STRENGTHS: usize = 40;
 
 /// Log-likelihood below the best of its kind from which no greater strength is tried.
-const BEYOND: f64 = 12.0;
+const MAX_LOG_LIKELIHOOD_LOSS: f64 = 12.0;
 
-/// Share of the confidence below which a noise is left out.
-const NEGLIGIBLE: f64 = 1e-3;
+/// Share of the confidence of all noises together below which one is left out.
+const NEGLIGIBLE_CONFIDENCE: f64 = 1e-3;
+
+/// Share of the confidence below which a noise does not count where a zone is tested.
+pub const MIN_COUNTED_CONFIDENCE: f64 = 0.01;
 
 /// Half widths tried, in parts of half the range of the rates.
-const WIDTHS: usize = 40;
+const WIDTH_COUNT: usize = 40;
 
 /// Noises inside the loop that are tried, in parts of the half width.
-const NOISES: [f64; 5] = [0.35, 0.7, 1.4, 2.8, 5.6];
+const NOISES_PER_HALF_WIDTH: [f64; 5] = [0.35, 0.7, 1.4, 2.8, 5.6];
 
 /// Levels with the noise that is expected.
 pub struct Means {
@@ -155,16 +161,16 @@ pub fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<Noise
     let mut tried = vec![try_it(WHITE_ALONE.ln(), None)?];
     let kinds: Vec<&DMatrix<f64>> =
         design.quick.iter().skip(1).chain(&design.slow).chain(&design.further).map(|k| &k.1).collect();
-    let before = ((1.0 - WHITE_ALONE) / (kinds.len() * STRENGTHS.0) as f64).ln();
+    let before = ((1.0 - WHITE_ALONE) / (kinds.len() * PRIOR_STRENGTHS) as f64).ln();
     for kind in kinds {
         let unit = MIN_NOISE_SHARE * of_white.trace() / kind.trace().max(f64::MIN_POSITIVE);
         let mut most = f64::NEG_INFINITY;
-        for i in 0..STRENGTHS.1 {
+        for i in 0..MAX_STRENGTHS {
             let Some(found) = try_it(before, Some((kind, unit * 2f64.powi(i as i32)))) else { break };
             let log = found.log;
             tried.push(found);
             most = most.max(log);
-            if log < most - BEYOND {
+            if log < most - MAX_LOG_LIKELIHOOD_LOSS {
                 break;
             }
         }
@@ -173,7 +179,7 @@ pub fn noises(design: &Design, x: &DMatrix<f64>, white: f64) -> Option<Vec<Noise
     let weight = |t: &Tried| (t.log - most).exp();
     let all: f64 = tried.iter().map(weight).sum();
     let mut first = true;
-    tried.retain(|t| std::mem::take(&mut first) || weight(t) > NEGLIGIBLE * all);
+    tried.retain(|t| std::mem::take(&mut first) || weight(t) > NEGLIGIBLE_CONFIDENCE * all);
     let kept: f64 = tried.iter().map(weight).sum();
     let likely =
         |t: Tried| NoiseHypothesis { share: weight(&t) / kept, before: t.before, covariance: t.covariance };
@@ -193,12 +199,13 @@ struct Tried {
 /// Columns of a line and of what the zone that suits the rates best takes from it.
 fn with_zone(design: &Design, points: &Points) -> Option<Vec<DVector<f64>>> {
     let (_, largest) = points.range();
-    let zone = widths::tried(largest, WIDTHS)
+    let zone = widths::tried(largest, WIDTH_COUNT)
         .skip(1)
         .flat_map(|w| {
             // A change that noise inside the loop rounds off is no drift either.
-            let rounded = NOISES.map(|n| Shape { kind: Kind::Rounded, half_width: w, noise: n * w });
-            Kind::CLEAN.map(|kind| Shape::clean(kind, w)).into_iter().chain(rounded)
+            let rounded =
+                NOISES_PER_HALF_WIDTH.map(|n| Shape { kind: Kind::Rounded, half_width: w, noise: n * w });
+            Kind::NOISE_FREE.map(|kind| Shape::clean(kind, w)).into_iter().chain(rounded)
         })
         .map(|shape| points.at_any_centre(shape))
         .min_by(|a, b| a.least.total_cmp(&b.least))?;

@@ -1,10 +1,10 @@
 //! Whether a line would make a zone as likely by chance.
 //!
-//! What is compared is the ratio of the likelihood of a zone to that of a line, each averaged over the noises that the test
+//! The test statistic is the ratio of the likelihood of a zone to that of a line, each averaged over the noises that the test
 //! may have. In every draw of a line the steps tell the noise anew: what looks like a zone where drift is believed to be
 //! none does not where the draw shows its drift.
 
-use super::about::Means;
+use super::about::{MIN_COUNTED_CONFIDENCE, Means};
 use super::points::{Points, Ratios};
 use crate::numeric::cholesky::inverse;
 use crate::numeric::cholesky::log_determinant;
@@ -21,13 +21,10 @@ use std::cell::OnceCell;
 const CLAIMED_BELOW: [f64; 2] = [0.01, 0.0025];
 
 /// Gain of −2 ln L above which no draws are needed.
-const SURE: f64 = 40.0;
+const CERTAIN_GAIN: f64 = 40.0;
 
 /// Tests without a zone that have to reach the ratio for a zone not to be claimed.
-const REACHED: usize = 10;
-
-/// Share of the confidence below which a noise does not count.
-const NEGLIGIBLE: f64 = 0.01;
+const REFUTING_EXCEEDANCES: usize = 10;
 
 /// One of the noises that the steps may have.
 struct Noise<'a> {
@@ -65,7 +62,7 @@ pub fn shows_a_zone(
     gain: f64,
     widths: &[f64],
 ) -> Option<bool> {
-    if gain > SURE {
+    if gain > CERTAIN_GAIN {
         return Some(true);
     }
     let noises = noises(about, slope_known, points, widths)?;
@@ -83,7 +80,7 @@ pub fn shows_a_zone(
     let mut rng = Xoshiro256PlusPlus::seed_from_u64(0x7a6f_6e65);
     let below = CLAIMED_BELOW[usize::from(slope_known.is_some())];
     let mut as_large = 0;
-    for _ in 0..(REACHED as f64 / below) as usize {
+    for _ in 0..(REFUTING_EXCEEDANCES as f64 / below) as usize {
         let at: f64 = rng.random();
         let noise = noises.iter().find(|k| at < k.below).or(noises.last())?;
         let even = DVector::from_fn(m, |_, _| StandardNormal.sample(&mut rng));
@@ -94,7 +91,7 @@ pub fn shows_a_zone(
         let ratio =
             averaged(&noises, &apart, |k| &k.line + k.points.whitened(&(&k.levels * &drawn), of_slope));
         as_large += usize::from(ratio >= observed);
-        if as_large >= REACHED {
+        if as_large >= REFUTING_EXCEEDANCES {
             return Some(false);
         }
     }
@@ -107,7 +104,12 @@ fn averaged(noises: &[Noise], apart: &DVector<f64>, data: impl Fn(&Noise) -> DVe
     let most = twice.iter().copied().fold(f64::NEG_INFINITY, f64::max);
     let all: f64 = twice.iter().map(|t| (0.5 * (t - most)).exp()).sum();
     let shares = twice.iter().map(|t| (0.5 * (t - most)).exp() / all);
-    noises.iter().zip(shares).filter(|(_, p)| *p > NEGLIGIBLE).map(|(k, p)| p * k.ratio(&data(k))).sum()
+    noises
+        .iter()
+        .zip(shares)
+        .filter(|(_, p)| *p > MIN_COUNTED_CONFIDENCE)
+        .map(|(k, p)| p * k.ratio(&data(k)))
+        .sum()
 }
 
 fn noises<'a>(

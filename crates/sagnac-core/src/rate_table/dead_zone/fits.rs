@@ -4,7 +4,7 @@
 //! rows leave of a mean of their own for every rate, of all strengths that the test allows, and each says how likely the
 //! response would leave as much by chance.
 
-use super::about::{NoiseHypothesis, noises};
+use super::about::{MIN_COUNTED_CONFIDENCE, NoiseHypothesis, noises};
 use super::points::Points;
 use super::shape::Shape;
 use crate::estimate::normal_probability;
@@ -13,9 +13,6 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 
 /// Probability of what a form leaves by chance below which it does not fit.
 pub const FITS_FROM: f64 = 0.01;
-
-/// Share of the confidence below which a noise does not count.
-const NEGLIGIBLE: f64 = 0.01;
 
 /// One of the noises.
 struct Noise {
@@ -52,7 +49,11 @@ impl Fits {
         };
         let likely = noises(design, &free, strength)?;
         Some(Fits {
-            noises: likely.into_iter().filter(|l| l.share > NEGLIGIBLE).map(of).collect::<Option<_>>()?,
+            noises: likely
+                .into_iter()
+                .filter(|l| l.share > MIN_COUNTED_CONFIDENCE)
+                .map(of)
+                .collect::<Option<_>>()?,
             dof: (free.nrows() - free.ncols()) as f64,
             told: levels as f64 + if slope_known { 1.0 } else { 0.0 },
         })

@@ -4,10 +4,10 @@
 //! and *locked*, D = sgn(x)·√(x² − δ²) outside, each about a centre that is fitted too, for the zone lies where the unit
 //! believes to be at rest. The half width δ of a form has the interval of its likelihood over the means of the rates with
 //! their covariance, slope and offset at their best, averaged over the places where a unit is at rest and any other
-//! (`place`). Between two rates of the test the edge of a gap moves nothing: all of that stretch belongs to its interval.
+//! (`points`). Between two rates of the test the edge of a gap moves nothing: all of that stretch belongs to its interval.
 //! The noise is that about the zone that suits best (`about`), of all strengths that the test allows.
 //!
-//! Forms that fit nearly as well as the best one are not told apart, and the interval covers all of them (`covering`). Each
+//! Forms that fit nearly as well as the best one are not told apart, and the interval covers all of them (`zone`). Each
 //! is tested by noise that it cannot enlarge (`fits`): where none fits, nothing is stated of a zone.
 //!
 //! Outside a zone the output follows the rate by the scale factor. What a test of scale factor said of it may be used: a
@@ -21,9 +21,7 @@
 
 mod about;
 mod chance;
-mod covering;
 mod fits;
-mod place;
 mod points;
 mod rounded;
 mod shape;

@@ -1,19 +1,22 @@
 //! Means of the rates with their covariance, and how well a response with a zone fits them.
+//!
+//! A unit's zone lies where its loop is at rest: where the input is none, about which the rates of a test are set, or,
+//! with a bias in front of the zone, where the output is none. Neither need be so: an input axis that stands off, or a
+//! bias that is divided, puts it elsewhere. Each of the three is given the same share.
 
-use super::place::Place;
 use super::shape::{Kind, Shape};
 use crate::numeric::order::{SortByNumber, SortNumbers};
 use nalgebra::{Cholesky, DMatrix, DVector};
 use std::cell::OnceCell;
 
 /// Centres tried.
-pub const CENTRES: usize = 41;
+pub const CENTRE_COUNT: usize = 41;
 
 /// Divisions of a stretch of centres between which no rate changes sides.
-const THIRDS: usize = 8;
+const CENTRE_DIVISIONS: usize = 8;
 
 /// Cost above the least from which a stretch of centres is not looked into.
-const NEAR: f64 = 30.0;
+const MAX_COST_EXCESS: f64 = 30.0;
 
 /// What one zone leaves.
 #[derive(Debug, Clone, Copy)]
@@ -78,7 +81,7 @@ impl Points {
             let (middle, largest) = self.range();
             let (_, slope, offset) = self.cost(|x| x);
             let (_, apart) = self.spacing();
-            let tried = largest / (CENTRES - 1) as f64;
+            let tried = largest / (CENTRE_COUNT - 1) as f64;
             Place::new(middle, 0.5 * largest, -offset / slope, self.noise / slope.abs(), apart, tried)
         })
     }
@@ -139,13 +142,13 @@ impl Points {
             let (cost, slope, offset) = self.cost(|x| shape.of(x - c));
             (cost, c, slope, offset)
         };
-        let mut tried: Vec<(f64, f64, f64, f64)> = (0..CENTRES)
-            .map(|i| at(middle + 0.5 * largest * (2.0 * i as f64 / (CENTRES - 1) as f64 - 1.0)))
+        let mut tried: Vec<(f64, f64, f64, f64)> = (0..CENTRE_COUNT)
+            .map(|i| at(middle + 0.5 * largest * (2.0 * i as f64 / (CENTRE_COUNT - 1) as f64 - 1.0)))
             .collect();
         let least = |t: &[(f64, f64, f64, f64)]| {
             t.iter().copied().fold((f64::INFINITY, 0.0, 0.0, 0.0), |m, v| if v.0 < m.0 { v } else { m })
         };
-        let mut step = 0.5 * largest / (CENTRES - 1) as f64;
+        let mut step = 0.5 * largest / (CENTRE_COUNT - 1) as f64;
         for _ in 0..6 {
             let middle = least(&tried).1;
             tried.extend([middle - step, middle + step].map(at));
@@ -181,12 +184,12 @@ impl Points {
             .map(|w| [0.5, 1e-6, 1.0 - 1e-6].map(|part| at(w[0] + part * (w[1] - w[0]))))
             .collect();
         let least_of = |s: &[Tried; 3]| s.iter().map(|t| t.cost).fold(f64::INFINITY, f64::min);
-        let near = stretches.iter().map(least_of).fold(found.least, f64::min) + NEAR;
+        let near = stretches.iter().map(least_of).fold(found.least, f64::min) + MAX_COST_EXCESS;
         for s in stretches.iter().filter(|s| least_of(s) <= near) {
             // The cost is that of a straight line outside, smooth over a stretch: thirds close in on its least.
             let (mut a, mut b) = (s[1].centre, s[2].centre);
             let mut tried = s.to_vec();
-            for _ in 0..THIRDS {
+            for _ in 0..CENTRE_DIVISIONS {
                 let (c, d) = (at(a + (b - a) / 3.0), at(b - (b - a) / 3.0));
                 if c.cost <= d.cost {
                     b = d.centre
@@ -225,11 +228,11 @@ impl Points {
             let rest = a.column(1) - &first * first.dot(&a.column(1));
             Some([first, rest.try_normalize(1e-12)?])
         };
-        let fine = CENTRES - 1;
+        let fine = CENTRE_COUNT - 1;
         let centre = |i: usize| middle + 0.5 * largest * (2.0 * i as f64 / fine as f64 - 1.0);
         // Tried half widths grow with the square of their number.
         let place = self.place();
-        let (weights, columns): (Vec<f64>, Vec<[DVector<f64>; 2]>) = Kind::CLEAN
+        let (weights, columns): (Vec<f64>, Vec<[DVector<f64>; 2]>) = Kind::NOISE_FREE
             .into_iter()
             .flat_map(|k| {
                 widths.iter().enumerate().skip(1).step_by(8).map(move |(i, w)| (k, *w, 1.0 / i as f64))
@@ -263,5 +266,51 @@ impl Ratios {
         let zones = self.zones.tr_mul(data);
         let explained = zones.as_slice().chunks_exact(2).map(|p| p[0] * p[0] + p[1] * p[1]);
         explained.zip(&self.weights).map(|(of, weight)| weight * (0.5 * (of - line)).exp()).sum()
+    }
+}
+
+/// Standard deviation of what a place is known to, in distances of neighbouring rates.
+const OF_SPACING: f64 = 0.25;
+
+/// Density of the centre of a zone over the rates.
+#[derive(Debug, Clone, Copy)]
+pub struct Place {
+    /// Middle of the rates and the rate at which the output is none, deg/h.
+    pub at_rest: [f64; 2],
+    /// Uncertainties of these two, deg/h.
+    pub standard: f64,
+    /// Half of the rates that the centre is sought in, deg/h.
+    pub half: f64,
+}
+
+impl Place {
+    /// `middle` of the rates and `half` the range of what is searched, with the noise of a mean, the distance of
+    /// neighbouring rates and that of the centres tried.
+    pub fn new(middle: f64, half: f64, output_null: f64, noise: f64, apart: f64, tried: f64) -> Place {
+        Place { at_rest: [middle, output_null], standard: (OF_SPACING * apart).hypot(noise).max(tried), half }
+    }
+
+    /// Density at a centre, 1/(deg/h).
+    pub fn density(&self, centre: f64) -> f64 {
+        let normal = |at: f64| {
+            let z = (centre - at) / self.standard;
+            (-0.5 * z * z).exp() / (self.standard * std::f64::consts::TAU.sqrt())
+        };
+        let [input, output] = self.at_rest;
+        (normal(input) + normal(output) + 0.5 / self.half) / 3.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_places_together_are_certain() {
+        let place = Place::new(-12.0, 0.6, -12.1, 0.01, 0.1, 0.02);
+        let step = 1e-4;
+        let sum: f64 = (-6000..=6000).map(|i| place.density(-12.0 + step * f64::from(i)) * step).sum();
+        assert!((sum - 1.0).abs() < 1e-3, "{sum}");
+        assert!(place.density(-12.0) > 4.0 * place.density(-11.5));
     }
 }

@@ -13,13 +13,15 @@ use crate::numeric::order::{SortByNumber, SortNumbers};
 const MOST_NOISE: f64 = 8.0;
 
 /// Ratios tried between them.
-const RATIOS: usize = 13;
+const RATIO_COUNT: usize = 13;
 
-/// Half widths and noises of a finer grid.
-const FINE: (usize, usize) = (40, 24);
+/// Half widths of a finer grid.
+const FINE_WIDTHS: usize = 40;
+/// Noises of a finer grid.
+const FINE_NOISES: usize = 24;
 
 /// Costs above the least up to which a grid is made finer.
-const NEAR: f64 = 20.0;
+const MAX_COST_EXCESS: f64 = 20.0;
 
 /// Gain of −2 ln L over a zone without noise from which the noise is said to be shown: by chance in one test of a hundred.
 pub const SHOWN_FROM: f64 = 5.41;
@@ -44,8 +46,8 @@ pub fn over_noise(points: &Points, widths: &[f64]) -> (Vec<f64>, Vec<Left>) {
     let cells: Vec<Vec<Left>> = widths
         .iter()
         .map(|w| {
-            let ratio = |j: usize| MOST_NOISE.powf(2.0 * j as f64 / (RATIOS - 1) as f64 - 1.0);
-            let some = if *w > 0.0 { RATIOS } else { 0 };
+            let ratio = |j: usize| MOST_NOISE.powf(2.0 * j as f64 / (RATIO_COUNT - 1) as f64 - 1.0);
+            let some = if *w > 0.0 { RATIO_COUNT } else { 0 };
             (0..some).map(|j| points.at_any_centre(rounded(*w, ratio(j) * w))).collect()
         })
         .collect();
@@ -70,7 +72,7 @@ fn least_of(cells: &[Left]) -> f64 {
 /// The range of a number over the cells near the likeliest, and the step by which it is to be left on either side.
 fn around(cells: &[Left], of: impl Fn(&Shape) -> f64) -> (f64, f64) {
     let least = least_of(cells);
-    let near = cells.iter().filter(|c| c.over_centres <= least + NEAR).map(|c| of(&c.shape));
+    let near = cells.iter().filter(|c| c.over_centres <= least + MAX_COST_EXCESS).map(|c| of(&c.shape));
     near.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)))
 }
 
@@ -85,15 +87,17 @@ pub fn closer(points: &Points, coarse: &[Left]) -> Option<Rounded> {
         }
         // By as much as a step of the grid before on either side.
         let (w_step, n_step) = if round == 0 {
-            (coarse_step(coarse, w1), MOST_NOISE.powf(2.0 / (RATIOS - 1) as f64))
+            (coarse_step(coarse, w1), MOST_NOISE.powf(2.0 / (RATIO_COUNT - 1) as f64))
         } else {
             (step_of(&cells, |s| s.half_width), step_of(&cells, |s| s.noise.ln()).exp())
         };
         let (w0, w1) = ((w0 - w_step).max(0.02 * w0), w1 + w_step);
         let (n0, n1) = ((n0 / n_step).ln(), (n1 * n_step).ln());
         let at = |k: usize, n: usize, from: f64, to: f64| from + (to - from) * k as f64 / (n - 1) as f64;
-        cells = (0..FINE.0)
-            .flat_map(|i| (0..FINE.1).map(move |j| (at(i, FINE.0, w0, w1), at(j, FINE.1, n0, n1).exp())))
+        cells = (0..FINE_WIDTHS)
+            .flat_map(|i| {
+                (0..FINE_NOISES).map(move |j| (at(i, FINE_WIDTHS, w0, w1), at(j, FINE_NOISES, n0, n1).exp()))
+            })
             .filter(|(w, n)| n / w <= MOST_NOISE && w / n <= MOST_NOISE)
             .map(|(w, n)| points.at_any_centre(rounded(w, n)))
             .collect();

@@ -3,8 +3,8 @@
 use crate::estimate::normal_probability;
 use std::sync::LazyLock;
 
-/// Beyond so many deviations noise rounds nothing off.
-const ROUNDED: f64 = 8.0;
+/// Standard deviations beyond which noise rounds nothing off.
+const MAX_ROUNDED_DEVIATIONS: f64 = 8.0;
 
 /// Kind of a dead zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +21,7 @@ pub enum Kind {
 
 impl Kind {
     /// The kinds without noise inside the loop.
-    pub const CLEAN: [Kind; 3] = [Kind::Subtractive, Kind::Gap, Kind::Locked];
+    pub const NOISE_FREE: [Kind; 3] = [Kind::Subtractive, Kind::Gap, Kind::Locked];
 
     /// The input at which half comes through, in half widths; of the kinds without noise.
     pub fn threshold_over_width(self) -> f64 {
@@ -102,22 +102,22 @@ impl Shape {
 }
 
 /// Nodes per unit between which [`beyond`] is a cubic: within 1e-10.
-const NODES: f64 = 64.0;
+const NODES_PER_UNIT: f64 = 64.0;
 
 /// Mean of what a normal value about `u` of unit variance has above zero. A fit asks for it millions of times: it is
 /// interpolated between nodes of value and slope.
 fn beyond(u: f64) -> f64 {
-    if u.is_nan() || u.abs() >= ROUNDED {
+    if u.is_nan() || u.abs() >= MAX_ROUNDED_DEVIATIONS {
         return u.max(0.0);
     }
     static AT_NODES: LazyLock<Vec<(f64, f64)>> = LazyLock::new(|| {
-        let count = (2.0 * ROUNDED * NODES) as usize;
-        (0..=count).map(|i| exact_beyond(i as f64 / NODES - ROUNDED)).collect()
+        let count = (2.0 * MAX_ROUNDED_DEVIATIONS * NODES_PER_UNIT) as usize;
+        (0..=count).map(|i| exact_beyond(i as f64 / NODES_PER_UNIT - MAX_ROUNDED_DEVIATIONS)).collect()
     });
-    let place = (u + ROUNDED) * NODES;
+    let place = (u + MAX_ROUNDED_DEVIATIONS) * NODES_PER_UNIT;
     let i = place as usize;
     let (Some((f0, d0)), Some((f1, d1))) = (AT_NODES.get(i), AT_NODES.get(i + 1)) else { return u.max(0.0) };
-    let (t, step) = (place - i as f64, 1.0 / NODES);
+    let (t, step) = (place - i as f64, 1.0 / NODES_PER_UNIT);
     let rise = f1 - f0;
     f0 + t * (step * d0 + t * (3.0 * rise - step * (2.0 * d0 + d1) + t * (step * (d0 + d1) - 2.0 * rise)))
 }
@@ -165,7 +165,7 @@ mod tests {
     fn what_is_interpolated_is_the_closed_form() {
         for i in -9000..=9000 {
             let u = 1e-3 * f64::from(i) + 3e-4;
-            let exact = if u.abs() < ROUNDED { exact_beyond(u).0 } else { u.max(0.0) };
+            let exact = if u.abs() < MAX_ROUNDED_DEVIATIONS { exact_beyond(u).0 } else { u.max(0.0) };
             assert!((beyond(u) - exact).abs() < 2e-10, "{u}");
         }
         assert!(beyond(-8.0) == 0.0 && beyond(8.0) == 8.0);
@@ -178,7 +178,7 @@ mod tests {
         assert!((zone.of(t) - 0.5 * t).abs() < 1e-9 && t > 0.2 && t < 0.4, "{t}");
         assert_eq!(rounded(0.1, 0.2).threshold(), 0.0);
         assert_eq!(Shape::clean(Kind::Subtractive, 0.1).threshold(), 0.2);
-        for kind in Kind::CLEAN {
+        for kind in Kind::NOISE_FREE {
             let zone = Shape::clean(kind, 0.3);
             let t = zone.threshold();
             assert!(zone.of(0.999 * t) < 0.4995 * t && zone.of(1.001 * t) > 0.5 * t, "{kind:?}");

@@ -6,29 +6,30 @@ use super::shape::{Kind, Shape};
 use crate::estimate::normal_quantile;
 
 /// Half widths tried, up to a part of half the range of the rates.
-const WIDTHS: usize = 160;
+const WIDTH_COUNT: usize = 160;
 
-/// Normal score up to which a stretch that is all as likely spreads, and that of its ends: at a risk of a tenth or less a
-/// bound is its end.
-const STRETCH: (f64, f64) = (1.2816, 1.6449);
+/// Normal score up to which a stretch that is all as likely spreads: at a risk of a tenth or less a bound is its end.
+const STRETCH_SCORE: f64 = 1.2816;
+/// Normal score of the ends of such a stretch.
+const STRETCH_END_SCORE: f64 = 1.6449;
 
 /// Halvings by which an end of a stretch is found.
-const HALVINGS: usize = 24;
+const END_HALVINGS: usize = 24;
 
 /// Forms that are tried: the kinds without noise inside the loop, and zones with noise.
-pub const FORMS: usize = Kind::CLEAN.len() + 1;
+pub const FORM_COUNT: usize = Kind::NOISE_FREE.len() + 1;
 
 /// Number of the form with noise inside the loop.
-pub const WITH_NOISE: usize = FORMS - 1;
+pub const WITH_NOISE: usize = FORM_COUNT - 1;
 
-/// Number of the gap.
-const GAP: usize = 1;
+/// Number of the gap among the forms.
+const GAP_FORM: usize = 1;
 
 /// The half widths tried, and what they leave.
 pub struct Widths {
     widths: Vec<f64>,
     /// Zones without noise inside the loop, by kind.
-    clean: [Vec<Left>; Kind::CLEAN.len()],
+    clean: [Vec<Left>; Kind::NOISE_FREE.len()],
     /// Zones with noise, and −2 ln of their mean likelihood over all noises for every width.
     pub with_noise: Vec<Left>,
     over_noise: Vec<f64>,
@@ -45,8 +46,8 @@ impl Widths {
     /// Tries all half widths.
     pub fn new(points: &Points) -> Option<Widths> {
         let (_, largest) = points.range();
-        let widths: Vec<f64> = tried(largest, WIDTHS).collect();
-        let clean = Kind::CLEAN.map(|kind| {
+        let widths: Vec<f64> = tried(largest, WIDTH_COUNT).collect();
+        let clean = Kind::NOISE_FREE.map(|kind| {
             let left = |w: &f64| match kind {
                 Kind::Gap => points.gap(*w),
                 _ => points.at_any_centre(Shape::clean(kind, *w)),
@@ -54,7 +55,7 @@ impl Widths {
             widths.iter().map(left).collect::<Vec<Left>>()
         });
         let (over_noise, with_noise) = rounded::over_noise(points, &widths);
-        let stretch = stretch(points, &widths, &clean[GAP])?;
+        let stretch = stretch(points, &widths, &clean[GAP_FORM])?;
         Some(Widths { widths, clean, with_noise, over_noise, stretch })
     }
 
@@ -68,7 +69,7 @@ impl Widths {
     fn cost(&self, form: usize, i: usize) -> f64 {
         match form {
             WITH_NOISE => self.over_noise[i],
-            GAP => self.clean[GAP][i].least,
+            GAP_FORM => self.clean[GAP_FORM][i].least,
             _ => self.clean[form][i].over_centres,
         }
     }
@@ -96,65 +97,65 @@ impl Widths {
 
     /// Upper bound of 95 %: for the form that allows the wider zone.
     pub fn bound(&self) -> f64 {
-        (0..FORMS).map(|form| self.bound_of(form)).fold(0.0, f64::max)
+        (0..FORM_COUNT).map(|form| self.bound_of(form)).fold(0.0, f64::max)
     }
 
     /// The same of the input at which half comes through.
     pub fn bound_of_threshold(&self) -> f64 {
-        let times = |form: usize| Kind::CLEAN.get(form).map_or(2.0, |k| k.threshold_over_width());
-        (0..FORMS).map(|form| times(form) * self.bound_of(form)).fold(0.0, f64::max)
+        let times = |form: usize| Kind::NOISE_FREE.get(form).map_or(2.0, |k| k.threshold_over_width());
+        (0..FORM_COUNT).map(|form| times(form) * self.bound_of(form)).fold(0.0, f64::max)
     }
 
     /// The largest half width tried, deg/h, where it fits as well: the zone may be wider.
     pub fn open(&self, form: usize) -> Option<f64> {
         let z = normal_quantile(0.95);
-        let lowest = (0..WIDTHS).map(|i| self.cost(form, i)).fold(f64::INFINITY, f64::min);
-        let last = WIDTHS - 1;
+        let lowest = (0..WIDTH_COUNT).map(|i| self.cost(form, i)).fold(f64::INFINITY, f64::min);
+        let last = WIDTH_COUNT - 1;
         (self.cost(form, last) <= lowest + z * z).then(|| self.widths[last])
     }
 
     /// True when that is a gap, which may lie between two rates.
     pub fn bounded_by_a_gap(&self) -> bool {
-        self.bound_of(GAP) >= self.bound()
+        self.bound_of(GAP_FORM) >= self.bound()
     }
 
     fn bound_of(&self, form: usize) -> f64 {
-        if form == GAP {
+        if form == GAP_FORM {
             return self.stretch.1;
         }
         let z = normal_quantile(0.95);
         let costs = |i: usize| self.cost(form, i);
-        let lowest = (0..WIDTHS).map(costs).fold(f64::INFINITY, f64::min);
-        let last = (0..WIDTHS).rev().find(|i| costs(*i) <= lowest + z * z).unwrap_or(0);
-        self.widths[(last + 1).min(WIDTHS - 1)]
+        let lowest = (0..WIDTH_COUNT).map(costs).fold(f64::INFINITY, f64::min);
+        let last = (0..WIDTH_COUNT).rev().find(|i| costs(*i) <= lowest + z * z).unwrap_or(0);
+        self.widths[(last + 1).min(WIDTH_COUNT - 1)]
     }
 
     /// (normal score, half width) of a form, ascending.
     pub fn curve(&self, form: usize) -> Vec<(f64, f64)> {
         let cost = |i: usize| self.cost(form, i);
-        let best = (0..WIDTHS).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(0);
+        let best = (0..WIDTH_COUNT).min_by(|a, b| cost(*a).total_cmp(&cost(*b))).unwrap_or(0);
         let lowest = cost(best);
         let (low, high) = self.stretch;
-        let mut inside = (form == GAP).then(|| {
+        let mut inside = (form == GAP_FORM).then(|| {
             // A hair apart, for no stretch of a curve is level.
             let hair = 1e-6 * (high - low).max(1e-6 * high);
-            let (spread, end) = STRETCH;
+            let (spread, end) = (STRETCH_SCORE, STRETCH_END_SCORE);
             [(-end, low), (-spread, low + hair), (spread, high - hair), (end, high)]
         });
         let mut curve: Vec<(f64, f64)> = Vec::new();
         for (i, w) in self.widths.iter().enumerate() {
-            if form == GAP && *w >= low {
+            if form == GAP_FORM && *w >= low {
                 curve.extend(inside.take().into_iter().flatten());
                 if *w <= high {
                     continue;
                 }
             }
-            let below = if form == GAP { *w < low } else { i < best };
+            let below = if form == GAP_FORM { *w < low } else { i < best };
             // Beyond a second dip all up to it belongs to the interval.
             let beyond = if below {
                 (0..=i).map(cost).fold(f64::INFINITY, f64::min)
             } else {
-                (i..WIDTHS).map(cost).fold(f64::INFINITY, f64::min)
+                (i..WIDTH_COUNT).map(cost).fold(f64::INFINITY, f64::min)
             };
             let away = (beyond - lowest).max(0.0).sqrt();
             let z = if below { -away } else { away };
@@ -181,7 +182,7 @@ fn stretch(points: &Points, widths: &[f64], gaps: &[Left]) -> Option<(f64, f64)>
     let last = gaps.iter().rposition(|g| g.least <= most)?;
     // The end between a half width that is allowed and one that is not.
     let end = |mut inside: f64, mut outside: f64| {
-        for _ in 0..HALVINGS {
+        for _ in 0..END_HALVINGS {
             let middle = 0.5 * (inside + outside);
             if points.gap(middle).least <= most { inside = middle } else { outside = middle }
         }

@@ -1,13 +1,13 @@
-//! The response to rates near zero of one channel.
+//! The response to rates near zero of one channel, and one curve for a quantity whose form is not known: it holds what each
+//! of the forms that fit holds.
 
 use super::about;
 use super::chance;
-use super::covering::covering;
 use super::fits::{FITS_FROM, Fits};
 use super::points::{Left, Points};
 use super::rounded::{self, Rounded, SHOWN_FROM};
 use super::shape::{Kind, Shape};
-use super::widths::{FORMS, WITH_NOISE, Widths};
+use super::widths::{FORM_COUNT, WITH_NOISE, Widths};
 use crate::estimate::Spread;
 use crate::numeric::order::SortByNumber;
 use crate::rate_table::design::Design;
@@ -180,7 +180,7 @@ struct Form {
 impl Form {
     /// The curve of the threshold from that of the half width.
     fn threshold(&self, curve: &[(f64, f64)], closer: Option<&Rounded>) -> Vec<(f64, f64)> {
-        match (Kind::CLEAN.get(self.number), closer) {
+        match (Kind::NOISE_FREE.get(self.number), closer) {
             (None, Some(r)) => r.threshold.clone(),
             (kind, _) => {
                 let times = kind.map_or(2.0, |k| k.threshold_over_width());
@@ -197,7 +197,7 @@ fn forms(widths: &Widths, closer: Option<&Rounded>, fits: &Fits) -> Vec<Form> {
         closer.map(|r| r.best).into_iter().chain(coarse).min_by(|a, b| a.least.total_cmp(&b.least))
     };
     let left = |form: usize| if form == WITH_NOISE { of_noise() } else { widths.best(form).copied() };
-    let mut all: Vec<(usize, Left)> = (0..FORMS).filter_map(|form| Some((form, left(form)?))).collect();
+    let mut all: Vec<(usize, Left)> = (0..FORM_COUNT).filter_map(|form| Some((form, left(form)?))).collect();
     all.sort_ascending_by(|a| a.1.least);
     let least = all.first().map_or(f64::INFINITY, |f| f.1.least);
     all.retain(|f| f.1.least <= least + SHOWN_FROM);
@@ -258,5 +258,63 @@ impl DeadZone {
     /// The fitted response at a rate, deg/h.
     pub fn at(&self, rate: f64) -> f64 {
         self.offset + self.slope * self.shape.of(rate - self.centre)
+    }
+}
+
+/// Normal score up to which curves are put together.
+const MAX_SCORE: f64 = 4.0;
+/// Number of scores at which they are.
+const SCORE_COUNT: usize = 81;
+
+/// The value at a normal score of (normal score, value), ascending; beyond the ends the ends.
+fn at(curve: &[(f64, f64)], z: f64) -> f64 {
+    let (Some(first), Some(last)) = (curve.first(), curve.last()) else { return 0.0 };
+    if z <= first.0 {
+        return first.1;
+    }
+    if z >= last.0 {
+        return last.1;
+    }
+    let i = curve.partition_point(|p| p.0 <= z);
+    let (a, b) = (curve[i - 1], curve[i]);
+    a.1 + (b.1 - a.1) * (z - a.0) / (b.0 - a.0).max(f64::MIN_POSITIVE)
+}
+
+/// The curve that at every confidence reaches as far as that of any form does, about the value of the first form.
+pub fn covering(curves: &[Vec<(f64, f64)>]) -> Vec<(f64, f64)> {
+    let Some(first) = curves.first() else { return vec![] };
+    if curves.len() == 1 {
+        return first.clone();
+    }
+    let middle = at(first, 0.0);
+    (0..SCORE_COUNT)
+        .map(|i| MAX_SCORE * (2.0 * i as f64 / (SCORE_COUNT - 1) as f64 - 1.0))
+        .map(|z| {
+            let values = curves.iter().map(|c| at(c, z));
+            // A hair apart, for no stretch of a curve is level.
+            let hair = 1e-9 * z * middle;
+            if z < 0.0 {
+                (z, values.fold(middle, f64::min) + hair)
+            } else {
+                (z, values.fold(middle, f64::max) + hair)
+            }
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_curve_over_forms_reaches_as_far_as_each() {
+        let normal = |middle: f64, u: f64| -> Vec<(f64, f64)> {
+            (-40..=40).map(|i| (0.1 * f64::from(i), middle + 0.1 * u * f64::from(i))).collect()
+        };
+        let both = Spread::Curve(covering(&[normal(1.0, 0.1), normal(1.5, 0.2)]));
+        let ends = |p: f64| both.bound(0.0, p).unwrap();
+        assert!((ends(0.025) - 0.804).abs() < 1e-2 && (ends(0.975) - 1.892).abs() < 1e-2);
+        assert!((ends(0.95) - 1.829).abs() < 1e-2);
+        assert_eq!(covering(&[normal(1.0, 0.1)]), normal(1.0, 0.1));
     }
 }

@@ -245,6 +245,7 @@ impl DescribedDataset<'_> {
             unit: self.told.unit.clone(),
             epoch_s: self.told.epoch_s,
             rollover_s: None,
+            judged: None,
         }
     }
 

@@ -83,6 +83,8 @@ impl Format for Hdf5 {
         table::unfiltered(&container, path, &mut columns, &places, &mut notes)?;
         table::dated(&container, path, &mut columns, &mut places, &mut notes)?;
         Ok(Opened {
+            labels: Vec::new(),
+            bad_blocks: Vec::new(),
             columns,
             rows_estimate: Some(rows),
             cut_off: Vec::new(),

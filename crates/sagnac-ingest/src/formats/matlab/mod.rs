@@ -73,6 +73,8 @@ impl Format for Mat {
         }
         notes.extend(array_selection::notes(found.left));
         Ok(Opened {
+            labels: Vec::new(),
+            bad_blocks: Vec::new(),
             columns,
             rows_estimate: Some(rows),
             cut_off: Vec::new(),

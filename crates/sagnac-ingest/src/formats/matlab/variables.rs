@@ -95,6 +95,7 @@ impl NumericArray {
             unit: None,
             epoch_s: None,
             rollover_s: None,
+            judged: None,
         };
         if shape.flat {
             groups.push(RecordGroup {

@@ -168,6 +168,7 @@ impl Array {
             unit: None,
             epoch_s: None,
             rollover_s: None,
+            judged: None,
         };
         let mut field = leaf.field;
         if let Some(field) = &mut field {

@@ -71,6 +71,8 @@ impl Format for Npy {
             ))
         };
         Ok(Opened {
+            labels: Vec::new(),
+            bad_blocks: Vec::new(),
             columns: list,
             rows_estimate: Some(rows),
             cut_off: Vec::new(),

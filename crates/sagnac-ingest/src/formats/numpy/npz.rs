@@ -93,6 +93,8 @@ impl Format for Npz {
         }
         notes.extend(array_selection::notes(left));
         Ok(Opened {
+            labels: Vec::new(),
+            bad_blocks: Vec::new(),
             columns,
             rows_estimate: Some(rows),
             cut_off: Vec::new(),

@@ -56,6 +56,7 @@ impl Format for Raw {
             unit: c.unit.as_ref().map(|u| u.text().to_owned()),
             epoch_s: None,
             rollover_s: c.rollover_s,
+            judged: None,
         });
         let columns = columns.collect();
         let framed = !layout.sync.is_empty() || layout.checksum.is_some();
@@ -76,6 +77,8 @@ impl Format for Raw {
             _ => Vec::new(),
         };
         Ok(Opened {
+            labels: Vec::new(),
+            bad_blocks: Vec::new(),
             columns,
             rows_estimate: (file.packing == Packing::Plain).then_some(rows),
             cut_off,

@@ -77,6 +77,8 @@ impl Format for Tdms {
             }
         }
         Ok(Opened {
+            labels: Vec::new(),
+            bad_blocks: Vec::new(),
             columns,
             rows_estimate: Some(rows),
             cut_off,
@@ -170,6 +172,7 @@ fn describe(contents: &Contents, channel: &Channel) -> Column {
         unit: unit.map(str::trim).filter(|u| !u.is_empty()).map(str::to_owned),
         epoch_s: None,
         rollover_s: None,
+        judged: None,
     }
 }
 
@@ -224,6 +227,7 @@ impl Waveform {
                 _ => None,
             },
             rollover_s: None,
+            judged: None,
         }
     }
 }

@@ -1,14 +1,16 @@
 //! What the columns of a text hold, inferred from the fields of its first lines: numbers, stamps, halves of stamps.
 
-use super::fields::bare;
+use super::fields::{bare, words};
 use super::number::{self, Field};
-use super::rows::{FieldKind, Pair};
+use super::rows::{FieldKind, Pair, fingerprint};
 use super::separator::{Looks, looks};
 use super::stamps::{self, DAY_S, Order, Shape, Stamp};
 use super::user_options::{self, Contradiction};
 use crate::column::DATES;
-use crate::{Column, StampOptions};
+use crate::column_inference::InferredColumn;
+use crate::{Column, Labels, RowMatch, StampOptions};
 use sagnac_core::message::{Arg, Note, note};
+use sagnac_core::recording::{ColumnRef, Role};
 
 /// Seconds of a week.
 const WEEK_S: f64 = 604_800.0;
@@ -27,6 +29,8 @@ pub(super) struct Kinds {
     pub columns: Vec<Column>,
     /// Decision about stamps.
     pub notes: Vec<Note>,
+    /// Words of the columns that hold few of them.
+    pub labels: Vec<Labels>,
 }
 
 /// Kind of most fields of a column; `None` when none is filled.
@@ -52,6 +56,7 @@ pub(super) fn find(
     cells: &[Vec<&[u8]>],
     decimal: u8,
     stated: &[StampOptions],
+    only: Option<&RowMatch>,
 ) -> Result<Kinds, Contradiction> {
     let mut found = Kinds::default();
     let mut shapes: Vec<Option<Shape>> = cells
@@ -90,6 +95,7 @@ pub(super) fn find(
             unit: units.get(i).cloned().flatten(),
             epoch_s: None,
             rollover_s: None,
+            judged: None,
         };
         found.kinds.push(match shape {
             Some(shape) => {
@@ -99,13 +105,12 @@ pub(super) fn find(
                 }
                 if shape.is_dated() {
                     described.epoch_s = Some(base_s as f64);
-                } else {
-                    described.rollover_s = Some(DAY_S as f64);
                 }
+                described.rollover_s = shape.rollover_s();
                 found.notes.extend(shape_notes(name, shape, &stamps));
                 FieldKind::Stamp { shape, base_s }
             }
-            None => FieldKind::Number,
+            None => word(name, i, column, decimal, only, &mut found.labels),
         });
         found.columns.push(described);
     }
@@ -115,11 +120,34 @@ pub(super) fn find(
     if found.pairs.is_empty() {
         date_and_clock(&mut found, &shapes);
     }
+    if found.pairs.is_empty() && !shapes.iter().any(Option::is_some) {
+        seconds_and_parts(&mut found, names, cells, decimal);
+    }
     let week = of_stated.weeks.into_iter().next();
     if week.is_some() || of_stated.seconds.is_some() || found.pairs.is_empty() {
         week_and_seconds(&mut found, names, cells, decimal, week, of_stated.seconds);
     }
     Ok(found)
+}
+
+/// What a column without stamps holds: numbers, or words, of which the one is sought that rows are chosen by.
+fn word(
+    name: &str,
+    position: usize,
+    cells: &[&[u8]],
+    decimal: u8,
+    only: Option<&RowMatch>,
+    labels: &mut Vec<Labels>,
+) -> FieldKind {
+    if usual(cells, decimal) != Some(Looks::Text) {
+        return FieldKind::Number;
+    }
+    labels.push(Labels { column: position, rows: cells.iter().map(|c| words(c)).collect() });
+    let sought = only.filter(|m| match &m.column {
+        ColumnRef::Name(column) => column == name,
+        ColumnRef::Position(p) => *p == position + 1,
+    });
+    sought.map_or(FieldKind::Number, |m| FieldKind::Word(fingerprint(m.value.as_bytes())))
 }
 
 fn shape_notes(name: &str, shape: Shape, stamps: &[Stamp]) -> Vec<Note> {
@@ -129,6 +157,7 @@ fn shape_notes(name: &str, shape: Shape, stamps: &[Stamp]) -> Vec<Note> {
         Shape::DateTime(Order::MonthFirst) => "ingest.delimited.stamps_month_first",
         Shape::Date(_) => "ingest.delimited.stamps_date",
         Shape::Clock => "ingest.delimited.stamps_clock",
+        Shape::MinuteClock => "ingest.delimited.stamps_minutes",
     };
     let mut notes = vec![Note::new(key).with("column", name)];
     if let Shape::DateTime(_) = shape {
@@ -226,6 +255,51 @@ fn week_and_seconds(
     }
 }
 
+/// One column of seconds and parts of a second, as ROS writes them: whole seconds beside nanoseconds below 1e9.
+fn seconds_and_parts(found: &mut Kinds, names: &[String], cells: &[Vec<&[u8]>], decimal: u8) {
+    let values = |i: usize| -> Vec<f64> {
+        let value = |c: &&[u8]| match number::field(c, decimal) {
+            Field::Value(v) => Some(v),
+            _ => None,
+        };
+        cells.get(i).map(|c| c.iter().filter_map(value).collect()).unwrap_or_default()
+    };
+    let number = |i: usize| found.kinds.get(i) == Some(&FieldKind::Number);
+    let named = |list: &[&str]| {
+        (0..names.len()).find(|&i| {
+            let last = names.get(i).map(|n| n.to_lowercase());
+            let last = last.as_deref().and_then(|n| n.rsplit(|c: char| !c.is_alphanumeric()).next());
+            number(i) && last.is_some_and(|w| list.contains(&w))
+        })
+    };
+    let Some(first) = named(&["sec", "secs", "seconds"]) else { return };
+    let parts: [(&[&str], f64); 3] = [
+        (&["nsec", "nsecs", "nanosec", "nanosecs", "nanoseconds"], 1e9),
+        (&["usec", "usecs", "microsec", "microseconds"], 1e6),
+        (&["msec", "msecs", "millisec", "milliseconds"], 1e3),
+    ];
+    for (words, divisor) in parts {
+        let Some(second) = named(words) else { continue };
+        let (whole, of) = (values(first), values(second));
+        let fits = whole.iter().all(|v| v.fract() == 0.0) && of.iter().all(|v| (0.0..divisor).contains(v));
+        // Parts that never fall are a clock of their own.
+        let falls = of.iter().zip(of.get(1..).unwrap_or_default()).any(|(a, b)| b < a);
+        let Some(offset) = whole.first().copied().filter(|_| fits && (falls || whole.len() < 3)) else {
+            continue;
+        };
+        let is_date = (9e8..3e9).contains(&offset);
+        let pair = Pair { first, second, offset, scale: 1.0, divisor };
+        add(found, pair, is_date.then_some(offset), "ingest.delimited.stamps_in_parts", None);
+        // Each for itself tells no sample from the next.
+        for index in [first, second] {
+            if let Some(column) = found.columns.get_mut(index) {
+                column.judged = Some(InferredColumn { role: Role::Auxiliary, ..column.by_name() });
+            }
+        }
+        return;
+    }
+}
+
 fn add(found: &mut Kinds, pair: Pair, epoch_s: Option<f64>, key: &'static str, name_stated: Option<String>) {
     let name = |i: usize| found.columns.get(i).map_or("", |c| c.name.as_str());
     let (first, second) = (name(pair.first).to_owned(), name(pair.second).to_owned());
@@ -241,6 +315,7 @@ fn add(found: &mut Kinds, pair: Pair, epoch_s: Option<f64>, key: &'static str, n
         unit: Some("s".to_owned()),
         epoch_s,
         rollover_s: None,
+        judged: None,
     });
 }
 

@@ -10,7 +10,7 @@ use super::separator::{self, Cut, Looks, looks};
 use crate::error::{IngestError, IngestErrorKind};
 use crate::metadata::Metadata;
 use crate::options::Encoding;
-use crate::{Candidate, Column};
+use crate::{Candidate, Column, Labels};
 use sagnac_core::message::{Arg, Note, note};
 use std::path::Path;
 
@@ -31,6 +31,10 @@ pub(super) struct Dialect {
     pub notes: Vec<Note>,
     /// What the file says of itself.
     pub metadata: Vec<(String, String)>,
+    /// Words in the first rows of columns that hold few of them.
+    pub labels: Vec<Labels>,
+    /// True where all lines looked at differ, as they do where a time or a counter runs.
+    pub all_differ: bool,
     /// Mean length of the data lines looked at, bytes of the file.
     pub mean_line: f64,
 }
@@ -84,7 +88,7 @@ pub(super) fn sniff(file: &Candidate) -> Result<Dialect, IngestError> {
     let (above, data) = lines.split_at(first);
     let data: Vec<&Line<'_>> = data.iter().filter(|l| !sniffed.comments.holds(l.text)).collect();
     let header = sniffed.header(above, &data)?;
-    let kinds = sniffed.kinds(&header, &data)?;
+    let kinds = sniffed.kinds(&header, above, &data)?;
     let (data_offset, data_line) = match data.first() {
         Some(line) => (line.at, line.number),
         None => (head.len(), lines.last().map_or(0, |l| l.number) + 1),
@@ -102,12 +106,18 @@ pub(super) fn sniff(file: &Candidate) -> Result<Dialect, IngestError> {
             kinds: kinds.kinds,
             pairs: kinds.pairs,
             comments: sniffed.comments,
+            void: None,
+            remarks: header.remarks,
         },
         columns: kinds.columns,
         data_offset,
         data_line,
         notes,
         metadata,
+        labels: kinds.labels,
+        all_differ: cut.fields > 2
+            && data.len() > 8
+            && data.windows(2).all(|w| matches!(w, [a, b] if a.text != b.text)),
         mean_line: total as f64 / data.len().max(1) as f64 / widening,
     })
 }
@@ -275,7 +285,7 @@ impl Sniffed<'_> {
     }
 
     /// What the columns hold; refuses numbers with signs between thousands.
-    fn kinds(&self, header: &Header, data: &[&Line<'_>]) -> Result<Kinds, IngestError> {
+    fn kinds(&self, header: &Header, above: &[Line<'_>], data: &[&Line<'_>]) -> Result<Kinds, IngestError> {
         let fields = self.cut.fields;
         let mut cells: Vec<Vec<&[u8]>> = vec![Vec::new(); fields];
         let mut numbers: Vec<u64> = Vec::new();
@@ -311,10 +321,17 @@ impl Sniffed<'_> {
         };
         let below =
             |i: usize| header.units.as_ref().and_then(|(_, u)| u.get(i)).filter(|u| !u.is_empty()).cloned();
-        let units: Vec<Option<String>> =
-            names.iter().enumerate().map(|(i, n)| below(i).or_else(|| header::unit_in_name(n))).collect();
-        let stamps = &self.file.options.text.stamps;
-        column_kinds::find(&names, &units, &cells, self.cut.decimal, stamps).map_err(|c| {
+        let texts: Vec<&[u8]> = above.iter().map(|l| l.text).collect();
+        let of_labview = header::labview_units(&texts, self.cut.separator, &names);
+        let units: Vec<Option<String>> = names
+            .iter()
+            .zip(of_labview)
+            .enumerate()
+            .map(|(i, (n, labview))| below(i).or_else(|| header::unit_in_name(n)).or(labview))
+            .collect();
+        let options = &self.file.options;
+        let (stamps, only) = (&options.text.stamps, options.only.as_ref());
+        column_kinds::find(&names, &units, &cells, self.cut.decimal, stamps, only).map_err(|c| {
             let message = note!("ingest.delimited.not_these_stamps", column = c.column);
             self.error(message)
                 .at(numbers.get(c.row).copied().unwrap_or(0), None)

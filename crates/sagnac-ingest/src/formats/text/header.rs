@@ -10,6 +10,37 @@ pub(super) struct Header {
     pub names: Option<(u64, Vec<String>)>,
     /// Line of the units and the units; empty where a column has none.
     pub units: Option<(u64, Vec<String>)>,
+    /// The names end with one for remarks, which the rows leave out.
+    pub remarks: bool,
+}
+
+/// Names of columns of remarks, in lower case, as LabVIEW and operators write them.
+const REMARKS: &[&str] = &[
+    "comment",
+    "comments",
+    "note",
+    "notes",
+    "remark",
+    "remarks",
+    "комментарий",
+    "комментарии",
+    "примечание",
+];
+
+/// Key of the line in which LabVIEW gives the unit of each channel.
+const LABVIEW_UNITS: &[u8] = b"Y_Unit_Label";
+
+/// The units of channels that LabVIEW states above the names, by column: channels in their order, times in s.
+pub(super) fn labview_units(above: &[&[u8]], separator: Separator, names: &[String]) -> Vec<Option<String>> {
+    let line =
+        above.iter().find(|l| separator.cells(l).first().is_some_and(|c| c.trim_ascii() == LABVIEW_UNITS));
+    let Some(line) = line else { return vec![None; names.len()] };
+    let mut units = separator.cells(line).into_iter().skip(1).map(words);
+    let of = |name: &String| match name.as_str() {
+        "X_Value" => Some("s".to_owned()),
+        _ => units.next().filter(|u| Unit::parse(u).is_ok()),
+    };
+    names.iter().map(of).collect()
 }
 
 impl Header {
@@ -26,7 +57,10 @@ pub(super) type Above<'a> = (u64, &'a [u8], bool);
 /// Finds names and units among the lines above the data. `stated`: the line that the user says holds the names.
 pub(super) fn find(above: &[Above<'_>], separator: Separator, fields: usize, stated: Option<u64>) -> Header {
     let named = |line: &[u8]| names(line, separator, fields);
-    let mut header = Header::default();
+    let mut header = Header {
+        remarks: above.iter().any(|l| ends_with_remarks(l.1, separator, fields)),
+        ..Header::default()
+    };
     if let Some(number) = stated {
         let line = above.iter().find(|l| l.0 == number);
         header.names = line.and_then(|l| named(l.1)).map(|n| (number, n));
@@ -76,6 +110,8 @@ fn names(line: &[u8], separator: Separator, fields: usize) -> Option<Vec<String>
     let cells: Vec<String> = separator.usual_cells(line, fields).into_iter().map(words).collect();
     let found = if cells.len() == fields {
         cells
+    } else if ends_with_remarks(line, separator, fields) {
+        cells.into_iter().take(fields).collect()
     } else if separator == Separator::Blanks {
         wide(line, fields)?
     } else {
@@ -85,6 +121,13 @@ fn names(line: &[u8], separator: Separator, fields: usize) -> Option<Vec<String>
         short.then(|| cells.into_iter().take(fields).collect())?
     };
     found.iter().any(|n| !n.is_empty()).then_some(found)
+}
+
+/// True for names of which the last is for remarks, and one more than fields.
+fn ends_with_remarks(line: &[u8], separator: Separator, fields: usize) -> bool {
+    let cells = separator.usual_cells(line, fields);
+    let last = cells.last().map(|c| words(c).to_lowercase()).unwrap_or_default();
+    cells.len() == fields + 1 && REMARKS.contains(&last.as_str())
 }
 
 /// Names with single blanks in them: cut at wider gaps, or before brackets.

@@ -16,6 +16,16 @@ pub(super) fn add_line(metadata: &mut Metadata, line: &[u8], separator: Option<S
         ([key, value], _) if separator != Some(Separator::Blanks) => {
             metadata.add(key.trim_end_matches([':', '=']), value);
         }
+        // A value a channel, as LabVIEW has them: all alike count once.
+        ([key, first, rest @ ..], _)
+            if separator == Some(Separator::Byte(b'\t')) && !key.is_empty() && !first.is_empty() =>
+        {
+            let filled: Vec<&str> = rest.iter().map(String::as_str).filter(|c| !c.is_empty()).collect();
+            let alike = filled.iter().all(|c| c == first);
+            let all: Vec<&str> = std::iter::once(first.as_str()).chain(filled).collect();
+            metadata
+                .add(key.trim_end_matches([':', '=']), &if alike { first.clone() } else { all.join(" ") });
+        }
         // A colon between digits is part of a time.
         (_, Some((key, value))) if key.chars().any(char::is_alphabetic) => {
             let value = value.trim_matches(|c: char| c.is_whitespace() || matches!(c, ';' | ',' | '"'));

@@ -16,6 +16,7 @@ mod separator;
 mod stamps;
 mod truncation;
 mod user_options;
+mod void_rows;
 
 use crate::byte_stream::Packing;
 use crate::error::IngestError;
@@ -35,8 +36,11 @@ impl Format for DelimitedText {
     }
 
     fn open(&self, file: &Candidate) -> Result<Opened, IngestError> {
-        let dialect = dialect::sniff(file)?;
+        let mut dialect = dialect::sniff(file)?;
         let cut_off = truncation::look(file)?;
+        let void = if dialect.all_differ { void_rows::look(file, dialect.data_line)? } else { None };
+        let bad_blocks = void.iter().map(void_rows::VoidRows::block).collect();
+        dialect.lines.void = void.map(|v| v.line);
         let rows_estimate = (file.packing == Packing::Plain && dialect.mean_line > 0.0).then(|| {
             ((file.bytes as f64 - dialect.data_offset as f64).max(0.0) / dialect.mean_line).round() as u64
         });
@@ -49,6 +53,8 @@ impl Format for DelimitedText {
             data_line: dialect.data_line,
         };
         Ok(Opened {
+            labels: dialect.labels,
+            bad_blocks,
             columns: dialect.columns,
             rows_estimate,
             cut_off,

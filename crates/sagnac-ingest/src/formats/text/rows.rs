@@ -17,6 +17,18 @@ pub(super) enum FieldKind {
         /// Seconds from 1970 to the zero of the values.
         base_s: i64,
     },
+    /// A word: 1 where its fingerprint is this, 0 elsewhere.
+    Word(u64),
+}
+
+/// A number that two words hardly ever share (FNV-1a).
+pub(super) fn fingerprint(word: &[u8]) -> u64 {
+    word.iter().fold(0xcbf2_9ce4_8422_2325, |hash, c| (hash ^ u64::from(*c)).wrapping_mul(0x0100_0000_01b3))
+}
+
+/// 1 where a field holds the word of a fingerprint, 0 elsewhere.
+fn is_word(cell: &[u8], of: u64) -> f64 {
+    f64::from(u8::from(fingerprint(bare(cell)) == of))
 }
 
 /// A column that two fields make together: `(first - offset) * scale + second / divisor`.
@@ -47,6 +59,10 @@ pub(super) struct Lines {
     pub pairs: Vec<Pair>,
     /// Which lines are comments.
     pub comments: Comments,
+    /// A line that is no row, such as erased memory at the end repeats it.
+    pub void: Option<Vec<u8>>,
+    /// Rows may have a remark behind their last field.
+    pub remarks: bool,
 }
 
 /// Reads whole lines. Fields between wanted ones are skipped, not checked; the number of fields of a line is.
@@ -176,6 +192,8 @@ impl<'a> LineParser<'a> {
         let (mut at, mut row, mut line) = (0, 0u64, 0u64);
         while at < text.len() {
             let comment = self.watched && text.get(at).is_some_and(|c| self.of.comments.may_begin(*c));
+            let comment = comment
+                || self.of.void.as_ref().is_some_and(|v| text.get(at..).is_some_and(|t| t.starts_with(v)));
             let plain =
                 if comment { None } else { self.plain_line::<DECIMAL, BLANKS, STAMPS>(text, at, columns) };
             if let Some(next) = plain {
@@ -188,7 +206,10 @@ impl<'a> LineParser<'a> {
                 // What the fast path had stored of this line before it gave up.
                 let kept = usize::try_from(row).unwrap_or(usize::MAX);
                 columns.iter_mut().for_each(|c| c.truncate(kept));
-                if !content.trim_ascii().is_empty() && !self.of.comments.holds(content) {
+                if !content.trim_ascii().is_empty()
+                    && !self.of.comments.holds(content)
+                    && !self.is_void(content)
+                {
                     self.any_line(content, columns, block, (row, line));
                     row += 1;
                 }
@@ -197,6 +218,11 @@ impl<'a> LineParser<'a> {
             line += 1;
         }
         block.lines = line;
+    }
+
+    /// True for a line that is no row.
+    fn is_void(&self, line: &[u8]) -> bool {
+        self.of.void.as_ref().is_some_and(|v| line.trim_ascii_end() == v.trim_ascii_end())
     }
 
     /// Reads a line of plain decimals and stamps with the right number of fields; returns where the next line starts.
@@ -220,6 +246,11 @@ impl<'a> LineParser<'a> {
                 FieldKind::Stamp { shape, base_s } if STAMPS => {
                     let stop = at + text.get(at..)?.iter().position(|c| self.ends::<BLANKS>(*c))?;
                     (stamps::parse(text.get(at..stop)?, shape)?.after(base_s), stop)
+                }
+                FieldKind::Word(of) if STAMPS => {
+                    let stop = at + text.get(at..)?.iter().position(|c| self.ends::<BLANKS>(*c))?;
+                    let cell = text.get(at..stop).filter(|c| !c.contains(&b'"'))?;
+                    (is_word(cell, of), stop)
                 }
                 _ => number::plain_decimal::<DECIMAL, BLANKS>(text, at, self.delimiter)?,
             };
@@ -298,7 +329,9 @@ impl<'a> LineParser<'a> {
         let cells = self.of.separator.cells(line);
         let surplus_is_empty = |extra: &[&[u8]]| matches!(extra, [one] if one.trim_ascii().is_empty());
         let right = cells.len() == self.fields
-            || cells.get(self.fields..).is_some_and(|e| !e.is_empty() && surplus_is_empty(e));
+            || cells
+                .get(self.fields..)
+                .is_some_and(|e| !e.is_empty() && (surplus_is_empty(e) || (self.of.remarks && e.len() == 1)));
         let mut faults: Vec<(usize, Option<&[u8]>, FieldFaultKind)> = Vec::new();
         let mut position = 0;
         for step in &self.steps {
@@ -353,6 +386,9 @@ impl<'a> LineParser<'a> {
                 None if text.is_empty() => Err(FieldFaultKind::NonFinite),
                 None => Err(FieldFaultKind::Unparsable),
             };
+        }
+        if let FieldKind::Word(of) = kind {
+            return Ok(is_word(cell, of));
         }
         match number::field(cell, self.of.decimal) {
             Field::Value(v) => Ok(v),

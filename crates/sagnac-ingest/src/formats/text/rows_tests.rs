@@ -8,6 +8,8 @@ fn parse(text: &str, fields: usize, wanted: &[usize]) -> Block {
         kinds: vec![FieldKind::Number; fields],
         pairs: Vec::new(),
         comments: Comments::new(None, Some(Separator::Byte(b','))),
+        void: None,
+        remarks: false,
     };
     LineParser::new(&lines, wanted).parse(text.as_bytes(), &mut block);
     block

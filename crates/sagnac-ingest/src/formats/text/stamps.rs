@@ -21,12 +21,23 @@ pub(super) enum Shape {
     Date(Order),
     /// Clock time alone.
     Clock,
+    /// Minutes and seconds of the hour, `57:20.5`, as spreadsheets leave clock times.
+    MinuteClock,
 }
 
 impl Shape {
     /// True when the stamps tell the day.
     pub(super) fn is_dated(self) -> bool {
-        !matches!(self, Shape::Clock)
+        !matches!(self, Shape::Clock | Shape::MinuteClock)
+    }
+
+    /// Period after which the stamps start again, s.
+    pub(super) fn rollover_s(self) -> Option<f64> {
+        match self {
+            Shape::Clock => Some(DAY_S as f64),
+            Shape::MinuteClock => Some(3600.0),
+            Shape::DateTime(_) | Shape::Date(_) => None,
+        }
     }
 }
 
@@ -141,14 +152,30 @@ impl Scan<'_> {
         }
         let first = self.digits(1, 2)?;
         let separator = self.peek();
-        if !matches!(separator, b'.' | b'/' | b'-') {
+        if !matches!(separator, b'.' | b'/' | b'-' | b' ') {
             return None;
         }
         self.at += 1;
-        let second = self.digits(1, 2)?;
+        if order == Order::DayFirst
+            && let Some(month) = self.month_by_name()
+        {
+            let year = self.take(separator).then(|| self.digits(4, 4))??;
+            return Some((days(year, month, first)?, false));
+        }
+        let second = if separator == b' ' { return None } else { self.digits(1, 2)? };
         let year = self.take(separator).then(|| self.digits(4, 4))??;
         let (day, month) = if order == Order::DayFirst { (first, second) } else { (second, first) };
         Some((days(year, month, day)?, false))
+    }
+
+    /// A month as its English name begins: `Jul`.
+    #[inline]
+    fn month_by_name(&mut self) -> Option<i64> {
+        const MONTHS: &[u8] = b"janfebmaraprmayjunjulaugsepoctnovdec";
+        let name = self.text.get(self.at..self.at + 3).filter(|n| n.iter().all(u8::is_ascii_alphabetic))?;
+        let place = MONTHS.chunks(3).position(|m| m.eq_ignore_ascii_case(name))?;
+        self.at += 3;
+        i64::try_from(place + 1).ok()
     }
 
     /// Seconds of the day with the fraction; `compact`: written without colons; `short`: seconds may be left out.
@@ -169,8 +196,26 @@ impl Scan<'_> {
         if hours > 23 || minutes > 59 || seconds > 60 {
             return None;
         }
+        let (fraction, places) = self.fraction(!compact)?;
+        let hours = self.half_of_day(hours)?;
+        Some((hours * 3600 + minutes * 60 + seconds, fraction, places))
+    }
+
+    /// Seconds of the hour with the fraction.
+    fn minutes(&mut self) -> Option<(i64, u64, usize)> {
+        let minutes = self.digits(1, 2)?;
+        let seconds = self.take(b':').then(|| self.digits(2, 2))??;
+        let (fraction, places) = self.fraction(false)?;
+        (minutes <= 59 && seconds <= 60).then_some((minutes * 60 + seconds, fraction, places))
+    }
+
+    /// Digits of a fraction of a second and their number; none where none is written. `colon`: milliseconds may stand
+    /// behind a third colon, as some loggers write them.
+    #[inline]
+    fn fraction(&mut self, colon: bool) -> Option<(u64, usize)> {
         let (mut fraction, mut places) = (0u64, 0);
-        if matches!(self.peek(), b'.' | b',') {
+        let behind_colon = colon && self.peek() == b':';
+        if behind_colon || matches!(self.peek(), b'.' | b',') {
             self.at += 1;
             let start = self.at;
             while self.peek().is_ascii_digit() {
@@ -180,11 +225,33 @@ impl Scan<'_> {
                 }
                 self.at += 1;
             }
-            if self.at == start {
+            if self.at == start || (behind_colon && places != 3) {
                 return None;
             }
         }
-        Some((hours * 3600 + minutes * 60 + seconds, fraction, places))
+        Some((fraction, places))
+    }
+
+    /// Hours of the day where AM or PM follows, else the hours as they are.
+    #[inline]
+    fn half_of_day(&mut self, hours: i64) -> Option<i64> {
+        if self.ended() {
+            return Some(hours);
+        }
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let blanks = rest.iter().take_while(|c| **c == b' ').count();
+        let word = rest.get(blanks..).unwrap_or_default();
+        let word_end =
+            word.iter().position(|c| !(c.is_ascii_alphabetic() || *c == b'.')).unwrap_or(word.len());
+        let letters = word.get(..word_end).unwrap_or_default();
+        let is = |half: [&[u8]; 2]| half.into_iter().any(|w| letters.eq_ignore_ascii_case(w));
+        let afternoon = match () {
+            () if is([b"AM", b"a.m."]) => false,
+            () if is([b"PM", b"p.m."]) => true,
+            () => return Some(hours),
+        };
+        self.at += blanks + word_end;
+        (1..=12).contains(&hours).then_some(hours % 12 + if afternoon { 12 } else { 0 })
     }
 
     /// Seconds that the zone is ahead of UTC; `None` within where no zone is written.
@@ -240,8 +307,12 @@ pub(super) fn parse(text: &[u8], shape: Shape) -> Option<Stamp> {
     let mut scan = Scan { text, at: 0 };
     let (day, compact) = match shape {
         Shape::DateTime(order) | Shape::Date(order) => scan.date(order)?,
-        Shape::Clock => (0, false),
+        Shape::Clock | Shape::MinuteClock => (0, false),
     };
+    if shape == Shape::MinuteClock {
+        let (seconds, fraction, places) = scan.minutes()?;
+        return scan.ended().then_some(Stamp { seconds, fraction, places, zoned: false });
+    }
     if let Shape::Date(_) = shape {
         let seconds = day * DAY_S;
         return scan.ended().then_some(Stamp { seconds, fraction: 0, places: 0, zoned: false });
@@ -256,8 +327,9 @@ pub(super) fn parse(text: &[u8], shape: Shape) -> Option<Stamp> {
     scan.ended().then_some(Stamp { seconds, fraction, places, zoned: zone.is_some() })
 }
 
-/// The way a text is written when it is a stamp. Dates with slashes and the year last are left: nobody can tell
-/// whether the day or the month stands first.
+/// The way a text is written when it is a stamp. Dates with slashes and the year last are left where nobody can tell
+/// whether the day or the month stands first: one of them must be beyond 12, or AM or PM follow as where the month goes
+/// first. Two numbers with a colon are minutes and seconds where they cannot be hours and minutes.
 pub(super) fn detect(text: &[u8]) -> Option<Shape> {
     let number_like = !text.iter().any(|c| matches!(c, b':' | b'/' | b'T' | b't'))
         && text.iter().filter(|c| matches!(c, b'-' | b'.')).count() < 2;
@@ -269,11 +341,36 @@ pub(super) fn detect(text: &[u8]) -> Option<Shape> {
         Shape::DateTime(Order::DayFirst),
         Shape::Date(Order::YearFirst),
         Shape::Date(Order::DayFirst),
+        Shape::DateTime(Order::MonthFirst),
+        Shape::Date(Order::MonthFirst),
         Shape::Clock,
+        Shape::MinuteClock,
     ];
-    let day_first = |shape| matches!(shape, Shape::DateTime(Order::DayFirst) | Shape::Date(Order::DayFirst));
     let dotted = text.iter().take(3).any(|c| *c == b'.');
-    candidates.into_iter().find(|s| (dotted || !day_first(*s)) && parse(text, *s).is_some())
+    let halved = text.iter().rev().take(4).any(|c| c.eq_ignore_ascii_case(&b'm'));
+    let reads = |shape| parse(text, shape).is_some();
+    let other_order = |shape| match shape {
+        Shape::DateTime(Order::DayFirst) => reads(Shape::DateTime(Order::MonthFirst)),
+        Shape::Date(Order::DayFirst) => reads(Shape::Date(Order::MonthFirst)),
+        Shape::DateTime(Order::MonthFirst) => reads(Shape::DateTime(Order::DayFirst)) && !halved,
+        Shape::Date(Order::MonthFirst) => reads(Shape::Date(Order::DayFirst)),
+        _ => false,
+    };
+    let certain = |shape: &Shape| match shape {
+        Shape::DateTime(Order::DayFirst) | Shape::Date(Order::DayFirst) => {
+            dotted || !(other_order(*shape) || halved)
+        }
+        Shape::DateTime(Order::MonthFirst) | Shape::Date(Order::MonthFirst) => {
+            !dotted && !other_order(*shape)
+        }
+        Shape::MinuteClock => {
+            let minutes =
+                text.iter().take_while(|c| c.is_ascii_digit()).fold(0, |n, c| 10 * n + u32::from(c - b'0'));
+            minutes > 23 || text.iter().any(|c| matches!(c, b'.' | b','))
+        }
+        _ => true,
+    };
+    candidates.into_iter().find(|s| reads(*s) && certain(s))
 }
 
 #[cfg(test)]

@@ -119,6 +119,8 @@ pub(super) fn open(file: &Candidate, container: &'static dyn Container) -> Resul
         metadata.add(key, value);
     }
     Ok(Opened {
+        labels: Vec::new(),
+        bad_blocks: Vec::new(),
         columns,
         rows_estimate: Some(topic.messages),
         cut_off,
@@ -177,6 +179,7 @@ fn columns(layout: &Layout, first: &FirstMessage, notes: &mut Vec<Note>) -> (Vec
         unit: unit.map(str::to_owned),
         epoch_s: epoch_s.map(|s| s as f64),
         rollover_s: None,
+        judged: None,
     };
     let time = |name, epoch_s| column(name, "time stamp", Some("s"), Some(epoch_s));
     let (stamp, logged) = (first.stamp_s, first.logged_s);

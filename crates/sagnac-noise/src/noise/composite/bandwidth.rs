@@ -21,7 +21,7 @@ pub enum Bandwidth {
 }
 
 /// Neighbouring aliases summed on each side; what is left out falls as the fifth power of the distance.
-const ALIASES: i32 = 3;
+const ALIASES_PER_SIDE: i32 = 3;
 
 /// E\[c_k²\] of the orthonormal cosine mode k of `blocks` means over the last `samples` of white samples of variance 1.
 ///
@@ -79,7 +79,7 @@ impl Bandwidth {
                         };
                         averaged / (2.0 * PI * f.abs()) / (1.0 + (2.0 * PI * f * time_constant_s).powi(2))
                     };
-                    (-ALIASES..=ALIASES).map(alias).sum()
+                    (-ALIASES_PER_SIDE..=ALIASES_PER_SIDE).map(alias).sum()
                 }
                 // Aliases of a random walk fall as f⁻⁶ here: the filter acts on the sampled density.
                 _ => {

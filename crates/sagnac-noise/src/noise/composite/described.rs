@@ -142,6 +142,15 @@ impl Described {
             .collect();
     }
 
+    /// The correlation of two parameters; `None` where one was not fitted or has no variance.
+    pub fn correlation(&self, one: Parameter, other: Parameter) -> Option<f64> {
+        let place = |p: Parameter| self.parameters.iter().position(|q| *q == p);
+        let (i, j) = (place(one)?, place(other)?);
+        let at = |i: usize, j: usize| self.covariance.get(i)?.get(j).copied();
+        let scale = (at(i, i)? * at(j, j)?).sqrt();
+        (scale > 0.0).then_some((at(i, j)? / scale).clamp(-1.0, 1.0))
+    }
+
     /// A quantity computed from the model, with its standard uncertainty from the covariance of the parameters, to first
     /// order.
     pub fn propagate(&self, quantity: impl Fn(&Composite) -> f64) -> Propagated {
@@ -172,6 +181,19 @@ mod tests {
     use super::super::{Bandwidth, Damped};
     use super::*;
     use crate::noise::model::NoiseModel;
+
+    #[test]
+    fn a_correlation_is_that_of_the_covariance() {
+        let (n, b) = (Parameter::Coefficient(NoiseType::AngleRandomWalk), Parameter::MarkovSigma(0));
+        let described = Described {
+            parameters: vec![n, b],
+            covariance: vec![vec![4.0, -3.0], vec![-3.0, 9.0]],
+            ..Described::default()
+        };
+        assert_eq!(described.correlation(n, b), Some(-0.5));
+        assert_eq!(described.correlation(n, n), Some(1.0));
+        assert_eq!(described.correlation(n, Parameter::MarkovTime(0)), None);
+    }
 
     #[test]
     fn parameters_are_read_and_changed_one_by_one() {

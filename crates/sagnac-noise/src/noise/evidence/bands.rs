@@ -8,7 +8,7 @@ const RELATIVE_WIDTH: f64 = 0.04;
 /// Bands beyond this number, which only many gaps can make, are joined.
 const MAX_BANDS: usize = 800;
 /// Width of a band over the distance to the centre of a zone plus the half width of that.
-const GRADING: f64 = 0.2;
+const WIDTH_PER_DISTANCE: f64 = 0.2;
 
 /// One transform that contributes modes or bins.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -122,7 +122,7 @@ impl FineBin {
 /// Widest band at a frequency, Hz.
 fn max_width_hz(frequency_hz: f64, relative: f64, zones: &[Zone]) -> f64 {
     zones.iter().fold(relative * frequency_hz, |width, zone| {
-        width.min(GRADING * ((frequency_hz - zone.centre_hz).abs() + zone.half_width_hz))
+        width.min(WIDTH_PER_DISTANCE * ((frequency_hz - zone.centre_hz).abs() + zone.half_width_hz))
     })
 }
 

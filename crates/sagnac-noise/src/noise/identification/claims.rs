@@ -6,14 +6,14 @@
 //! the other one by a threshold each, neither would be. Every set has a price in 2 ln L, set by simulation such that at
 //! most about one record in twenty claims an absent term and an identifiable one is missed no more often.
 
-use super::linear_fit::RAMP;
+use super::linear_fit::RAMP_INDEX;
 use crate::estimate::Estimate;
 use crate::message::{Note, note};
 use crate::noise::data::NoiseType;
 use crate::noise::model::TERMS;
 
 /// Relative standard deviation up to which a coefficient counts as identifiable.
-pub const IDENTIFIABLE: f64 = 0.20;
+pub const MAX_IDENTIFIABLE_SIGMA: f64 = 0.20;
 
 /// A set of slow terms as bits.
 pub type SlowSet = usize;
@@ -23,14 +23,14 @@ pub const B: SlowSet = 1;
 pub const K: SlowSet = 2;
 /// Ramp.
 pub const R: SlowSet = 4;
-/// How many sets there are.
-pub const SETS: usize = 8;
+/// Number of sets of slow terms.
+pub const SLOW_SET_COUNT: usize = 8;
 
 /// Prices in 2 ln L.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlowPrices {
     /// Of each set of flicker, random walk and ramp.
-    pub set: [f64; SETS],
+    pub set: [f64; SLOW_SET_COUNT],
     /// Of a long Markov process in place of flicker and random walk: it has one parameter more than either, and a time
     /// that was searched for.
     pub markov: f64,
@@ -43,7 +43,7 @@ pub struct SlowPrices {
 
 impl Default for SlowPrices {
     fn default() -> Self {
-        let mut set = [0.0; SETS];
+        let mut set = [0.0; SLOW_SET_COUNT];
         set[B] = 4.2;
         set[K] = 4.6;
         set[R] = 7.0;
@@ -65,7 +65,7 @@ const FLICKER_PREFERENCE: f64 = 2.0;
 /// Preference in 2 ln L over the best description without a slow term of some relative uncertainty that its claim needs.
 pub fn needed_preference(term: NoiseType, relative_sigma: f64) -> f64 {
     match term {
-        _ if relative_sigma.is_nan() || relative_sigma > IDENTIFIABLE => NEARLY_AS_GOOD,
+        _ if relative_sigma.is_nan() || relative_sigma > MAX_IDENTIFIABLE_SIGMA => NEARLY_AS_GOOD,
         NoiseType::Flicker => FLICKER_PREFERENCE,
         _ => 0.0,
     }
@@ -82,17 +82,17 @@ pub struct SlowChoice {
 
 impl SlowPrices {
     /// The set with the least sum of deviance and price; `None` when none has a finite one.
-    pub fn choose(&self, deviance: &[f64; SETS]) -> Option<SlowChoice> {
+    pub fn choose(&self, deviance: &[f64; SLOW_SET_COUNT]) -> Option<SlowChoice> {
         self.choose_among(deviance, |_| true)
     }
 
     /// As [`SlowPrices::choose`], among the sets for which `allowed` is true.
     pub fn choose_among(
         &self,
-        deviance: &[f64; SETS],
+        deviance: &[f64; SLOW_SET_COUNT],
         allowed: impl Fn(SlowSet) -> bool,
     ) -> Option<SlowChoice> {
-        (0..SETS)
+        (0..SLOW_SET_COUNT)
             .filter(|set| allowed(*set))
             .map(|set| SlowChoice { set, cost: deviance[set] + self.set[set] })
             .filter(|c| c.cost.is_finite())
@@ -106,7 +106,7 @@ impl SlowPrices {
     }
 
     /// By how much the best set without a term of [`crate::noise::model::TERMS`] costs more than the one chosen.
-    pub fn preference(&self, deviance: &[f64; SETS], choice: SlowChoice, term: usize) -> f64 {
+    pub fn preference(&self, deviance: &[f64; SLOW_SET_COUNT], choice: SlowChoice, term: usize) -> f64 {
         self.choose_among(deviance, |set| !contains_term(set, term))
             .map_or(f64::INFINITY, |c| c.cost - choice.cost)
     }
@@ -136,15 +136,15 @@ pub fn contains_term(set: SlowSet, term: usize) -> bool {
 }
 
 /// Positions in [`TERMS`].
-pub(crate) const WHITE: usize = 0;
-pub(crate) const FLICKER: usize = 1;
-pub(crate) const WALK: usize = 2;
-pub(crate) const QUANTIZATION: usize = 3;
+pub(crate) const WHITE_INDEX: usize = 0;
+pub(crate) const FLICKER_INDEX: usize = 1;
+pub(crate) const WALK_INDEX: usize = 2;
+pub(crate) const QUANTIZATION_INDEX: usize = 3;
 /// 2 Δ ln L from which a term that is not claimed widens the interval of N.
 pub(crate) const MIN_SUSPICION_RATIO: f64 = 1.0;
 /// 2 Δ ln L from which a rival that is not claimed widens the interval of a slow term.
 pub(crate) const MIN_RIVAL_RATIO: f64 = 0.5;
-pub(crate) const METHOD: &str = "whittle";
+pub(crate) const WHITTLE_METHOD: &str = "whittle";
 /// Price of a term when the best description is chosen: Akaike's 2 raised to the 5 % point of one amplitude.
 pub(crate) const TERM_PRICE: f64 = 2.71;
 /// Coverage of upper limits.
@@ -162,7 +162,7 @@ pub(crate) fn is_claimable(term: usize, preference: f64, relative_sigma: f64) ->
 
 /// Says so where another slow term in place of this one describes the record nearly as well.
 pub(crate) fn with_rivals(estimate: Estimate, term: usize, preference: f64) -> Estimate {
-    let slow = matches!(term, FLICKER | WALK | RAMP);
+    let slow = matches!(term, FLICKER_INDEX | WALK_INDEX | RAMP_INDEX);
     if slow && preference < NEARLY_AS_GOOD {
         estimate.note(note!("slow_alike.term", fall = preference))
     } else {
@@ -178,8 +178,8 @@ pub(crate) fn low_frequency_note() -> Note {
 /// Terms that may hold a part of this one while too weak to be claimed.
 pub(crate) fn suspects(term: usize) -> &'static [usize] {
     match term {
-        WHITE => &[FLICKER, WALK, QUANTIZATION],
-        QUANTIZATION => &[FLICKER, WALK],
+        WHITE_INDEX => &[FLICKER_INDEX, WALK_INDEX, QUANTIZATION_INDEX],
+        QUANTIZATION_INDEX => &[FLICKER_INDEX, WALK_INDEX],
         _ => &[],
     }
 }
@@ -187,8 +187,8 @@ pub(crate) fn suspects(term: usize) -> &'static [usize] {
 /// The term that can stand for this one at the lowest frequencies.
 pub(crate) fn rival_of(term: usize) -> Option<usize> {
     match term {
-        FLICKER => Some(WALK),
-        WALK => Some(FLICKER),
+        FLICKER_INDEX => Some(WALK_INDEX),
+        WALK_INDEX => Some(FLICKER_INDEX),
         _ => None,
     }
 }
@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn the_better_of_two_rivals_is_claimed_where_each_explains_the_record() {
         let prices = SlowPrices::default();
-        let mut deviance = [0.0; SETS];
+        let mut deviance = [0.0; SLOW_SET_COUNT];
         // Nothing: 70; flicker or anything with it: 0; random walk alone 3: too little for a threshold of 4.5.
         deviance[0] = 70.0;
         deviance[K] = 3.0;
@@ -209,13 +209,13 @@ mod tests {
         assert_eq!(prices.choose(&deviance).map(|c| c.set), Some(B));
         deviance[0] = 3.0;
         assert_eq!(prices.choose(&deviance).map(|c| c.set), Some(0), "a rise of 3 shows nothing");
-        assert_eq!(prices.choose(&[f64::NAN; SETS]), None);
+        assert_eq!(prices.choose(&[f64::NAN; SLOW_SET_COUNT]), None);
     }
 
     #[test]
     fn a_larger_set_costs_more_than_its_parts() {
         let prices = SlowPrices::default();
-        for set in 0..SETS {
+        for set in 0..SLOW_SET_COUNT {
             for term in [B, K, R] {
                 if set & term == 0 {
                     assert!(prices.set[set | term] > prices.set[set], "{set} {term}");

@@ -12,9 +12,9 @@ use crate::noise::model::{NoiseModel, TERMS};
 use crate::numeric::optimize::{nonnegative_quadratic, shortened_steps};
 
 /// Number of terms with a spectrum: the first four of [`TERMS`].
-pub const SPECTRAL: usize = 4;
+pub const SPECTRAL_TERM_COUNT: usize = 4;
 /// Position of the ramp in [`TERMS`].
-pub const RAMP: usize = 4;
+pub const RAMP_INDEX: usize = 4;
 
 /// Which terms a fit may use, in the order of [`TERMS`].
 pub type Structure = [bool; 5];
@@ -23,7 +23,7 @@ pub type Structure = [bool; 5];
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Point {
     /// N², B², K², Q².
-    pub variance: [f64; SPECTRAL],
+    pub variance: [f64; SPECTRAL_TERM_COUNT],
     /// Ramp, deg/h/h.
     pub ramp: f64,
     /// −2 ln L up to a constant of the evidence.
@@ -47,23 +47,24 @@ impl Point {
 pub struct Likelihood {
     bands: Vec<BandPower>,
     /// Expected power of each band for a coefficient of 1 of the four spectral terms.
-    basis: Vec<[f64; SPECTRAL]>,
-    scale: [f64; SPECTRAL],
+    basis: Vec<[f64; SPECTRAL_TERM_COUNT]>,
+    scale: [f64; SPECTRAL_TERM_COUNT],
 }
 
 impl Likelihood {
     /// Prepares the likelihood; `None` when there is no power in any band or too few bands to say anything.
     pub fn new(evidence: &Evidence) -> Option<Likelihood> {
         let (used, bands) = usable_bands(evidence)?;
-        let columns: Vec<Vec<f64>> = TERMS.iter().take(SPECTRAL).map(|t| evidence.expectation(t)).collect();
+        let columns: Vec<Vec<f64>> =
+            TERMS.iter().take(SPECTRAL_TERM_COUNT).map(|t| evidence.expectation(t)).collect();
         let expected = |i: usize| {
-            let mut basis = [0.0; SPECTRAL];
+            let mut basis = [0.0; SPECTRAL_TERM_COUNT];
             for (b, column) in basis.iter_mut().zip(&columns) {
                 *b = column.get(i).copied().unwrap_or(0.0);
             }
             basis
         };
-        let basis: Vec<[f64; SPECTRAL]> = used.into_iter().map(expected).collect();
+        let basis: Vec<[f64; SPECTRAL_TERM_COUNT]> = used.into_iter().map(expected).collect();
         let scale =
             std::array::from_fn(|term| starting_variance(bands.iter(), basis.iter().map(|b| b[term])));
         Some(Likelihood { bands, basis, scale })
@@ -72,13 +73,13 @@ impl Likelihood {
     /// Every band with its expected power.
     fn expected<'a>(
         &'a self,
-        v: &'a [f64; SPECTRAL],
+        v: &'a [f64; SPECTRAL_TERM_COUNT],
     ) -> impl Iterator<Item = (&'a BandPower, f64)> + Clone + 'a {
-        let density = move |basis: &[f64; SPECTRAL]| basis.iter().zip(v).map(|(g, v)| g * v).sum();
+        let density = move |basis: &[f64; SPECTRAL_TERM_COUNT]| basis.iter().zip(v).map(|(g, v)| g * v).sum();
         self.bands.iter().zip(self.basis.iter().map(density))
     }
 
-    fn deviance(&self, v: &[f64; SPECTRAL], r: f64, restricted: bool) -> f64 {
+    fn deviance(&self, v: &[f64; SPECTRAL_TERM_COUNT], r: f64, restricted: bool) -> f64 {
         deviance(self.expected(v), r, restricted)
     }
 
@@ -90,13 +91,13 @@ impl Likelihood {
         fixed: Option<(usize, f64)>,
         start: Option<&Point>,
     ) -> Option<Point> {
-        let mut free = [false; SPECTRAL];
-        free.copy_from_slice(&structure[..SPECTRAL]);
-        let mut ramp_free = structure[RAMP];
-        let restricted = structure[RAMP] && !matches!(fixed, Some((RAMP, _)));
-        let mut v = [0.0; SPECTRAL];
+        let mut free = [false; SPECTRAL_TERM_COUNT];
+        free.copy_from_slice(&structure[..SPECTRAL_TERM_COUNT]);
+        let mut ramp_free = structure[RAMP_INDEX];
+        let restricted = structure[RAMP_INDEX] && !matches!(fixed, Some((RAMP_INDEX, _)));
+        let mut v = [0.0; SPECTRAL_TERM_COUNT];
         let active = free.iter().filter(|f| **f).count().max(1) as f64;
-        for i in 0..SPECTRAL {
+        for i in 0..SPECTRAL_TERM_COUNT {
             if free[i] {
                 // A start at exactly zero stays possible, but from a small value the first step sees every term.
                 let own = self.scale[i] / active;
@@ -108,11 +109,11 @@ impl Likelihood {
             _ => 0.0,
         };
         match fixed {
-            Some((RAMP, value)) => {
+            Some((RAMP_INDEX, value)) => {
                 ramp_free = false;
                 r = value;
             }
-            Some((term, value)) if term < SPECTRAL => {
+            Some((term, value)) if term < SPECTRAL_TERM_COUNT => {
                 free[term] = false;
                 v[term] = value * value;
             }
@@ -151,17 +152,17 @@ impl Likelihood {
     /// The weighted least-squares problem of one step, scaled to unit columns.
     fn scoring_step(
         &self,
-        v: &[f64; SPECTRAL],
+        v: &[f64; SPECTRAL_TERM_COUNT],
         r: f64,
-        free: &[bool; SPECTRAL],
+        free: &[bool; SPECTRAL_TERM_COUNT],
         restricted: bool,
-    ) -> [f64; SPECTRAL] {
-        let (mut h, mut b) = ([[0.0; SPECTRAL]; SPECTRAL], [0.0; SPECTRAL]);
+    ) -> [f64; SPECTRAL_TERM_COUNT] {
+        let (mut h, mut b) = ([[0.0; SPECTRAL_TERM_COUNT]; SPECTRAL_TERM_COUNT], [0.0; SPECTRAL_TERM_COUNT]);
         let ramp_variance =
             if restricted { 1.0 / ramp_information(self.expected(v)).max(f64::MIN_POSITIVE) } else { 0.0 };
         for ((band, s), basis) in self.expected(v).zip(&self.basis) {
             let weight = band.dof / (s * s);
-            let held: f64 = (0..SPECTRAL).filter(|i| !free[*i]).map(|i| basis[i] * v[i]).sum();
+            let held: f64 = (0..SPECTRAL_TERM_COUNT).filter(|i| !free[*i]).map(|i| basis[i] * v[i]).sum();
             let rest = band.without_ramp(r) + ramp_variance * band.ramp - held;
             for ((h, b), gi) in h.iter_mut().zip(&mut b).zip(basis) {
                 *b += weight * gi * rest;
@@ -172,7 +173,7 @@ impl Likelihood {
         }
         let best = nonnegative_quadratic(&h, &b, free);
         let mut out = *v;
-        for i in 0..SPECTRAL {
+        for i in 0..SPECTRAL_TERM_COUNT {
             if free[i] {
                 out[i] = best[i];
             }
@@ -181,7 +182,7 @@ impl Likelihood {
     }
 
     /// Fisher information of the variances N², B², K², Q² and of the ramp.
-    fn information(&self, variance: &[f64; SPECTRAL]) -> [[f64; 5]; 5] {
+    fn information(&self, variance: &[f64; SPECTRAL_TERM_COUNT]) -> [[f64; 5]; 5] {
         let mut out = [[0.0; 5]; 5];
         for ((band, s), basis) in self.expected(variance).zip(&self.basis) {
             if s <= 0.0 {
@@ -192,7 +193,7 @@ impl Likelihood {
                     *out += 0.5 * band.dof * gi * gj / (s * s);
                 }
             }
-            out[RAMP][RAMP] += band.dof * band.ramp / s;
+            out[RAMP_INDEX][RAMP_INDEX] += band.dof * band.ramp / s;
         }
         out
     }
@@ -200,7 +201,7 @@ impl Likelihood {
     /// Cramér-Rao bound of the covariance of N², B², K², Q² and R within a structure; zero elsewhere. Unlike that of
     /// the coefficients it exists where a term is zero.
     pub fn variance_bound(&self, model: &NoiseModel, structure: &Structure) -> [[f64; 5]; 5] {
-        let mut variance = [0.0; SPECTRAL];
+        let mut variance = [0.0; SPECTRAL_TERM_COUNT];
         for (v, term) in variance.iter_mut().zip(TERMS) {
             *v = model.coefficient(term).powi(2);
         }
@@ -226,14 +227,14 @@ impl Likelihood {
     pub fn covariance_bound(&self, model: &NoiseModel, structure: &Structure) -> [[f64; 5]; 5] {
         let coefficients = TERMS.map(|t| model.coefficient(t));
         let mut present = *structure;
-        for (flag, c) in present.iter_mut().zip(coefficients).take(SPECTRAL) {
+        for (flag, c) in present.iter_mut().zip(coefficients).take(SPECTRAL_TERM_COUNT) {
             *flag &= c != 0.0;
         }
         let mut out = self.variance_bound(model, &present);
         for (i, row) in out.iter_mut().enumerate() {
             for (j, value) in row.iter_mut().enumerate() {
                 for k in [i, j] {
-                    if k < SPECTRAL && coefficients[k] != 0.0 {
+                    if k < SPECTRAL_TERM_COUNT && coefficients[k] != 0.0 {
                         *value /= 2.0 * coefficients[k].abs();
                     }
                 }
@@ -289,7 +290,7 @@ mod tests {
     fn the_maximum_on_expected_powers_is_the_model() {
         let model = NoiseModel { n: 0.002, b: 0.004, k: 0.01, r: 0.02, q: 0.3 };
         let likelihood = Likelihood::new(&evidence(&model)).unwrap();
-        let fitted = likelihood.maximise(&[true; 5], Some((RAMP, model.r)), None).unwrap().model();
+        let fitted = likelihood.maximise(&[true; 5], Some((RAMP_INDEX, model.r)), None).unwrap().model();
         for term in TERMS {
             let ratio = fitted.coefficient(term) / model.coefficient(term);
             assert!((ratio - 1.0).abs() < 1e-3, "{term:?} {ratio}");
@@ -304,7 +305,8 @@ mod tests {
         let relative = bound[0][0].sqrt() / model.n;
         assert!((relative * (2.0 * 36_000f64).sqrt() - 1.0).abs() < 1e-3, "{relative}");
         // A ramp against it: σ² = 12·3600² N²·3600/T³ for a straight line in white noise.
-        let ramp = likelihood.covariance_bound(&model, &[true, false, false, false, true])[RAMP][RAMP];
+        let ramp =
+            likelihood.covariance_bound(&model, &[true, false, false, false, true])[RAMP_INDEX][RAMP_INDEX];
         let expected = 12.0 * 3600f64.powi(3) * model.n * model.n / 36_000f64.powi(3);
         assert!((ramp / expected - 1.0).abs() < 1e-2, "{ramp} {expected}");
     }

@@ -12,7 +12,7 @@
 //! | which terms are claimed, and at what price | `claims`, `options` |
 //! | N, B, K, Q and R alone | `standard` |
 //! | search for Markov processes, quasi-periodic disturbances and a filter | `joint` |
-//! | range of frequencies, test of the fit | `range`, `misfit` |
+//! | entrance, range of frequencies, test of the fit | `range`, `misfit` |
 //!
 //! # Why there are two fits, and a third elsewhere
 //! [`linear_fit`] has at most five unknowns and a bounded least-squares step that is solved exactly; every one of its 32
@@ -27,7 +27,6 @@
 //! the density).
 
 pub(crate) mod claims;
-mod entrance;
 mod joint;
 mod likelihood;
 pub mod linear_fit;
@@ -40,9 +39,10 @@ mod standard;
 mod structures;
 
 pub use claims::SlowPrices;
-pub use entrance::{complete, describe, identify};
 pub use joint::Plateau;
 pub use misfit::Misfit;
 pub use options::{Options, ProcessThresholds, StandardThresholds};
-pub use range::{RangedIdentification, describe_in_range, identify_in_range, identify_over};
+pub use range::{
+    RangedIdentification, complete, describe, describe_in_range, identify, identify_in_range, identify_over,
+};
 pub use result::{Identification, MarkovFound, QuasiPeriodicFound};

@@ -3,7 +3,7 @@
 //! The signed root z of twice the drop in log-likelihood is read as a normal score, other coefficients refitted at
 //! every value (Wilks; for an amplitude on its boundary at 0, Self and Liang, JASA 82, 1987).
 
-use super::linear_fit::{Likelihood, Point, RAMP, SPECTRAL, Structure};
+use super::linear_fit::{Likelihood, Point, RAMP_INDEX, SPECTRAL_TERM_COUNT, Structure};
 use crate::estimate::{Spread, normal_probability};
 use crate::numeric::order::SortByNumber;
 
@@ -82,7 +82,7 @@ impl<'a> Profile<'a> {
         *structure.get_mut(term)? = true;
         let best = likelihood.maximise(&structure, None, None)?;
         let mut profile = Profile { likelihood, structure, term, best, top: best.deviance, sigma: 0.0 };
-        if term == RAMP {
+        if term == RAMP_INDEX {
             // At a fixed ramp the likelihood is the plain one: its own maximum is the reference.
             profile.top = profile.deviance(best.ramp)?;
         }
@@ -99,7 +99,7 @@ impl<'a> Profile<'a> {
         let model = self.best.model();
         let bound = self.likelihood.covariance_bound(&model, &self.structure);
         let sigma = bound[self.term][self.term].max(0.0).sqrt();
-        if self.term < SPECTRAL {
+        if self.term < SPECTRAL_TERM_COUNT {
             // Near zero the information of the coefficient vanishes; that of its square does not.
             let variance = self.likelihood.variance_sigma(&self.best, self.term);
             let near_zero = variance.sqrt();
@@ -121,7 +121,7 @@ impl<'a> Profile<'a> {
     }
 
     fn lowest(&self) -> f64 {
-        if self.term == RAMP { f64::NEG_INFINITY } else { 0.0 }
+        if self.term == RAMP_INDEX { f64::NEG_INFINITY } else { 0.0 }
     }
 
     /// Pairs (normal score, coefficient), ascending, from −4 or the boundary to 4.
@@ -171,7 +171,7 @@ impl<'a> Profile<'a> {
             return None;
         }
         let up = side(1.0).abs();
-        let limit = if self.term == RAMP { up.max(side(-1.0).abs()) } else { up };
+        let limit = if self.term == RAMP_INDEX { up.max(side(-1.0).abs()) } else { up };
         limit.is_finite().then_some(limit)
     }
 }

@@ -1,4 +1,4 @@
-//! Up to which frequency a noise model describes a record.
+//! Entrance: identification by the method that the options ask for, over all frequencies or those that a model describes.
 //!
 //! Real outputs are filtered, and noise near the Nyquist frequency can have a shape that no term has. Fitted over all
 //! frequencies, such a record gives a wrong N with a tiny interval. Where the model fails its misfit test it is fitted
@@ -6,12 +6,12 @@
 //! said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
 //! root of the misfit (Birge ratio), and that is said too.
 
-use super::claims::{LIMIT_COVERAGE, METHOD};
-use super::entrance::{complete, describe};
-use super::joint::{Plateau, expected_power};
+use super::claims::{LIMIT_COVERAGE, WHITTLE_METHOD};
+use super::joint::{Plateau, expected_power, identify_joint};
 use super::misfit::{Misfit, WhitenedBand};
 use super::options::Options;
 use super::result::Identification;
+use super::standard::identify_standard;
 use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::message::note;
 use crate::noise::composite::Part;
@@ -160,7 +160,7 @@ fn without_unseen(mut ranged: RangedIdentification, tau0_s: f64) -> RangedIdenti
     if found.quantization.value.is_some() && !rises {
         let q = &found.quantization;
         let limit = q.interval95().map(|i| UpperLimit { value: i.high, coverage: LIMIT_COVERAGE });
-        found.quantization = Estimate::not_identifiable(q.id, &q.channel, limit, q.unit, METHOD);
+        found.quantization = Estimate::not_identifiable(q.id, &q.channel, limit, q.unit, WHITTLE_METHOD);
         found.claimed.retain(|t| *t != NoiseType::Quantization);
         found.model.q = 0.0;
     }
@@ -217,9 +217,64 @@ fn widen(estimate: &mut Estimate, factor: f64) {
     }
 }
 
+/// Identifies the noise of a channel: which terms are claimed, each with its interval or its upper limit, the models
+/// they make, and how well those fit.
+///
+/// `channel` is copied into the estimates. An evidence with too few bands gives an identification that claims nothing and
+/// has no limits.
+///
+/// ```
+/// use sagnac_noise::noise::data::NoiseType;
+/// use sagnac_noise::noise::evidence::Evidence;
+/// use sagnac_noise::noise::identification::{Options, identify};
+/// use sagnac_noise::noise::model::NoiseModel;
+///
+/// // Ten hours at 1 Hz: what a record of 0.002 deg/√h is expected to give.
+/// let model = NoiseModel { n: 0.002, ..NoiseModel::default() };
+/// let found = identify("rate", &Evidence::expected(&model, 36_000, 1.0), &Options::default());
+///
+/// assert_eq!(found.claimed, [NoiseType::AngleRandomWalk]);
+/// let n = found.angle_random_walk.value.unwrap_or(f64::NAN);
+/// assert!((n / 0.002 - 1.0).abs() < 1e-3);
+/// assert!(found.bias_instability.upper_limit.is_some());
+/// ```
+pub fn identify(channel: &str, evidence: &Evidence, options: &Options) -> Identification {
+    run(channel, evidence, options, None, true)
+}
+
+/// As [`identify`], without intervals and limits, which take most of the time: what is claimed, the models, the misfit.
+pub fn describe(channel: &str, evidence: &Evidence, options: &Options) -> Identification {
+    run(channel, evidence, options, None, false)
+}
+
+/// Intervals and limits for what [`describe`] found in the same evidence with the same options; equal to [`identify`],
+/// and faster, since the search has been made.
+pub fn complete(
+    channel: &str,
+    evidence: &Evidence,
+    options: &Options,
+    described: &Identification,
+) -> Identification {
+    run(channel, evidence, options, Some(described), true)
+}
+
+fn run(
+    channel: &str,
+    evidence: &Evidence,
+    options: &Options,
+    described: Option<&Identification>,
+    intervals: bool,
+) -> Identification {
+    if options.processes {
+        let searched = described.and_then(|d| d.searched.as_ref());
+        identify_joint(channel, evidence, options, searched, intervals)
+    } else {
+        identify_standard(channel, evidence, &options.standard, intervals)
+    }
+}
+
 #[cfg(test)]
 mod tests {
-    use super::super::entrance::identify;
     use super::*;
     use crate::noise::data::BlockSeries;
     use rand::SeedableRng;

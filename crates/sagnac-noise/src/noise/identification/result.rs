@@ -1,6 +1,6 @@
 //! Noise identified in one channel.
 
-use super::claims::METHOD;
+use super::claims::WHITTLE_METHOD;
 use super::joint::{Extras, Plateau};
 use super::misfit::Misfit;
 use crate::estimate::Estimate;
@@ -165,10 +165,10 @@ impl Identification {
 
     /// The result for a channel of which nothing was identified.
     pub fn empty(channel: &str) -> Identification {
-        let none = |i: usize| Estimate::not_identifiable(IDS[i].0, channel, None, IDS[i].1, METHOD);
+        let none = |i: usize| Estimate::not_identifiable(IDS[i].0, channel, None, IDS[i].1, WHITTLE_METHOD);
         Identification {
             channel: channel.to_owned(),
-            method: METHOD,
+            method: WHITTLE_METHOD,
             model: NoiseModel::default(),
             supported: NoiseModel::default(),
             full: NoiseModel::default(),

@@ -1,11 +1,11 @@
 //! Identification of N, B, K, Q and R alone.
 
 use super::claims::{
-    FLICKER, LIMIT_COVERAGE, LIMIT_RISE, METHOD, MIN_RIVAL_RATIO, MIN_SUSPICION_RATIO, QUANTIZATION,
-    SlowChoice, WALK, WHITE, contains_term, is_claimable, low_frequency_note, rival_of, suspects,
-    with_rivals,
+    FLICKER_INDEX, LIMIT_COVERAGE, LIMIT_RISE, MIN_RIVAL_RATIO, MIN_SUSPICION_RATIO, QUANTIZATION_INDEX,
+    SlowChoice, WALK_INDEX, WHITE_INDEX, WHITTLE_METHOD, contains_term, is_claimable, low_frequency_note,
+    rival_of, suspects, with_rivals,
 };
-use super::linear_fit::{Likelihood, RAMP, Structure, toggled};
+use super::linear_fit::{Likelihood, RAMP_INDEX, Structure, toggled};
 use super::misfit::Misfit;
 use super::options::StandardThresholds;
 use super::profile::{Profile, wider};
@@ -46,16 +46,16 @@ pub(super) fn identify_standard(
     out.likelihood_ratios = search.ratios;
     let fit = |structure: &Structure| likelihood.maximise(structure, None, None);
     let mut claimed: Structure = [
-        search.ratios[WHITE] > thresholds.white,
-        contains_term(search.slow.set, FLICKER),
-        contains_term(search.slow.set, WALK),
-        search.ratios[QUANTIZATION] > thresholds.quantization,
-        contains_term(search.slow.set, RAMP),
+        search.ratios[WHITE_INDEX] > thresholds.white,
+        contains_term(search.slow.set, FLICKER_INDEX),
+        contains_term(search.slow.set, WALK_INDEX),
+        search.ratios[QUANTIZATION_INDEX] > thresholds.quantization,
+        contains_term(search.slow.set, RAMP_INDEX),
     ];
     if let Some(best) = fit(&search.supported(&claimed)) {
         let model = best.model();
         let bound = likelihood.covariance_bound(&model, &search.supported(&claimed));
-        for term in [FLICKER, WALK] {
+        for term in [FLICKER_INDEX, WALK_INDEX] {
             let relative = bound[term][term].sqrt() / model.coefficient(TERMS[term]);
             claimed[term] &= is_claimable(term, search.preference[term], relative);
         }
@@ -72,9 +72,9 @@ pub(super) fn identify_standard(
     out.covariance = likelihood.covariance_bound(&out.supported, &supported);
     out.described = described(out.supported, &out.covariance);
     // Quantisation too weak to be claimed lies in the level of the white noise, which a prediction must allow for.
-    if !claimed[QUANTIZATION]
-        && search.ratios[QUANTIZATION] > MIN_SUSPICION_RATIO
-        && let structure = toggled(&supported, QUANTIZATION, true)
+    if !claimed[QUANTIZATION_INDEX]
+        && search.ratios[QUANTIZATION_INDEX] > MIN_SUSPICION_RATIO
+        && let structure = toggled(&supported, QUANTIZATION_INDEX, true)
         && let Some(with) = fit(&structure)
     {
         let model = with.model();
@@ -137,12 +137,12 @@ fn estimate(
         {
             spread = wider(profile.value(), &spread, &other.spread());
         }
-        let estimate = Estimate::measured(id, channel, profile.value(), unit, spread, METHOD);
+        let estimate = Estimate::measured(id, channel, profile.value(), unit, spread, WHITTLE_METHOD);
         return with_rivals(estimate, term, search.preference[term]);
     }
     // A limit must hold whatever else is in the record: the largest over the rivals being free and being absent.
     let mut nuisance = [true; 5];
-    nuisance[RAMP] = claimed[RAMP];
+    nuisance[RAMP_INDEX] = claimed[RAMP_INDEX];
     let limit = std::iter::once(nuisance)
         .chain(rival_of(term).filter(|r| !claimed[*r]).map(|r| toggled(&nuisance, r, false)))
         .filter_map(|structure| Profile::new(likelihood, &structure, term)?.upper_limit(LIMIT_RISE))
@@ -150,7 +150,7 @@ fn estimate(
     let limit = limit.map(|value| UpperLimit { value, coverage: LIMIT_COVERAGE });
     let alone = rival_of(term).filter(|r| !claimed[*r]).map_or(structure, |r| toggled(&structure, r, false));
     let likely = Profile::new(likelihood, &alone, term).map(|p| p.value().abs());
-    let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD).most_likely(likely);
+    let estimate = Estimate::not_identifiable(id, channel, limit, unit, WHITTLE_METHOD).most_likely(likely);
     if ambiguous && term != 0 && supported[term] {
         return estimate.note(low_frequency_note());
     }

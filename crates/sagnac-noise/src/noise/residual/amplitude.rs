@@ -10,7 +10,7 @@ use crate::estimate::normal_probability;
 use statrs::distribution::{DiscreteCDF, Poisson};
 
 /// Standard deviations beyond which values are counted.
-pub const TAIL: f64 = 4.0;
+pub const TAIL_DEVIATIONS: f64 = 4.0;
 
 /// The distribution of a whitened residual.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -67,8 +67,8 @@ pub(super) fn of(whitened: &Whitened) -> Option<Amplitude> {
     }
     let sigma = variance.sqrt();
     let (skewness, excess_kurtosis) = (moment(3) / sigma.powi(3), moment(4) / variance.powi(2) - 3.0);
-    let beyond = whitened.values.iter().filter(|v| v.abs() > TAIL * sigma).count() as u64;
-    let expected_beyond = n * two_sided(TAIL);
+    let beyond = whitened.values.iter().filter(|v| v.abs() > TAIL_DEVIATIONS * sigma).count() as u64;
+    let expected_beyond = n * two_sided(TAIL_DEVIATIONS);
     let law = Poisson::new(expected_beyond).ok()?;
     let few = law.cdf(beyond);
     let many = if beyond == 0 { 1.0 } else { law.sf(beyond - 1) };
@@ -94,7 +94,7 @@ pub(super) fn judge(found: &Amplitude) -> Judged {
         statistic: found.excess_kurtosis,
         p_value: (3.0 * smallest).min(1.0),
         departure: Departure {
-            from: TAIL,
+            from: TAIL_DEVIATIONS,
             to: f64::INFINITY,
             excess: found.beyond as f64 / found.expected_beyond - 1.0,
         },

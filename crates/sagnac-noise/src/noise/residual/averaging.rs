@@ -19,13 +19,13 @@ const LARGEST_SHARE: f64 = 0.125;
 /// Share of its variance that the fit leaves an octave at least, for the covariance of the fit is an estimate.
 const LEAST_LEFT: f64 = 0.5;
 /// Score from which a neighbouring octave belongs to the same departure.
-const NEIGHBOUR: f64 = 2.0;
+const MIN_NEIGHBOUR_SCORE: f64 = 2.0;
 /// Lags per averaging time in the sum of squared covariances.
 const PER_TAU: f64 = 16.0;
 /// Averaging times up to which covariances are summed.
-const SPAN: f64 = 12.0;
-/// Decay times of the slowest process up to which they are.
-const DECAYS: f64 = 3.0;
+const COVARIANCE_SPAN_TAUS: f64 = 12.0;
+/// Decay times of the slowest process up to which covariances are summed.
+const COVARIANCE_SPAN_DECAYS: f64 = 3.0;
 /// Most lags summed for such a process.
 const MOST_LAGS: f64 = 20_000.0;
 
@@ -65,7 +65,8 @@ pub fn degrees_of_freedom(model: &Composite, point: &DeviationPoint, tau0_s: f64
         noise.quasi_periodic.iter().chain(&noise.markov).map(|d| d.decay_time_s).fold(0.0, f64::max);
     // A line never decays.
     let slowest_s = if noise.lines.is_empty() { slowest_s } else { f64::INFINITY };
-    let span = (SPAN * point.m as f64).max((DECAYS * slowest_s / tau0_s).min(MOST_LAGS * stride));
+    let span = (COVARIANCE_SPAN_TAUS * point.m as f64)
+        .max((COVARIANCE_SPAN_DECAYS * slowest_s / tau0_s).min(MOST_LAGS * stride));
     let most = (span / stride).min(terms - 1.0).max(0.0) as u64;
     let mut sum = terms;
     for lag in 1..=most {
@@ -159,7 +160,7 @@ pub(super) fn judge(
         return (ratios, None);
     }
     let p_value = probability_of_largest(statistic, correlation);
-    let same = |o: &OctaveRatio| o.score * ratios[worst].score.signum() >= NEIGHBOUR;
+    let same = |o: &OctaveRatio| o.score * ratios[worst].score.signum() >= MIN_NEIGHBOUR_SCORE;
     let from = (0..worst).rev().take_while(|i| same(&ratios[*i])).last().unwrap_or(worst);
     let to = (worst + 1..count).take_while(|i| same(&ratios[*i])).last().unwrap_or(worst);
     let judged = Judged {

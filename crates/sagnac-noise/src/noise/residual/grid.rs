@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 /// Bands of one octave.
 const PER_OCTAVE: f64 = 12.0;
 /// Lowest modes that are bands of their own.
-const SINGLE: usize = 24;
+const SINGLE_MODE_BANDS: usize = 24;
 
 /// Bands with their densities.
 pub(super) struct Grid {
@@ -32,7 +32,7 @@ impl Grid {
     pub fn new(described: &Described, length_s: f64, tau0_s: f64) -> Grid {
         let nyquist = 0.5 / tau0_s;
         let step = 0.5 / length_s;
-        let mut edges: Vec<f64> = (0..SINGLE).map(|k| (k as f64 + 0.5) * step).collect();
+        let mut edges: Vec<f64> = (0..SINGLE_MODE_BANDS).map(|k| (k as f64 + 0.5) * step).collect();
         let ratio = 2f64.powf(1.0 / PER_OCTAVE);
         while edges.last().is_some_and(|e| e * ratio < nyquist) {
             let last = edges.last().copied().unwrap_or(step);

@@ -12,7 +12,7 @@ use sagnac_fft::real_forward;
 use std::f64::consts::PI;
 
 /// Means at either end of the record where no jump is looked for: there it is one of few values, which other views judge.
-const ENDS: usize = 4;
+const EXCLUDED_END_MEANS: usize = 4;
 
 /// The largest jump of a series.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -40,7 +40,7 @@ impl Jump {
 /// The largest jump in cosine modes of a series (orthonormal) with expected powers; modes without power are left out.
 pub(super) fn largest(modes: &[f64], powers: &[f64]) -> Option<Jump> {
     let n = modes.len();
-    if n < 4 * ENDS || powers.len() != n {
+    if n < 4 * EXCLUDED_END_MEANS || powers.len() != n {
         return None;
     }
     let used = |k: usize| k > 0 && powers[k] > 0.0;
@@ -60,9 +60,9 @@ pub(super) fn largest(modes: &[f64], powers: &[f64]) -> Option<Jump> {
     plan.process(&mut input, &mut turned).ok()?;
     let information = |i: usize| whole - turned.get(i.min(n - i)).map_or(0.0, |c| c.re);
     let moved = (0..n).filter(|k| used(*k)).map(|k| 1.0 / powers[k]).sum::<f64>() / n as f64;
-    let mut sum: f64 = score.iter().take(ENDS).sum();
+    let mut sum: f64 = score.iter().take(EXCLUDED_END_MEANS).sum();
     let (mut best, mut crossings) = (None::<(usize, f64, f64)>, 0.0);
-    for i in ENDS..n - ENDS {
+    for i in EXCLUDED_END_MEANS..n - EXCLUDED_END_MEANS {
         let (here, next) = (information(i), information(i + 1));
         if here > 0.0 && next > 0.0 {
             // All scores together are 0, so that those behind are the negative of those before.

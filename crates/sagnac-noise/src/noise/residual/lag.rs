@@ -14,7 +14,7 @@ use crate::noise::model::{Bin, Spectral};
 use sagnac_fft::{Complex, real_inverse};
 
 /// Lags that are looked at, at most.
-const LAGS: usize = 120;
+const MAX_LAGS: usize = 120;
 /// Share of the variance of a lag that the fit must leave.
 const LEAST_LEFT: f64 = 0.05;
 
@@ -77,7 +77,7 @@ fn judged(step_s: f64, coefficients: Vec<f64>, values: f64, grid: &Grid) -> Opti
 /// Of the whitened block means.
 pub(super) fn of_blocks(whitened: &Whitened, grid: &Grid) -> Option<ResidualCorrelation> {
     let count = whitened.values.len();
-    let lags = LAGS.min(count / 10);
+    let lags = MAX_LAGS.min(count / 10);
     let found = super::super::autocorrelation::of_series(&whitened.values, lags)?;
     // The biased estimate is small by the pairs that a lag lacks, and by the mean that was taken out.
     let n = count as f64;
@@ -130,7 +130,7 @@ pub(super) fn of_samples(
     if inverse.process(&mut ratios, &mut time).is_err() {
         return None;
     }
-    let lags = LAGS.min(welch.segment_len / 16);
+    let lags = MAX_LAGS.min(welch.segment_len / 16);
     let coefficients: Vec<f64> =
         time.iter().skip(1).take(lags).map(|c| c / welch.segment_len as f64).collect();
     let values = welch.averages_in_sums * used as f64;

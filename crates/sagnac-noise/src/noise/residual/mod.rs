@@ -15,7 +15,7 @@ mod spectrum;
 mod view;
 mod whiten;
 
-pub use amplitude::{Amplitude, TAIL};
+pub use amplitude::{Amplitude, TAIL_DEVIATIONS};
 pub use averaging::{OctaveRatio, degrees_of_freedom};
 pub use frequency::BandRatio;
 pub use jump::Jump;
@@ -29,7 +29,7 @@ use super::spectral_record::SpectralRecord;
 use crate::numeric::order::SortByNumber;
 
 /// Probability, for all views together, below which a departure is called one.
-pub const LEVEL: f64 = 0.01;
+pub const FAMILYWISE_LEVEL: f64 = 0.01;
 
 /// How well a description fits a record.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -93,12 +93,13 @@ impl GoodnessOfFit {
         }
     }
 
-    /// The views in which the model fails: Holm's procedure over all views at [`LEVEL`].
+    /// The views in which the model fails: Holm's procedure over all views at [`FAMILYWISE_LEVEL`].
     pub fn failures(&self) -> Vec<&Judged> {
         let mut sorted: Vec<&Judged> = self.views.iter().collect();
         sorted.sort_ascending_by(|a| a.p_value);
         let count = sorted.len();
-        let passed = (0..count).find(|i| sorted[*i].p_value * (count - i) as f64 > LEVEL).unwrap_or(count);
+        let passed =
+            (0..count).find(|i| sorted[*i].p_value * (count - i) as f64 > FAMILYWISE_LEVEL).unwrap_or(count);
         sorted.truncate(passed);
         sorted.sort_by_key(|j| j.view);
         sorted

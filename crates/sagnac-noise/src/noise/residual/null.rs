@@ -7,9 +7,9 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
 
 /// Sets of scores drawn.
-const DRAWS: usize = 4000;
+const SCORE_DRAWS: usize = 4000;
 /// Seed: a report is a function of the record alone.
-const SEED: u64 = 0x5a67_6e61_6320_0004;
+const SCORE_SEED: u64 = 0x5a67_6e61_6320_0004;
 
 /// Scores that were independent standard normal until parameters were fitted: covariance 1 − F Fᵀ.
 pub(super) struct Fitted {
@@ -81,12 +81,12 @@ impl Fitted {
 
     /// Probability that scores of a correct model give a statistic as large, by simulation with a fixed seed.
     pub fn probability(&self, observed: f64, statistic: impl Fn(&[f64]) -> f64) -> f64 {
-        let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
+        let mut rng = Xoshiro256PlusPlus::seed_from_u64(SCORE_SEED);
         let mut above = 0usize;
-        for _ in 0..DRAWS {
+        for _ in 0..SCORE_DRAWS {
             above += usize::from(statistic(self.draw(&mut rng).as_slice()) >= observed);
         }
-        (above + 1) as f64 / (DRAWS + 1) as f64
+        (above + 1) as f64 / (SCORE_DRAWS + 1) as f64
     }
 }
 
@@ -99,14 +99,14 @@ pub(super) fn probability_of_largest(observed: f64, covariance: DMatrix<f64>) ->
     for (mut column, value) in root.column_iter_mut().zip(eigen.eigenvalues.iter()) {
         column *= value.max(0.0).sqrt();
     }
-    let mut rng = Xoshiro256PlusPlus::seed_from_u64(SEED);
+    let mut rng = Xoshiro256PlusPlus::seed_from_u64(SCORE_SEED);
     let mut above = 0usize;
-    for _ in 0..DRAWS {
+    for _ in 0..SCORE_DRAWS {
         let x = DVector::from_fn(count, |_, _| StandardNormal.sample(&mut rng));
         let largest = (&root * x).iter().fold(0.0f64, |m, v| m.max(v.abs()));
         above += usize::from(largest >= observed);
     }
-    at_most_bonferroni((above + 1) as f64 / (DRAWS + 1) as f64, observed, count)
+    at_most_bonferroni((above + 1) as f64 / (SCORE_DRAWS + 1) as f64, observed, count)
 }
 
 /// Beyond what simulation resolves, the bound of Bonferroni is the smaller one.

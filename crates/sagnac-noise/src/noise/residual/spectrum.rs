@@ -9,7 +9,7 @@ const EXACT_MODES: usize = 1024;
 /// Smooth terms are computed at modes this far apart, relative, and interpolated between.
 const GRID_RATIO: f64 = 1.005;
 /// Modes that are computed one by one.
-const SINGLE: usize = 200;
+const SINGLE_MODES: usize = 200;
 
 /// A composite as one term of coefficient 1.
 pub(super) struct ModelSpectrum<'a> {
@@ -65,7 +65,7 @@ impl ModelSpectrum<'_> {
         let mut power = Vec::with_capacity(blocks.saturating_sub(1));
         let (mut from, mut value) = (0usize, 0.0);
         for k in 1..blocks {
-            if k <= SINGLE || blocks < 4 * SINGLE {
+            if k <= SINGLE_MODES || blocks < 4 * SINGLE_MODES {
                 value = self.smooth(&bin(k));
                 power.push(value);
                 from = k;
@@ -121,18 +121,22 @@ pub(super) fn log_gradients(
     described: &Described,
     quantity: impl Fn(&Composite) -> Vec<f64>,
 ) -> Vec<Vec<f64>> {
-    const STEP: f64 = 1e-3;
+    const RELATIVE_STEP: f64 = 1e-3;
     let positive = |v: &f64| *v > 0.0 && v.is_finite();
     described
         .parameters
         .iter()
         .map(|p| {
             let at = described.model.value(*p);
-            let up = quantity(&described.model.with(*p, at * (1.0 + STEP)));
-            let down = quantity(&described.model.with(*p, at * (1.0 - STEP)));
+            let up = quantity(&described.model.with(*p, at * (1.0 + RELATIVE_STEP)));
+            let down = quantity(&described.model.with(*p, at * (1.0 - RELATIVE_STEP)));
             let pairs = up.iter().zip(&down);
             pairs
-                .map(|(u, d)| if positive(u) && positive(d) { (u / d).ln() / (2.0 * STEP) } else { 0.0 })
+                .map(
+                    |(u, d)| {
+                        if positive(u) && positive(d) { (u / d).ln() / (2.0 * RELATIVE_STEP) } else { 0.0 }
+                    },
+                )
                 .collect()
         })
         .collect()

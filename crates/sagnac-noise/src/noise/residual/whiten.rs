@@ -12,7 +12,7 @@ const MIN_BLOCK_MEANS: usize = 256;
 /// Means in which a jump in place of slow noise is looked for, at most.
 const MAX_MEANS_OF_JUMP: usize = 4096;
 /// Share of a block that its samples must fill.
-const FILLED: f64 = 0.5;
+const MIN_FILLED_SHARE: f64 = 0.5;
 
 /// A whitened series: white noise of variance 1 when the model is right.
 #[derive(Debug, Clone, PartialEq)]
@@ -54,7 +54,7 @@ pub fn whitened(record: &SpectralRecord<'_>, model: &Composite) -> Option<Whiten
     let present: Vec<bool> = means
         .iter()
         .zip(&blocks.count)
-        .map(|(m, c)| m.is_finite() && f64::from(*c) >= FILLED * full)
+        .map(|(m, c)| m.is_finite() && f64::from(*c) >= MIN_FILLED_SHARE * full)
         .collect();
     let range = longest(&present);
     if range.len() < MIN_BLOCK_MEANS {

@@ -14,10 +14,10 @@ pub(super) fn normal(rng: &mut Xoshiro256PlusPlus) -> f64 {
 }
 
 /// Spacing of the correlation times, as a ratio. The ripple of the sum is 2 sech(π²/ln ratio) = 0.3 %.
-const RATIO: f64 = 4.0;
+const CORRELATION_TIME_RATIO: f64 = 4.0;
 /// Processes slower than this many samples are driven by uniform numbers: their values are sums of so many of them
 /// that no test could tell them from normal ones.
-const SLOW: f64 = 1.0 / 64.0;
+const SLOW_RATE_PER_SAMPLE: f64 = 1.0 / 64.0;
 
 /// 1/f noise as a sum of averaged Gauss-Markov processes with geometrically spaced correlation times, each exact as
 /// an ARMA(1,1) series of box averages.
@@ -39,7 +39,7 @@ pub(super) struct Markov {
 
 impl Flicker {
     pub(super) fn new(b: f64, tau0_s: f64, lowest_hz: f64, mut rng: Xoshiro256PlusPlus) -> Flicker {
-        let spacing = RATIO.ln();
+        let spacing = CORRELATION_TIME_RATIO.ln();
         let variance = b * b / PI * spacing;
         // Rates times τ0. Below the slowest lies (2/π)·rate/ω of the density; above the fastest all is white.
         let slowest = (0.02 * 2.0 * PI * lowest_hz * tau0_s).clamp(1e-12, 1.0);
@@ -47,16 +47,16 @@ impl Flicker {
         let mut rate = slowest;
         while rate < 64.0 {
             let process = Markov::new(rate, variance.sqrt(), &mut rng);
-            if rate < SLOW {
+            if rate < SLOW_RATE_PER_SAMPLE {
                 slow.push(process)
             } else {
                 fast.push(process)
             }
-            rate *= RATIO;
+            rate *= CORRELATION_TIME_RATIO;
         }
         // Each faster process adds 2σ²/rate·(1 − 1/rate) to the variance of a sample.
-        let tail = 1.0 / (1.0 - 1.0 / RATIO);
-        let tail2 = 1.0 / (1.0 - 1.0 / (RATIO * RATIO));
+        let tail = 1.0 / (1.0 - 1.0 / CORRELATION_TIME_RATIO);
+        let tail2 = 1.0 / (1.0 - 1.0 / (CORRELATION_TIME_RATIO * CORRELATION_TIME_RATIO));
         let rest = 2.0 * variance * (tail / rate - tail2 / (rate * rate));
         Flicker { fast, slow, rest_sigma: rest.sqrt(), rng }
     }

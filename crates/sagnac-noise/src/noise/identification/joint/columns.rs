@@ -1,6 +1,6 @@
 //! Expected band powers of each part for a coefficient of 1.
 
-use super::model::BASE;
+use super::model::BASE_TERMS;
 use crate::noise::composite::{
     Bandwidth, Composite, Damped, Densities, Modes, Sampling, Windowed, averaged_white_mode, filtered_white,
     sampled_density,
@@ -103,7 +103,8 @@ impl Spectral for Process {
 
 /// The columns of N, B, K and Q behind a filter.
 pub(super) fn base(evidence: &Evidence, filter: Option<Bandwidth>, sampling: Sampling) -> Vec<Vec<f64>> {
-    BASE.iter()
+    BASE_TERMS
+        .iter()
         .map(|term| {
             if filter.is_none() && sampling == Sampling::Averaging {
                 return evidence.expectation(term);
@@ -139,7 +140,7 @@ impl Columns {
 
 /// Expected power of each band under a model, (deg/h)²/Hz, without its ramp and lines.
 pub fn expected_power(evidence: &Evidence, model: &Composite) -> Vec<f64> {
-    let coefficients = BASE.iter().map(|t| model.terms.coefficient(*t).powi(2));
+    let coefficients = BASE_TERMS.iter().map(|t| model.terms.coefficient(*t).powi(2));
     let base = base(evidence, model.bandwidth, model.sampling).into_iter().zip(coefficients);
     let damped = model.markov.iter().chain(&model.quasi_periodic);
     let damped = damped.map(|d| (process(evidence, d, model.sampling), d.rms_deg_h.powi(2)));

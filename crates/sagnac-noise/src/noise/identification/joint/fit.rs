@@ -5,7 +5,7 @@ use super::super::likelihood::{
 };
 use super::super::misfit::WhitenedBand;
 use super::columns::{Base, Columns, base, process};
-use super::model::{BASE, Free, JointPoint, ProcessKind, Shape, Variable};
+use super::model::{BASE_TERMS, Free, JointPoint, ProcessKind, Shape, Variable};
 use crate::noise::composite::{Bandwidth, Damped, Sampling};
 use crate::noise::evidence::Evidence;
 use crate::numeric::optimize::{bounded_quadratic, shortened_steps};
@@ -136,7 +136,7 @@ impl<'a> Joint<'a> {
                 out.push(Variable::FilterTime);
             }
             for (i, (_, d)) in shape.damped.iter().enumerate() {
-                if free.variance.get(BASE.len() + i) == Some(&true) {
+                if free.variance.get(BASE_TERMS.len() + i) == Some(&true) {
                     out.push(Variable::DecayTime(i));
                     if d.frequency_hz > 0.0 {
                         out.push(Variable::Frequency(i));
@@ -200,7 +200,8 @@ impl<'a> Joint<'a> {
                 }
                 Variable::DecayTime(i) | Variable::Frequency(i) => {
                     let up = self.moved(&point.shape, *variable, DERIVATIVE_STEP);
-                    let Some(((_, d), v)) = up.damped.get(i).zip(point.variance.get(BASE.len() + i)) else {
+                    let Some(((_, d), v)) = up.damped.get(i).zip(point.variance.get(BASE_TERMS.len() + i))
+                    else {
                         return vec![0.0; self.bands.len()];
                     };
                     let then = self.restrict(vec![process(self.evidence, d, self.sampling)]);
@@ -342,7 +343,7 @@ impl<'a> Joint<'a> {
     /// Moves free variances that are exactly zero off the boundary, so that the first step sees a gradient of their terms.
     fn leave_boundary(&self, point: &mut JointPoint, columns: &Columns, free: &Free) {
         let s = self.density(columns, &point.variance);
-        point.variance.resize(BASE.len() + point.shape.damped.len(), 0.0);
+        point.variance.resize(BASE_TERMS.len() + point.shape.damped.len(), 0.0);
         let any = s.iter().any(|s| *s > 0.0);
         for (i, column) in columns.all().enumerate() {
             let held = free.held == Some(Variable::Variance(i));

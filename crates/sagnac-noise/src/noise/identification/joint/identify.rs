@@ -1,10 +1,10 @@
 //! Identification with every kind of term.
 
 use super::super::claims::{
-    B, K, LIMIT_COVERAGE, LIMIT_RISE, METHOD, MIN_RIVAL_RATIO, MIN_SUSPICION_RATIO, R, TERM_PRICE,
+    B, K, LIMIT_COVERAGE, LIMIT_RISE, MIN_RIVAL_RATIO, MIN_SUSPICION_RATIO, R, TERM_PRICE, WHITTLE_METHOD,
     contains_term, is_claimable, low_frequency_note, rival_of, suspects, with_rivals,
 };
-use super::super::linear_fit::RAMP;
+use super::super::linear_fit::RAMP_INDEX;
 use super::super::misfit::Misfit;
 use super::super::options::Options;
 use super::super::profile::wider;
@@ -13,7 +13,7 @@ use super::super::standard::{identify_standard, slow_choice};
 use super::ends::usable_evidence;
 use super::fit::Joint;
 use super::interval::{JointProfile, parameter_covariance};
-use super::model::{BASE, Extras, Free, JointPoint, ProcessKind, Shape, Variable};
+use super::model::{BASE_TERMS, Extras, Free, JointPoint, ProcessKind, Shape, Variable};
 use super::plateau::Plateau;
 use super::revise::{
     Part, backward_elimination, quantization_price, unresolved, with_filter_instead, without,
@@ -127,7 +127,7 @@ struct ShapeFits {
 impl ShapeFits {
     fn of(joint: &Joint<'_>, shape: &Shape, options: &Options) -> Option<ShapeFits> {
         let slow = Slow::of(joint, shape, &options.standard.slow)?;
-        let ramp = contains_term(slow.choice.set, RAMP);
+        let ramp = contains_term(slow.choice.set, RAMP_INDEX);
         let full = if ramp { slow.sloped.clone() } else { slow.level.clone() };
         if !full.deviance.is_finite() {
             return None;
@@ -197,7 +197,7 @@ impl ShapeFits {
             }
         }
         out.model = model;
-        out.ambiguous = (0..BASE.len()).any(|i| self.free.variance[i] && !self.claimed[i]);
+        out.ambiguous = (0..BASE_TERMS.len()).any(|i| self.free.variance[i] && !self.claimed[i]);
         let (variables, covariance) = parameter_covariance(joint, point, &self.free);
         out.covariance = base_covariance(&variables, &covariance);
         out.misfit = Misfit::of(joint.evidence(), &joint.whitened(point), variables.len());
@@ -242,14 +242,15 @@ impl ShapeFits {
             }
         }
         let (id, unit) = IDS[0];
-        let estimate = Estimate::measured(id, channel, value, unit, spread, METHOD).note(plateau.note());
+        let estimate =
+            Estimate::measured(id, channel, value, unit, spread, WHITTLE_METHOD).note(plateau.note());
         Some((plateau, estimate))
     }
 
     /// The estimate of one of [`TERMS`].
     fn base_estimate(&self, channel: &str, joint: &Joint<'_>, term: usize) -> Estimate {
         let (id, unit) = IDS[term];
-        let variable = if term == RAMP { Variable::Ramp } else { Variable::Variance(term) };
+        let variable = if term == RAMP_INDEX { Variable::Ramp } else { Variable::Variance(term) };
         let free = self.free.clone();
         if self.claimed[term] {
             let (best, mut spread) = self.profile(joint, variable, &free);
@@ -268,12 +269,12 @@ impl ShapeFits {
                 wide.variance[rival] = true;
                 spread = wider(value, &spread, &self.profile(joint, variable, &wide).1);
             }
-            let estimate = Estimate::measured(id, channel, value, unit, spread, METHOD);
+            let estimate = Estimate::measured(id, channel, value, unit, spread, WHITTLE_METHOD);
             return with_rivals(estimate, term, self.slow.preference[term]);
         }
         // A limit must hold whatever else is in the record: the largest over the rivals being free and being absent.
-        let mut open = Free::all(&self.supported.shape, self.claimed[RAMP], true);
-        if term == RAMP {
+        let mut open = Free::all(&self.supported.shape, self.claimed[RAMP_INDEX], true);
+        if term == RAMP_INDEX {
             open.ramp = true;
         }
         let mut limits = vec![];
@@ -302,19 +303,20 @@ impl ShapeFits {
             _ => alone.variance[term] = true,
         }
         let likely = joint.maximise(&start, &alone).reported(variable).abs();
-        let estimate = Estimate::not_identifiable(id, channel, limit, unit, METHOD).most_likely(Some(likely));
-        let ambiguous = (0..BASE.len()).any(|i| self.free.variance[i] && !self.claimed[i]);
-        let needed = term != 0 && self.free.variance.get(term) == Some(&true) && term != RAMP;
+        let estimate =
+            Estimate::not_identifiable(id, channel, limit, unit, WHITTLE_METHOD).most_likely(Some(likely));
+        let ambiguous = (0..BASE_TERMS.len()).any(|i| self.free.variance[i] && !self.claimed[i]);
+        let needed = term != 0 && self.free.variance.get(term) == Some(&true) && term != RAMP_INDEX;
         if ambiguous && needed { estimate.note(low_frequency_note()) } else { estimate }
     }
 
     fn report_parts(&self, channel: &str, joint: &Joint<'_>, out: &mut Identification) {
         let measured = |id: &'static str, unit: &'static str, variable: Variable| {
             let (best, spread) = self.profile(joint, variable, &self.free);
-            Estimate::measured(id, channel, best.reported(variable), unit, spread, METHOD)
+            Estimate::measured(id, channel, best.reported(variable), unit, spread, WHITTLE_METHOD)
         };
         for (i, (kind, _)) in self.supported.shape.damped.iter().enumerate() {
-            let sigma = Variable::Variance(BASE.len() + i);
+            let sigma = Variable::Variance(BASE_TERMS.len() + i);
             match kind {
                 ProcessKind::Markov => out.markov.push(MarkovFound {
                     sigma: measured("markov_sigma", "deg/h", sigma),
@@ -333,7 +335,7 @@ impl ShapeFits {
             None => None,
             Some(filter @ Bandwidth::MovingAverage { .. }) => {
                 let value = filter.cutoff_hz(joint.evidence().tau0_s);
-                Some(Estimate::measured(id, channel, value, "Hz", Spread::Unknown, METHOD))
+                Some(Estimate::measured(id, channel, value, "Hz", Spread::Unknown, WHITTLE_METHOD))
             }
             Some(Bandwidth::FirstOrder { .. }) => {
                 let (best, spread) = self.profile(joint, Variable::FilterTime, &self.free);
@@ -345,7 +347,7 @@ impl ShapeFits {
                     other => other,
                 };
                 let value = cutoff(best.reported(Variable::FilterTime));
-                Some(Estimate::measured(id, channel, value, "Hz", spread, METHOD))
+                Some(Estimate::measured(id, channel, value, "Hz", spread, WHITTLE_METHOD))
             }
         };
     }
@@ -359,12 +361,12 @@ fn supported(
     claimed: &[bool; 5],
     ramp: bool,
 ) -> (JointPoint, Free) {
-    let open: Vec<usize> = (0..BASE.len()).filter(|i| !claimed[*i] && *i != 3).collect();
+    let open: Vec<usize> = (0..BASE_TERMS.len()).filter(|i| !claimed[*i] && *i != 3).collect();
     let mut best: Option<(f64, JointPoint, Free)> = None;
     for set in 0..1usize << open.len() {
         let mut free = Free::all(shape, ramp, true);
         let mut start = full.clone();
-        for (i, claimed) in claimed.iter().enumerate().take(BASE.len()) {
+        for (i, claimed) in claimed.iter().enumerate().take(BASE_TERMS.len()) {
             let in_set = open.iter().position(|o| *o == i).is_some_and(|p| set >> p & 1 == 1);
             if !claimed && !in_set {
                 free.variance[i] = false;
@@ -382,8 +384,8 @@ fn supported(
 
 fn base_covariance(variables: &[Variable], covariance: &[Vec<f64>]) -> [[f64; 5]; 5] {
     let place = |v: &Variable| match v {
-        Variable::Variance(i) if *i < BASE.len() => Some(*i),
-        Variable::Ramp => Some(RAMP),
+        Variable::Variance(i) if *i < BASE_TERMS.len() => Some(*i),
+        Variable::Ramp => Some(RAMP_INDEX),
         _ => None,
     };
     let mut out = [[0.0; 5]; 5];

@@ -2,12 +2,12 @@
 
 use super::super::profile::{Trace, trace_curve};
 use super::fit::Joint;
-use super::model::{BASE, Free, JointPoint, Variable};
+use super::model::{BASE_TERMS, Free, JointPoint, Variable};
 use crate::estimate::Spread;
 use nalgebra::DMatrix;
 
 /// Normal score between its points.
-const SPACING: f64 = 0.6;
+const SCORE_SPACING: f64 = 0.6;
 
 /// The covariance of the variables of a fit, in the units they are reported in, the ramp last where it is free.
 ///
@@ -23,7 +23,7 @@ pub fn parameter_covariance(
     variables.retain(|v| match v {
         Variable::Variance(i) => point.variance.get(*i).is_some_and(|v| *v > 0.0),
         Variable::DecayTime(i) | Variable::Frequency(i) => {
-            point.variance.get(BASE.len() + i).is_some_and(|v| *v > 0.0)
+            point.variance.get(BASE_TERMS.len() + i).is_some_and(|v| *v > 0.0)
         }
         _ => true,
     });
@@ -138,7 +138,7 @@ impl<'a> JointProfile<'a> {
             *point = self.fit(value, point);
             point.deviance - self.top
         };
-        let trace = Trace { first_step: SPACING, spacing: SPACING, max_points: 24 };
+        let trace = Trace { first_step: SCORE_SPACING, spacing: SCORE_SPACING, max_points: 24 };
         trace_curve(value, trace, self.best.clone(), next, rise)
     }
 

@@ -6,11 +6,11 @@ use crate::noise::evidence::Zone;
 use crate::noise::model::NoiseModel;
 
 /// Terms with a spectrum that every model may have, in the order of their variances.
-pub const BASE: [NoiseType; 4] =
+pub const BASE_TERMS: [NoiseType; 4] =
     [NoiseType::AngleRandomWalk, NoiseType::Flicker, NoiseType::RateRandomWalk, NoiseType::Quantization];
 
 /// Position of quantisation among the variances.
-pub const QUANTIZATION: usize = 3;
+pub const QUANTIZATION_INDEX: usize = 3;
 /// Parts accepted at most.
 pub const MAX_PROCESSES: usize = 4;
 /// Shortest correlation time that is told from white noise, sample intervals: the corner then lies at half the Nyquist
@@ -76,7 +76,8 @@ impl JointPoint {
     pub fn composite(&self, sampling: Sampling) -> Composite {
         let mut out =
             Composite { terms: self.terms(), bandwidth: self.shape.filter, sampling, ..Default::default() };
-        for ((kind, process), variance) in self.shape.damped.iter().zip(self.variance.iter().skip(BASE.len()))
+        for ((kind, process), variance) in
+            self.shape.damped.iter().zip(self.variance.iter().skip(BASE_TERMS.len()))
         {
             let process = Damped { rms_deg_h: variance.max(0.0).sqrt(), ..*process };
             match kind {
@@ -156,8 +157,8 @@ impl JointPoint {
         Some(match variable {
             Variable::Ramp => Parameter::Coefficient(NoiseType::RateRamp),
             Variable::FilterTime => Parameter::FilterTime,
-            Variable::Variance(i) if i < BASE.len() => Parameter::Coefficient(*BASE.get(i)?),
-            Variable::Variance(i) => match place(i - BASE.len())? {
+            Variable::Variance(i) if i < BASE_TERMS.len() => Parameter::Coefficient(*BASE_TERMS.get(i)?),
+            Variable::Variance(i) => match place(i - BASE_TERMS.len())? {
                 (ProcessKind::Markov, j) => Parameter::MarkovSigma(j),
                 (ProcessKind::QuasiPeriodic, j) => Parameter::QuasiPeriodicRms(j),
             },
@@ -186,7 +187,7 @@ pub struct Free {
 impl Free {
     /// Every variance of a shape; the ramp and the times and frequencies as asked.
     pub fn all(shape: &Shape, ramp: bool, nonlinear: bool) -> Free {
-        Free { variance: vec![true; BASE.len() + shape.damped.len()], nonlinear, ramp, held: None }
+        Free { variance: vec![true; BASE_TERMS.len() + shape.damped.len()], nonlinear, ramp, held: None }
     }
 }
 

@@ -87,7 +87,7 @@ impl Plateau {
         }
     }
 
-    /// What the level is known to, from a fit. The level is that of a stretch of the spectrum: its square is nearly
+    /// Spread of the level, from a fit. The level is that of a stretch of the spectrum: its square is nearly
     /// normal by its logarithm, whatever its parts are known to.
     pub(super) fn spread(&self, joint: &Joint<'_>, point: &JointPoint, free: &Free) -> Spread {
         let (variables, covariance) = parameter_covariance(joint, point, free);

@@ -2,12 +2,12 @@
 //! of a Markov process, and parts that cannot be told from one another near the upper end of the spectrum cost more.
 
 use super::super::claims::{SlowPrices, contains_term};
-use super::super::linear_fit::RAMP;
+use super::super::linear_fit::RAMP_INDEX;
 use super::super::options::ProcessThresholds;
 use super::fit::Joint;
 use super::interval::parameter_covariance;
 use super::model::{
-    BASE, Extras, Free, JointPoint, MIN_TIME_SAMPLES, ProcessKind, QUANTIZATION, Shape, Variable,
+    BASE_TERMS, Extras, Free, JointPoint, MIN_TIME_SAMPLES, ProcessKind, QUANTIZATION_INDEX, Shape, Variable,
 };
 use super::search::shows_filter;
 use super::slow::Slow;
@@ -62,12 +62,12 @@ pub(super) fn backward_elimination(
     if usize::from(shape.filter.is_some()) + shape.damped.len() < 2 {
         return None;
     }
-    let ramp = contains_term(slow.choice.set, RAMP);
+    let ramp = contains_term(slow.choice.set, RAMP_INDEX);
     let less_by = |part: Part, threshold: f64| {
         let less = without_shape(shape, part);
         let mut start = JointPoint { shape: less.clone(), ..full.clone() };
         if let Part::Damped(i) = part {
-            start.variance.remove(BASE.len() + i);
+            start.variance.remove(BASE_TERMS.len() + i);
         }
         let free = Free::all(&less, ramp, true);
         // From afresh too: what is left may stand where only the part could hold it.
@@ -148,13 +148,13 @@ fn confounds_white(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> bool {
     }
     let mut free = Free::all(&point.shape, ramp, true);
     let mut sigma = |quantization: bool| {
-        free.variance[QUANTIZATION] = quantization;
+        free.variance[QUANTIZATION_INDEX] = quantization;
         sigma_of_white(joint, point, &free)
     };
     match (sigma(true), sigma(false)) {
         (Some(with), Some(without)) => with > CONFOUNDING_GROWTH * without,
         // Where N has vanished, quantisation stands in its place.
-        _ => point.variance.get(QUANTIZATION).is_some_and(|v| *v > 0.0) && !point.shape.is_plain(),
+        _ => point.variance.get(QUANTIZATION_INDEX).is_some_and(|v| *v > 0.0) && !point.shape.is_plain(),
     }
 }
 
@@ -168,7 +168,7 @@ pub(super) fn filter_price(
 ) -> f64 {
     let sigma = |shape: Shape| {
         let mut free = Free::all(&shape, ramp, true);
-        free.variance[QUANTIZATION] = point.variance.get(QUANTIZATION).is_some_and(|v| *v > 0.0);
+        free.variance[QUANTIZATION_INDEX] = point.variance.get(QUANTIZATION_INDEX).is_some_and(|v| *v > 0.0);
         sigma_of_white(joint, &JointPoint { shape, ..point.clone() }, &free)
     };
     let without = Shape { filter: None, ..point.shape.clone() };

@@ -4,8 +4,8 @@ use super::super::options::ProcessThresholds;
 use super::ends::usable_evidence;
 use super::fit::Joint;
 use super::model::{
-    Extras, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, MIN_TIME_SAMPLES, ProcessKind, QUANTIZATION,
-    Shape,
+    Extras, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, MIN_TIME_SAMPLES, ProcessKind,
+    QUANTIZATION_INDEX, Shape,
 };
 use super::peaks::strongest;
 use crate::noise::composite::{Bandwidth, Damped, Part, Sampling};
@@ -86,7 +86,7 @@ fn refined(joint: &Joint<'_>, point: &JointPoint, ramp: bool) -> JointPoint {
 fn with_priced_quantization(joint: &Joint<'_>, point: &JointPoint, ramp: bool, price: f64) -> f64 {
     let mut free = Free::all(&point.shape, ramp, true);
     let mut start = point.clone();
-    (free.variance[QUANTIZATION], start.variance[QUANTIZATION]) = (false, 0.0);
+    (free.variance[QUANTIZATION_INDEX], start.variance[QUANTIZATION_INDEX]) = (false, 0.0);
     joint.maximise(&start, &free).deviance.min(point.deviance + price)
 }
 
@@ -191,8 +191,8 @@ fn markovs(
     Some(Candidate { point, zones: found.zones.clone(), excess })
 }
 
-/// What bends the spectrum at the upper edge of a range that was cut is the beginning of what was cut off: no process, filter or
-/// resonance with its corner there.
+/// True for a corner at the upper edge of a range that was cut: a bend there is the beginning of what was cut off, and no process,
+/// filter or resonance.
 fn bends_at_the_edge(evidence: &Evidence, corner_hz: f64) -> bool {
     edge_hz(evidence).is_some_and(|edge_hz| MIN_EDGE_DISTANCE * corner_hz > edge_hz)
 }

@@ -1,9 +1,11 @@
 //! Flicker, random walk, ramp and long Markov processes beside the other parts of a model.
 
-use super::super::claims::{B, K, R, SETS, SlowChoice, SlowPrices, SlowSet};
+use super::super::claims::{B, K, R, SLOW_SET_COUNT, SlowChoice, SlowPrices, SlowSet};
 use super::super::result::Identification;
 use super::fit::Joint;
-use super::model::{BASE, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, ProcessKind, Shape, Variable};
+use super::model::{
+    BASE_TERMS, Free, JointPoint, MAX_PROCESSES, MAX_TIME_SHARE, ProcessKind, Shape, Variable,
+};
 use crate::message::note;
 use crate::noise::composite::Damped;
 
@@ -22,7 +24,7 @@ pub(super) struct Slow {
     pub level: JointPoint,
     pub sloped: JointPoint,
     /// Plain deviance of each set.
-    pub deviance: [f64; SETS],
+    pub deviance: [f64; SLOW_SET_COUNT],
     /// The set chosen.
     pub choice: SlowChoice,
     /// By how much the best set without each of N, B, K, Q and R costs more.
@@ -59,13 +61,13 @@ impl Slow {
     pub fn of(joint: &Joint<'_>, shape: &Shape, prices: &SlowPrices) -> Option<Slow> {
         let level = joint.best(shape, false);
         let sloped = joint.best(shape, true);
-        let mut deviance = [f64::INFINITY; SETS];
+        let mut deviance = [f64::INFINITY; SLOW_SET_COUNT];
         for (set, value) in deviance.iter_mut().enumerate() {
             let near = if set & R == 0 { &level } else { &sloped };
             *value = fitted(joint, near, set).deviance;
         }
         // A larger set is never worse: what says otherwise is a fit that stopped early.
-        for set in 0..SETS {
+        for set in 0..SLOW_SET_COUNT {
             for part in [B, K, R] {
                 if set & part != 0 && deviance[set ^ part] < deviance[set] {
                     deviance[set] = deviance[set ^ part];
@@ -150,7 +152,8 @@ pub(super) fn long_markov(
         })
         .min_by(|a, b| a.0.total_cmp(&b.0))?;
     let time_s = point.shape.damped.last()?.1.decay_time_s;
-    let sigma = point.variance.get(BASE.len() + shape.damped.len()).copied().unwrap_or(0.0).max(0.0).sqrt();
+    let sigma =
+        point.variance.get(BASE_TERMS.len() + shape.damped.len()).copied().unwrap_or(0.0).max(0.0).sqrt();
     let excess = cost + prices.in_place_of(choice.set) - choice.cost;
     let usable = sigma > 0.0 && time_s <= longest_s && excess < TOLD_EXCESS;
     usable.then_some(LongMarkov { shape: point.shape, excess, sigma, time_s })
