@@ -7,11 +7,10 @@ use super::model::Procedure;
 use super::quantity;
 use super::reader::{Reader, meant, shorten};
 use super::tables::derived::{DerivedKeys, DerivedLimitKeys};
-use crate::estimate::Rule;
 use crate::formula::{Channels, Formula, Reference};
 use crate::i18n::{Note, note};
 use crate::measurand;
-use crate::units::{Unit, UnitError};
+use crate::units::Unit;
 use sagnac_core::spelling::nearest;
 
 /// Reads the formulas.

@@ -5,6 +5,7 @@ use crate::config::section::Section;
 use crate::config::spec::{Kind, TableSpec, Word};
 use crate::config::table::{Table, empty, words};
 use crate::recording::ColumnRef;
+use std::path::PathBuf;
 use std::time::Duration;
 
 /// A file of watch rules as a whole.

@@ -1,7 +1,6 @@
 //! The file formats of the targets.
 
-use super::axis::Axis;
-use super::quantity::{Quantity, Source};
+use super::quantity::Source;
 use super::target::{AXES, Sheet};
 use std::fmt::Write;
 
