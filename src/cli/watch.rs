@@ -22,7 +22,7 @@ use crate::record::{
 };
 use crate::report::lot::unit_done;
 use crate::report::{Results, page};
-use crate::watch::folder::{Found, Stamp, Stillness, age, found};
+use crate::watch::folder::{Found, Listing, Stamp, Stillness, age, found};
 use crate::watch::identity::{TestedBy, VERSION, hash_of};
 use crate::watch::journal::{Journal, Seen, Tested};
 use crate::watch::lock::{TEST_LOCK, WATCHER_LOCK, take};
@@ -237,7 +237,8 @@ impl<'a> Watch<'a> {
             rule.refresh(self.lang)?;
         }
         let rules: Vec<WatchRule> = self.rules.iter().map(|active| active.rule.clone()).collect();
-        let (files, refused) = found(self.folder(), &rules).map_err(|note| place::error(&note, self.lang))?;
+        let Listing { files, refused } =
+            found(self.folder(), &rules).map_err(|note| place::error(&note, self.lang))?;
         let now = Instant::now();
         self.still.keep(&files.iter().map(|f| f.path.as_path()).collect());
         let mut untested: Vec<Untested> =

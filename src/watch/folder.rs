@@ -65,13 +65,21 @@ pub struct Found {
     pub rule: usize,
 }
 
-/// The files that rules fit, sorted by name, and those that cannot be read with the reasons.
+/// The files of a folder, both lists sorted by name.
+pub struct Listing {
+    /// Files that rules fit.
+    pub files: Vec<Found>,
+    /// Files that rules fit but that cannot be read, with the reasons.
+    pub refused: Vec<(String, Note)>,
+}
+
+/// The files that rules fit and those that cannot be read.
 ///
 /// Links are not followed, hidden files and folders are passed over.
 ///
 /// # Errors
 /// A note where the folder itself cannot be read.
-pub fn found(folder: &Path, rules: &[WatchRule]) -> Result<(Vec<Found>, Vec<(String, Note)>), Note> {
+pub fn found(folder: &Path, rules: &[WatchRule]) -> Result<Listing, Note> {
     let patterns: Vec<String> = rules.iter().map(|r| r.pattern.replace(SERIAL_PLACE, "*")).collect();
     let depth = patterns.iter().map(|p| p.matches('/').count()).max().unwrap_or(0);
     let (mut files, mut refused) = (vec![], vec![]);
@@ -123,7 +131,7 @@ pub fn found(folder: &Path, rules: &[WatchRule]) -> Result<(Vec<Found>, Vec<(Str
     }
     files.sort();
     refused.sort_by(|a, b| a.0.cmp(&b.0));
-    Ok((files, refused))
+    Ok(Listing { files, refused })
 }
 
 /// How long files have stood still, as far as this process has seen.
@@ -173,7 +181,7 @@ mod tests {
         #[cfg(unix)]
         std::os::unix::fs::symlink("a.csv", folder.path().join("link.csv")).unwrap();
         let rules = [rule("a.*"), rule("*.csv"), rule("{serial}/*.csv")];
-        let (files, refused) = found(folder.path(), &rules).unwrap();
+        let Listing { files, refused } = found(folder.path(), &rules).unwrap();
         let found: Vec<(&str, usize)> = files.iter().map(|f| (f.name.as_str(), f.rule)).collect();
         assert_eq!(found, [("SN-1/a.csv", 2), ("a.csv", 0), ("a.csv.done", 0), ("b.csv", 1)]);
         let links: Vec<&str> = refused.iter().map(|(name, _)| name.as_str()).collect();

@@ -248,7 +248,7 @@ mod tests {
         drop(journal);
         let whole = std::fs::read_to_string(&path).unwrap();
         for cut in [1, 20] {
-            std::fs::write(&path, format!("{whole}{whole}")[..whole.len() + cut].as_bytes()).unwrap();
+            std::fs::write(&path, &format!("{whole}{whole}").as_bytes()[..whole.len() + cut]).unwrap();
             let journal = Journal::open(&path, "2027-03-01").unwrap();
             assert!(journal.knows("a.csv", STAMP, "by") && !journal.knows("a.csv", STAMP, "other"));
             assert!(!journal.knows("a.csv", Stamp { bytes: 4, ..STAMP }, "by"));

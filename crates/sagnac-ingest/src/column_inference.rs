@@ -466,6 +466,7 @@ mod tests {
     use super::*;
 
     #[test]
+    #[allow(clippy::too_many_lines, reason = "one list of cases or data")]
     fn names_of_real_recordings_are_understood() {
         for (name, role, unit) in [
             ("time_s", Role::Time, "s"),

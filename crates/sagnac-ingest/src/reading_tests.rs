@@ -145,7 +145,7 @@ fn seconds_and_nanoseconds_are_one_clock() {
 
 #[test]
 fn one_sensor_of_several_is_read() {
-    let of = |i: u32| if i % 2 == 0 { "left" } else { "right" };
+    let of = |i: u32| if i.is_multiple_of(2) { "left" } else { "right" };
     let rows: String =
         (0..ROWS).map(|i| format!("{:.2},{},{}\n", INTERVAL_S * f64::from(i / 2), of(i), i % 2)).collect();
     let (_folder, path) = log(&format!("time_s,sensor,rate_dps\n{rows}"));

@@ -85,8 +85,8 @@ impl Sheet {
         // Data begin with the first of three rows that hold as many numbers as any.
         let most = rows.iter().take(200).map(|r| numbers(r)).max().unwrap_or(0);
         let full = |r: &&[Data]| 2 * numbers(r) > most;
-        let begins = rows.windows(3).position(|w| w.iter().all(|r| full(&r)));
-        let first = begins.unwrap_or_else(|| rows.iter().position(|r| full(&r)).unwrap_or(rows.len()));
+        let begins = rows.windows(3).position(|w| w.iter().all(full));
+        let first = begins.unwrap_or_else(|| rows.iter().position(full).unwrap_or(rows.len()));
         let named = first.checked_sub(1).and_then(|i| rows.get(i)).copied().unwrap_or_default();
         let width = rows.iter().map(|r| r.len()).max().unwrap_or(0);
         let columns = (0..width)
