@@ -43,7 +43,8 @@ fn a_panic_of_a_decoder_is_a_damaged_file() {
     }
     let _ = std::panic::take_hook();
     assert_eq!(MISSED.load(Ordering::Relaxed), 0, "panics that nobody caught");
-    assert_eq!(CAUGHT.load(Ordering::Relaxed), gave_up, "reading sets no hook of its own");
+    // Once when the first values are looked at, once when the file is read.
+    assert_eq!(CAUGHT.load(Ordering::Relaxed), 2 * gave_up, "reading sets no hook of its own");
     assert!(gave_up > 0, "no decoder panicked: {read} read, {refused} refused");
     println!("{read} read, {refused} refused, {gave_up} of them by a panic of the decoder");
 

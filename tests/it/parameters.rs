@@ -93,9 +93,11 @@ fn exported(unit: &str, target: &str, more: &[&str]) -> String {
     said.out
 }
 
-/// The number behind a name and what separates it.
+/// The number behind a name and what separates it; in a comment only where the name begins one.
 fn number(text: &str, name: &str) -> f64 {
-    let (_, rest) = text.split_once(name).unwrap_or_else(|| panic!("no `{name}` in\n{text}"));
+    let values = text.lines().filter(|line| name.starts_with('#') || !line.starts_with(['#', '%']));
+    let found = values.filter_map(|line| line.split_once(name)).next();
+    let (_, rest) = found.unwrap_or_else(|| panic!("no `{name}` in\n{text}"));
     let end = rest.find(|c: char| !(c.is_ascii_digit() || "+-.e".contains(c))).unwrap_or(rest.len());
     rest[..end].parse().unwrap_or_else(|e| panic!("{e} behind `{name}` in\n{text}"))
 }

@@ -341,6 +341,7 @@ fn every_example_is_accepted_by_its_own_key() {
                 "has the role",
                 "not an option",
                 "not measure",
+                "does not determine",
                 "gives a",
                 "is not declared",
                 "a warm-up test needs",
