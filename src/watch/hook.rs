@@ -54,14 +54,16 @@ pub fn pause(failures: u32) -> Duration {
     FIRST_PAUSE.saturating_mul(factor).min(LONGEST_PAUSE)
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
     use super::*;
 
+    #[cfg(unix)]
     fn command(script: &str) -> Vec<String> {
         ["sh", "-c", script].map(str::to_owned).to_vec()
     }
 
+    #[cfg(unix)]
     #[test]
     fn a_command_is_told_in_its_folder_and_a_failure_is_said() {
         let folder = tempfile::tempdir().unwrap();

@@ -47,6 +47,7 @@ const LISTED: &[(&str, &[&str])] = &[
             "recording",
             "unit",
             "value",
+            "unit_of_quantity",
             "verdict",
         ],
     ),

@@ -33,6 +33,7 @@ const ENGLISH: &[(&str, &str)] = &[
         "src/config/watch/tables.rs",
         "meanings of words of keys of watch rules: documentation, as of procedures",
     ),
+    ("crates/sagnac-ingest/src/formats/sqlite_bag.rs", "queries of a database"),
     ("src/config/model/tables.rs", "meanings of words of keys of claims: documentation, as of procedures"),
     (
         "src/config/schedule/tables.rs",
