@@ -185,11 +185,14 @@ impl<'a> Watch<'a> {
             return Err(error(note!("watch.not_a_folder", path = place::shown(&args.folder))));
         }
         outside_stores(&args.out.join(JOURNAL_FILE)).map_err(|e| error(e.note()))?;
-        std::fs::create_dir_all(&args.out).map_err(|e| refused(&args.out, &e))?;
-        let out = args.out.canonicalize().map_err(|e| refused(&args.out, &e))?;
-        if out.starts_with(&folder) {
+        // Asked before anything is made: the nearest folder that exists tells where the others would lie.
+        let absolute = std::path::absolute(&args.out).map_err(|e| refused(&args.out, &e))?;
+        let existing = absolute.ancestors().find_map(|path| path.canonicalize().ok());
+        if existing.is_some_and(|path| path.starts_with(&folder)) {
             return Err(error(note!("watch.out_inside", path = place::shown(&args.out))));
         }
+        std::fs::create_dir_all(&args.out).map_err(|e| refused(&args.out, &e))?;
+        let out = args.out.canonicalize().map_err(|e| refused(&args.out, &e))?;
         let lock = take(&out.join(WATCHER_LOCK)).map_err(|e| refused(&out, &e))?;
         let lock = lock.ok_or_else(|| error(note!("watch.taken", path = place::shown(&args.out))))?;
         let today = day(moment::now());

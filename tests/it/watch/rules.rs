@@ -9,7 +9,7 @@ use std::fs;
 #[test]
 fn a_mistake_in_the_rules_is_one_diagnostic_with_its_place() {
     for (more, place) in [
-        ("complete = \"soon\"\n", "watch.toml:7:12"),
+        ("complete = \"soon\"\n", "watch.toml:7:13"),
         ("serial_column = \"sn\"\n", "watch.toml:7:17"),
         ("hook = \"to_mes\"\n", "watch.toml:7:8"),
         ("hok = [\"to_mes\"]\n", "watch.toml:7:1"),
