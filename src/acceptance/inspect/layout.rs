@@ -1,9 +1,9 @@
-//! Plain text in aligned columns, at most 96 characters wide where words allow it.
+//! Plain text in aligned columns, at most 80 characters wide where words allow it.
 
 use crate::i18n::{Arg, Lang, Localize, Note, visible};
 
 /// Width of a line, characters.
-const LINE_WIDTH: usize = 96;
+const LINE_WIDTH: usize = 80;
 /// Width of the column of labels, characters, the space behind it included.
 const LABEL_WIDTH: usize = 19;
 
