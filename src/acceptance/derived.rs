@@ -3,7 +3,7 @@
 use super::verdict::{Against, judged};
 use crate::config::procedure::derived::DerivedSpec;
 use crate::config::procedure::{EffectiveLimits, Procedure};
-use crate::estimate::{Estimate, LowerLimit, Spread, UpperLimit};
+use crate::estimate::{Component, Estimate, InputQuantity, LowerLimit, Spread, UpperLimit};
 use crate::formula::{Channels, Input, Outcome, Reference};
 use crate::i18n::note;
 use crate::measurand;
@@ -153,8 +153,10 @@ fn in_unit(outcome: &Outcome, unit: &Unit, channel: &str) -> Estimate {
         Some(value) => Estimate::measured("", channel, value * factor, "", spread, METHOD),
         None => Estimate::not_identifiable("", channel, None, "", METHOD),
     };
+    let shared = (outcome.common > 0.0)
+        .then(|| Component::of(InputQuantity::FormulaInputs, outcome.common * factor, unit.text(), 1.0));
     Estimate {
-        common: outcome.common * factor,
+        components: shared.into_iter().collect(),
         upper_limit: outcome.upper_limit.map(|l| UpperLimit { value: l.value * factor, ..l }),
         lower_limit: outcome.lower_limit.map(|l| LowerLimit { value: l.value * factor, ..l }),
         ..estimate

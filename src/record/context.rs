@@ -1,6 +1,7 @@
 //! What stands beside the measured rows of a run: instruments, waivers, clauses, options.
 
 use super::ConditionStatus;
+use crate::estimate::InputQuantity;
 use crate::i18n::LocalText;
 use serde::{Deserialize, Serialize};
 
@@ -14,6 +15,15 @@ pub struct InstrumentRecord {
     pub name: LocalText,
     /// Serial number.
     pub serial: Option<String>,
+    /// Number of its calibration certificate.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub certificate: Option<String>,
+    /// Date of the calibration, ISO 8601.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub calibrated: Option<String>,
+    /// Component of uncertainty that its certificate states.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub component: Option<InputQuantity>,
     /// Date until which its calibration holds, ISO 8601.
     pub calibration_due: Option<String>,
     /// State on the day of the test.

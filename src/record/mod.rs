@@ -65,7 +65,7 @@ pub use siblings::{SiblingQuantity, SiblingsRecord};
 pub use table_step::TableStepRecord;
 
 use crate::estimate::{
-    Finding, Interval, Judgement, Limits, LowerLimit, Objection, Rule, UpperLimit, Verdict,
+    Component, Finding, Interval, Judgement, Limits, LowerLimit, Objection, Rule, UpperLimit, Verdict,
 };
 use crate::i18n::LocalText;
 use crate::noise::data::NoiseType;
@@ -228,6 +228,9 @@ pub struct MeasurandRecord {
     /// the value: it does not average out over units. Absent without a value, and where results do not say.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub common_standard_uncertainty: Option<f64>,
+    /// Uncertainty budget: the components of the standard uncertainty, largest first. Together they give the interval.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub budget: Vec<Component>,
     /// Whether the record can show the quantity.
     #[serde(default = "is_shown")]
     #[cfg_attr(feature = "schema", schemars(!default))]
@@ -439,6 +442,7 @@ impl LimitRecord {
 #[cfg(test)]
 mod tests {
     use crate::effect::Domain;
+    use crate::estimate::{ComponentLaw, InputQuantity};
     use crate::noise::model::TERMS;
     use crate::noise::prediction::Agreement;
     use crate::noise::residual::View;
@@ -447,6 +451,13 @@ mod tests {
     #[test]
     fn enums_are_written_by_their_ids() {
         let is = |written: serde_json::Value, id: &str| assert_eq!(written, id);
+        for input in InputQuantity::ALL {
+            is(serde_json::to_value(input).unwrap(), input.id());
+            is(serde_json::to_value(input.source()).unwrap(), input.source().id());
+            let Some(common) = input.common_to() else { continue };
+            is(serde_json::to_value(common).unwrap(), common.id());
+        }
+        is(serde_json::to_value(ComponentLaw::ChiSquare).unwrap(), ComponentLaw::ChiSquare.id());
         Domain::ALL.iter().for_each(|d| is(serde_json::to_value(d).unwrap(), d.id()));
         View::ALL.iter().for_each(|v| is(serde_json::to_value(v).unwrap(), v.id()));
         Role::ALL.iter().for_each(|r| is(serde_json::to_value(r).unwrap(), r.id()));

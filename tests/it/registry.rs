@@ -1,14 +1,60 @@
 //! Every measurand of the registry is read from `result.json` by at least one test. Those that no other test reads are held
 //! here to values worked out by hand.
 
+use crate::support::pairs::{PAIRS, sample_once};
 use crate::support::{altered, result, root, sagnac, shipped};
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_xoshiro::Xoshiro256PlusPlus;
+use sagnac::estimate::{Component, InputQuantity, spread_of};
 use sagnac::measurand::MEASURANDS;
 use serde_json::Value;
 use std::path::Path;
 use tempfile::tempdir;
+
+/// The budget of a row gives the interval that the row states: exactly where its law has a formula, and within the shape of the
+/// likelihood where it is tabulated.
+#[test]
+fn the_parts_of_every_budget_give_the_stated_interval() {
+    let (mut compared, mut of_equipment) = (0, 0);
+    for pair in &PAIRS {
+        for row in sample_once(pair.sample).result()["measurands"].as_array().unwrap() {
+            let place = format!("{}: {} of {}", pair.sample, row["id"], row["channel"]);
+            let (Some(value), Some(low), Some(high)) =
+                (row["value"].as_f64(), row["interval"]["low"].as_f64(), row["interval"]["high"].as_f64())
+            else {
+                assert!(row.get("budget").is_none(), "{place}: a budget without an interval");
+                continue;
+            };
+            if low == high {
+                continue;
+            }
+            let budget: Vec<Component> = serde_json::from_value(row["budget"].clone()).unwrap_or_default();
+            assert!(!budget.is_empty(), "{place}: an interval without a budget");
+            let shares: f64 = budget.iter().map(|c| c.share_of_variance).sum();
+            assert!((shares - 1.0).abs() < 1e-9, "{place}: shares add up to {shares}");
+            let common: f64 =
+                budget.iter().filter(|c| c.common_to.is_some()).map(|c| c.contribution.powi(2)).sum();
+            let stated = row["common_standard_uncertainty"].as_f64().unwrap();
+            assert!((common.sqrt() - stated).abs() <= 1e-9 * stated, "{place}: {common} against {stated}");
+            let width = high - low;
+            match spread_of(&budget).interval(value, 0.95) {
+                Some(again) => {
+                    let off = (again.low - low).abs().max((again.high - high).abs());
+                    assert!(off < 1e-6 * width, "{place}: {again:?} against {low} to {high}");
+                }
+                None => {
+                    let standard: f64 = budget.iter().map(|c| c.contribution.powi(2)).sum::<f64>().sqrt();
+                    let ratio = width / (2.0 * 1.96 * standard);
+                    assert!((0.5..3.0).contains(&ratio), "{place}: {ratio}");
+                }
+            }
+            compared += 1;
+            of_equipment += usize::from(budget.iter().any(|c| c.input != InputQuantity::Readings));
+        }
+    }
+    assert!(compared > 200 && of_equipment > 20, "{compared} compared, {of_equipment} with equipment");
+}
 
 #[test]
 fn every_measurand_is_named_by_a_test() {

@@ -10,11 +10,13 @@ use crate::message::Note;
 use serde::{Deserialize, Serialize};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 
+mod component;
 mod decision;
 mod distribution;
 mod objection;
 mod tail;
 
+pub use component::{CommonTo, Component, ComponentLaw, InputQuantity, UncertaintySource, spread_of};
 pub use decision::{Judgement, Limit, Limits, Rule, Verdict, judge};
 pub use distribution::student_quantile;
 pub use distribution::{chi_square_quantile, normal_probability, normal_quantile};
@@ -184,8 +186,9 @@ pub struct Estimate {
     pub unit: &'static str,
     /// Confidence distribution.
     pub spread: Spread,
-    /// Part of its standard uncertainty that all tests on the same equipment at the same site have in common, unit of the value.
-    pub common: f64,
+    /// Components of its standard uncertainty that equipment and site bring; what the spread holds beside them comes from the
+    /// readings.
+    pub components: Vec<Component>,
     /// Bound, where the value is `None`.
     pub upper_limit: Option<UpperLimit>,
     /// Where the likelihood is largest, where the value is `None`: no claim, and what errors are counted by.
@@ -217,7 +220,7 @@ impl Estimate {
             value,
             unit,
             spread,
-            common: 0.0,
+            components: vec![],
             upper_limit: None,
             most_likely: None,
             lower_limit: None,
@@ -241,7 +244,7 @@ impl Estimate {
             value: None,
             unit,
             spread: Spread::Unknown,
-            common: 0.0,
+            components: vec![],
             upper_limit,
             most_likely: None,
             lower_limit: None,
@@ -265,10 +268,10 @@ impl Estimate {
         self
     }
 
-    /// The estimate with standard uncertainties that all tests on the same equipment have in common, such as that of the table.
+    /// The estimate with the components that its spread holds beside the scatter of the readings, such as that of the table.
     #[must_use]
-    pub fn common(mut self, standard: &[f64]) -> Self {
-        self.common = standard.iter().fold(0.0, |sum, u| sum + u * u).sqrt();
+    pub fn components(mut self, components: &[Component]) -> Self {
+        self.components = components.to_vec();
         self
     }
 

@@ -1,10 +1,26 @@
 //! Instruments and the validity of their calibration.
 
 use super::diagnostics::Span;
-use crate::config::table::Table;
+use crate::config::spec::Word;
+use crate::config::table::{Table, words};
+use crate::estimate::InputQuantity;
 use crate::i18n::LocalText;
 use crate::record::{ConditionStatus, InstrumentRecord};
 use chrono::NaiveDate;
+
+/// Components of uncertainty that a certificate may state.
+const CERTIFIED_COMPONENTS: &[Word] = &[
+    ("table_rate", "Rate of the table"),
+    ("table_angle", "Angle of the table"),
+    ("axis_alignment", "Angle between the axis of the table and the input axis"),
+    ("thermometer", "Reading of the thermometer"),
+    ("influence_level", "Level of an influence such as field or supply"),
+    ("earth_rate", "Earth rate along the input axis: latitude, heading and elevation of the site"),
+];
+
+words!(InputQuantity, CERTIFIED_COMPONENTS, |word: &str| InputQuantity::ALL
+    .into_iter()
+    .find(|input| input.id() == word));
 
 /// An instrument and the validity of its calibration. A calibration that has expired on the day of the test is a
 /// condition not met.
@@ -17,6 +33,15 @@ pub struct Instrument {
     /// Serial number.
     #[key(example = "T-0412")]
     pub serial: Option<String>,
+    /// Number of its calibration certificate; it is printed with the uncertainty that it states.
+    #[key(example = "18/2026-0412")]
+    pub certificate: Option<String>,
+    /// Day of the calibration.
+    #[key(example = toml("2026-03-02"))]
+    pub calibrated: Option<NaiveDate>,
+    /// Component of uncertainty that its certificate states.
+    #[key(example = "table_rate")]
+    pub component: Option<InputQuantity>,
     /// Last day on which the calibration is valid.
     #[key(example = toml("2030-12-31"))]
     pub calibration_due: Option<NaiveDate>,
@@ -44,6 +69,9 @@ impl Instrument {
         InstrumentRecord {
             name: self.name.clone(),
             serial: self.serial.clone(),
+            certificate: self.certificate.clone(),
+            calibrated: self.calibrated.map(|d| d.to_string()),
+            component: self.component,
             calibration_due: self.calibration_due.map(|d| d.to_string()),
             status,
         }
@@ -60,6 +88,9 @@ mod tests {
         let mut instrument = Instrument {
             name: "t".into(),
             serial: Some("7".into()),
+            certificate: None,
+            calibrated: None,
+            component: None,
             calibration_due: Some(day(1)),
             required: true,
             span: 0..0,

@@ -19,10 +19,18 @@ pub fn section(part: &Part<'_>) -> Vec<Block> {
     let table = Table::new("cards", all.len())
         .column(words.column("report.instrument"), all.iter().map(|i| words.local(&i.name)))
         .column(words.column("report.serial"), all.iter().map(|i| or_nothing(&i.serial)))
+        .column(words.column("report.certificate"), all.iter().map(certificate))
         .column(words.column("report.calibration_due"), all.iter().map(|i| or_nothing(&i.calibration_due)))
         .column(words.column("report.state"), all.iter().map(|i| Value::State(state(i, record, words))));
     let hint = Block::Hint(words.t("report.instruments_declared"));
     vec![Block::section("", words.t("report.instruments"), vec![hint, Block::Table(table)])]
+}
+
+/// Number of the certificate with the day of the calibration.
+fn certificate(i: &InstrumentRecord) -> String {
+    let both = [i.certificate.as_deref(), i.calibrated.as_deref()];
+    let stated: Vec<&str> = both.into_iter().flatten().collect();
+    if stated.is_empty() { NOTHING.to_owned() } else { stated.join(", ") }
 }
 
 /// The state of the calibration of an instrument.

@@ -1,6 +1,7 @@
 //! The page of a run: the record as blocks. Every section of the page is a module, which says what it shows of the record
 //! in words and printed numbers.
 
+mod budget;
 mod checks;
 mod common;
 mod comparison;

@@ -2,7 +2,7 @@
 
 use super::part::{Part, Phase};
 use super::{
-    checks, comparison, conditions, evidence, explained, faults, figures, further, instruments,
+    budget, checks, comparison, conditions, evidence, explained, faults, figures, further, instruments,
     interval_means, limits, lines, models, phases, table_steps,
 };
 use crate::i18n::LocalText;
@@ -133,7 +133,7 @@ fn conventions(part: &Part<'_>) -> Vec<Block> {
 
 /// What the verdict rests on.
 fn shown(part: &Part<'_>) -> Vec<Block> {
-    let sections: [fn(&Part<'_>) -> Vec<Block>; 13] = [
+    let sections: [fn(&Part<'_>) -> Vec<Block>; 14] = [
         explained::section,
         conditions::remarks,
         checks::section,
@@ -144,6 +144,7 @@ fn shown(part: &Part<'_>) -> Vec<Block> {
         table_steps::section,
         lines::section,
         models::section,
+        budget::section,
         evidence::power,
         evidence::waivers,
         evidence::clauses,

@@ -52,7 +52,7 @@ impl Input {
         let mut input = Input {
             value: estimate.value,
             spread: estimate.spread.clone(),
-            common: estimate.common,
+            common: estimate.common(),
             upper_limit: estimate.upper_limit,
             lower_limit: estimate.lower_limit,
             signed,

@@ -2,7 +2,7 @@
 
 use super::descriptor::{Measurand, OfKnownInput, TurnAxis};
 use super::evidence::KnownInputEvidence;
-use crate::estimate::Estimate;
+use crate::estimate::{Component, Estimate, InputQuantity};
 use crate::message::{Arg, note};
 use crate::rate_table::combine::{evenly, spread};
 use crate::rate_table::turns::Turned;
@@ -23,9 +23,12 @@ fn evaluate(m: &Measurand, known: &KnownInputEvidence<'_>) -> Vec<Estimate> {
 
 /// A row from turns about one axis: a value whose derivative by the factor of the turns is `per_factor`.
 pub(super) fn of_turn(m: &Measurand, t: &Turned, channel: &str, value: f64, per_factor: f64) -> Estimate {
-    let scatter = spread(&t.factor, per_factor, &[per_factor * t.by_angle]);
+    let by_angle = Component::of(InputQuantity::TableAngle, t.by_angle, "1", per_factor);
+    let by_earth = Component::of(InputQuantity::EarthOverTurns, t.by_earth / 3f64.sqrt(), "1", per_factor);
+    let scatter = spread(&t.factor, per_factor, std::slice::from_ref(&by_angle));
     let spread = evenly(scatter, value, per_factor * t.by_earth);
     m.measured(channel, value, spread, "known_angles")
+        .components(&[by_angle, by_earth])
         .note(note!("known.turns", axis = Arg::Text(t.axis.clone())))
 }
 

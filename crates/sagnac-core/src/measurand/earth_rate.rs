@@ -1,7 +1,7 @@
 //! Earth rate along the input axis, from the site.
 
 use super::descriptor::Measurand;
-use crate::estimate::Spread;
+use crate::estimate::{Component, InputQuantity, Spread};
 
 /// Earth rate along the input axis.
 pub static EARTH_RATE_COMPONENT: Measurand = Measurand::at_rest(
@@ -11,7 +11,8 @@ pub static EARTH_RATE_COMPONENT: Measurand = Measurand::at_rest(
     |m, gyro, _| {
         let Some(earth) = gyro.earth else { return vec![] };
         let spread = Spread::Normal { standard_uncertainty: earth.uncertainty_deg_h };
-        vec![m.measured(&gyro.channel, earth.rate_deg_h, spread, "from_site")]
+        let of_site = Component::of(InputQuantity::EarthRate, earth.uncertainty_deg_h, "deg/h", 1.0);
+        vec![m.measured(&gyro.channel, earth.rate_deg_h, spread, "from_site").components(&[of_site])]
     },
 )
 .signed()

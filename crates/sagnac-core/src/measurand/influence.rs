@@ -2,7 +2,7 @@
 
 use super::descriptor::Measurand;
 use super::evidence::ComparisonEvidence;
-use crate::estimate::Estimate;
+use crate::estimate::{Component, Estimate, InputQuantity};
 use crate::influence::Influence;
 use crate::influence::comparison::Comparison;
 use crate::message::{Arg, Note, note};
@@ -54,12 +54,16 @@ const METHOD: &str = "alternating_intervals";
 /// One row an axis.
 fn sensitivity(m: &Measurand, compared: &ComparisonEvidence<'_>) -> Vec<Estimate> {
     let found = compared.bias;
-    let u = found.test.level_uncertainty * found.test.influence.degree();
     let rows = found.axes.iter().zip(&found.per_unit).enumerate().map(|(at, (axis, c))| {
         let degrees = found.temperature.as_ref().and_then(|t| t.per_drive.get(at));
-        let of_level = u * c.value.abs();
+        // The degree of the level: a relative uncertainty of the level counts as often in its power.
+        let of_level = Component::of(
+            InputQuantity::InfluenceLevel,
+            found.test.level_uncertainty,
+            "1",
+            found.test.influence.degree() * c.value,
+        );
         row(m, found, &found.place(axis, None), c, &[of_level, of_temperature(found, degrees)])
-            .common(&[of_level])
     });
     rows.collect()
 }
@@ -74,17 +78,18 @@ fn shift(m: &Measurand, compared: &ComparisonEvidence<'_>) -> Vec<Estimate> {
     rows.collect()
 }
 
-/// Largest effect of a difference of temperature on the bias: the standard uncertainty of a uniform law.
-fn of_temperature(found: &Comparison, degrees: Option<&f64>) -> f64 {
+/// Largest effect of a difference of temperature on the bias, all smaller ones as likely.
+fn of_temperature(found: &Comparison, degrees: Option<&f64>) -> Component {
     let coefficient = found.test.temperature_coefficient.unwrap_or(0.0);
-    coefficient * degrees.map_or(0.0, |d| d.abs()) / 3f64.sqrt()
+    let standard_deg_c = degrees.map_or(0.0, |d| d.abs()) / 3f64.sqrt();
+    Component::of(InputQuantity::TemperatureDifference, standard_deg_c, "degC", coefficient)
 }
 
-fn row(m: &Measurand, found: &Comparison, place: &str, c: &Combination, others: &[f64]) -> Estimate {
+fn row(m: &Measurand, found: &Comparison, place: &str, c: &Combination, others: &[Component]) -> Estimate {
     let row = if found.confounded() || found.unsettled() {
         m.not_identifiable(place, None, METHOD)
     } else {
-        m.measured(place, c.value, spread(c, 1.0, others), METHOD)
+        m.measured(place, c.value, spread(c, 1.0, others), METHOD).components(others)
     };
     remarks(found).into_iter().fold(row, Estimate::note)
 }

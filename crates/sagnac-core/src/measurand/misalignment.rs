@@ -30,8 +30,9 @@ fn tilt(m: &Measurand, e: &TableEvidence<'_>, axis: usize) -> Vec<Estimate> {
     let Some(tilt) = e.alignment.as_ref().and_then(|a| a.tilts.get(axis)) else { return vec![] };
     vec![match tilt {
         Ok(tilt) => {
-            let calibration = 1e3 * e.setup.rate_uncertainty * tilt.value.abs();
-            m.measured(&e.channel, 1e3 * tilt.value, spread(tilt, 1e3, &[calibration]), METHOD)
+            let calibration = [e.setup.of_table_rate(1e3 * tilt.value)];
+            m.measured(&e.channel, 1e3 * tilt.value, spread(tilt, 1e3, &calibration), METHOD)
+                .components(&calibration)
         }
         Err(why) => m.not_identifiable(&e.channel, None, METHOD).note(why.clone()),
     }]

@@ -4,7 +4,7 @@
 use super::descriptor::{Measurand, OfKnownInput, Stimulus, TurnAxis};
 use super::evidence::{KnownInputEvidence, TableEvidence};
 use super::{cross_axis, sine_response};
-use crate::estimate::{Estimate, Spread};
+use crate::estimate::{Component, Estimate, InputQuantity, Spread};
 use crate::message::{Arg, Note, note};
 use crate::rate_table::combine::spread;
 use crate::rate_table::known::Positions;
@@ -45,16 +45,16 @@ fn scale_factor(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
     let (unit, factor) = e.as_recorded;
     let row = if e.setup.sine {
         sine_response::row(m, e, |s, slope| {
-            let others = [e.setup.rate_uncertainty * (slope.value * factor).abs()];
+            let others = [e.setup.of_table_rate(slope.value * factor)];
             m.measured(&e.channel, slope.value * factor, spread(slope, factor.abs(), &others), s.method)
-                .common(&others)
+                .components(&others)
                 .note(note!("on_table.at_zero"))
         })
     } else {
         let Some(line) = &e.line else { return vec![] };
-        let others = systematic(line, e).map(|u| u * 1e-6 * (line.factor * factor).abs());
+        let others = of_equipment(line, e, (line.factor * factor).abs());
         let spread = spread(&line.slope(), factor.abs(), &others);
-        m.measured(&e.channel, line.factor * factor, spread, METHOD).common(&others).note(cited(line, e))
+        m.measured(&e.channel, line.factor * factor, spread, METHOD).components(&others).note(cited(line, e))
     };
     vec![Estimate { unit, ..row }]
 }
@@ -62,16 +62,17 @@ fn scale_factor(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
 fn error(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
     if e.setup.sine {
         return vec![sine_response::row(m, e, |s, slope| {
-            let spread = spread(slope, 1e6, &[1e6 * e.setup.rate_uncertainty]);
+            let of_table = [e.setup.of_table_rate(1e6)];
+            let spread = spread(slope, 1e6, &of_table);
             m.measured(&e.channel, (slope.value - 1.0) * 1e6, spread, s.method)
-                .common(&[1e6 * e.setup.rate_uncertainty])
+                .components(&of_table)
                 .note(note!("on_table.at_zero"))
         })];
     }
     let Some(line) = &e.line else { return vec![] };
-    let of_equipment = systematic(line, e).map(|u| u * line.factor.abs());
-    let spread = spread(&line.slope(), 1e6, &of_equipment);
-    vec![m.measured(&e.channel, (line.factor - 1.0) * 1e6, spread, METHOD).common(&of_equipment)]
+    let others = of_equipment(line, e, 1e6 * line.factor.abs());
+    let spread = spread(&line.slope(), 1e6, &others);
+    vec![m.measured(&e.channel, (line.factor - 1.0) * 1e6, spread, METHOD).components(&others)]
 }
 
 /// The bias of the line without the Earth rate along the axis, where the site tells it.
@@ -81,22 +82,25 @@ fn bias(m: &Measurand, e: &TableEvidence<'_>) -> Vec<Estimate> {
         return vec![m.measured(&e.channel, line.bias, spread(&line.offset(), 1.0, &[]), METHOD)];
     };
     let found = line.output_without(earth.rate_deg_h);
-    let others = [line.factor * earth.uncertainty_deg_h, e.setup.rate_uncertainty * earth.rate_deg_h];
+    let others = [
+        Component::of(InputQuantity::EarthRate, earth.uncertainty_deg_h, "deg/h", line.factor),
+        e.setup.of_table_rate(earth.rate_deg_h),
+    ];
     vec![
         m.measured(&e.channel, found.value, spread(&found, 1.0, &others), METHOD)
-            .common(&others)
+            .components(&others)
             .note(note!("on_table.earth_removed", earth = Arg::figures(earth.rate_deg_h, 5))),
     ]
 }
 
-/// Relative uncertainties of the scale factor from calibration of the table, its cosine with the input axis, and the
-/// thermometer, ppm.
-fn systematic(line: &ScaleFactor, e: &TableEvidence<'_>) -> [f64; 3] {
-    let alignment = e.setup.alignment_uncertainty_rad * e.setup.alignment_uncertainty_rad;
+/// Components of the scale factor from calibration of the table, its cosine with the input axis, and the thermometer, for a scale
+/// factor of `size` in the unit of the row.
+fn of_equipment(line: &ScaleFactor, e: &TableEvidence<'_>, size: f64) -> [Component; 3] {
+    let angle = e.setup.alignment_uncertainty_rad;
     [
-        1e6 * e.setup.rate_uncertainty,
-        1e6 * alignment,
-        line.temperature_slope() * e.setup.temperature_uncertainty_deg_c,
+        e.setup.of_table_rate(size),
+        Component::of(InputQuantity::AxisAlignment, angle, "rad", angle * size),
+        e.setup.of_thermometer(1e-6 * line.temperature_slope() * size),
     ]
 }
 

@@ -90,9 +90,9 @@ fn temperature_sensitivity(m: &Measurand, line: &ScaleFactor, e: &TableEvidence<
         return m.not_identifiable(&line.channel, None, METHOD).note(note!("on_table.no_temperature_range"));
     };
     let range = line.response.temperature_range.max(1e-9);
-    let reading =
-        std::f64::consts::SQRT_2 * e.setup.temperature_uncertainty_deg_c / range * slope.value.abs();
-    m.measured(&line.channel, slope.value, spread(&slope, 1.0, &[reading]), METHOD)
+    let reading = [e.setup.of_thermometer(std::f64::consts::SQRT_2 / range * slope.value)];
+    m.measured(&line.channel, slope.value, spread(&slope, 1.0, &reading), METHOD)
+        .components(&reading)
         .note(note!("on_table.temperature_range", range = Arg::figures(range, 3)))
 }
 

@@ -71,8 +71,9 @@ pub(super) fn temperature_sensitivity(m: &Measurand, e: &TableEvidence<'_>) -> E
         }
         let gain = s.fit.fit.coefficient(sine::GAIN_OVER_TEMPERATURE);
         let value = gain.value / slope.value;
-        let reading = std::f64::consts::SQRT_2 * e.setup.temperature_uncertainty_deg_c / range * value.abs();
-        m.measured(&e.channel, value, spread(&gain, 1.0 / slope.value.abs(), &[reading]), s.method)
+        let reading = [e.setup.of_thermometer(std::f64::consts::SQRT_2 / range * value)];
+        m.measured(&e.channel, value, spread(&gain, 1.0 / slope.value.abs(), &reading), s.method)
+            .components(&reading)
             .note(note!("on_table.temperature_range", range = Arg::figures(range, 3)))
     })
 }

@@ -5,7 +5,7 @@
 
 use super::descriptor::{EARTH_RATE_OPTION, Measurand, Options, PowerModel};
 use super::evidence::GyroEvidence;
-use crate::estimate::{Estimate, Spread, normal_probability};
+use crate::estimate::{Component, Estimate, InputQuantity, Spread, normal_probability};
 use crate::message::note;
 use crate::noise::coarse::RateRounding;
 use crate::noise::data::NoiseType;
@@ -80,9 +80,16 @@ fn evaluate(m: &Measurand, gyro: &GyroEvidence, options: &Options) -> Vec<Estima
     };
     let longest =
         note!("note.bias_uncertainty", u = standard_uncertainty, longest_h = 1.0 / (3600.0 * u.lowest_hz));
-    let of_site: Vec<f64> = u.others.iter().map(|(_, variance)| variance.sqrt()).collect();
+    let of_site = removed.map(|e| Component::of(InputQuantity::EarthRate, e.uncertainty_deg_h, "deg/h", 1.0));
+    let of_rounding = match gyro.rounding {
+        RateRounding::Forgotten { step_deg_h } => {
+            Some(Component::of(InputQuantity::Rounding, 0.5 * step_deg_h / 3f64.sqrt(), "deg/h", 1.0))
+        }
+        RateRounding::Harmless | RateRounding::Constant => None,
+    };
+    let components: Vec<Component> = of_site.into_iter().chain(of_rounding).collect();
     let estimate =
-        m.measured(&gyro.channel, value, spread, "mean").common(&of_site).note(earth).note(longest);
+        m.measured(&gyro.channel, value, spread, "mean").components(&components).note(earth).note(longest);
     vec![rounded.into_iter().fold(estimate, Estimate::note)]
 }
 

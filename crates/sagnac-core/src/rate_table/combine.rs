@@ -1,13 +1,18 @@
 //! What scatters and what does not, in one confidence distribution.
 
-use crate::estimate::{Spread, normal_quantile};
+use crate::estimate::{Component, Spread, normal_quantile};
 use crate::numeric::reml::Combination;
 
-/// The spread of a value that scatters as `random` says, times `factor`, with contributions known otherwise (standard
-/// uncertainties in the unit of the result): Student's law with the degrees of freedom of Welch and Satterthwaite.
-pub fn spread(random: &Combination, factor: f64, others: &[f64]) -> Spread {
+/// The spread of a value that scatters as `random` says, times `factor`, with components known otherwise: Student's law with the
+/// degrees of freedom of Welch and Satterthwaite.
+pub fn spread(random: &Combination, factor: f64, others: &[Component]) -> Spread {
+    beside(random, factor, others.iter().map(|c| c.contribution * c.contribution).sum())
+}
+
+/// The spread of a value that scatters, with another variance in the unit of the result.
+fn beside(random: &Combination, factor: f64, others: f64) -> Spread {
     let scatter = (random.standard * factor).powi(2);
-    let total = scatter + others.iter().map(|u| u * u).sum::<f64>();
+    let total = scatter + others;
     let dof = if scatter > 0.0 { random.dof * (total / scatter).powi(2) } else { f64::INFINITY };
     Spread::StudentT { standard_uncertainty: total.sqrt(), dof: dof.min(1e9) }
 }
@@ -25,7 +30,7 @@ const CURVE_POINTS: usize = 160;
 pub fn evenly(rest: Spread, value: f64, most: f64) -> Spread {
     let Spread::StudentT { standard_uncertainty: u, dof } = rest else { return rest };
     if most <= HARDLY_EVEN * u {
-        return spread(&Combination { value, standard: u, dof }, 1.0, &[most / 3f64.sqrt()]);
+        return beside(&Combination { value, standard: u, dof }, 1.0, most * most / 3.0);
     }
     let (fine, count) = (AVERAGED_POINTS, CURVE_POINTS);
     let shift = |i: usize| most * ((2 * i + 1) as f64 / fine as f64 - 1.0);

@@ -1,5 +1,7 @@
 //! Statements of a procedure about a test on a rate table: its evaluation, and inputs that are known without a table.
 
+use crate::estimate::{Component, InputQuantity};
+
 /// How a test on a table is evaluated. Uncertainties are standard uncertainties (k = 1).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Setup {
@@ -35,6 +37,18 @@ pub struct Setup {
     pub sine: bool,
     /// Stretches whose input is known without a table.
     pub known: Vec<ReferenceInput>,
+}
+
+impl Setup {
+    /// The calibration of the table as a component of a quantity that grows with its rate by `sensitivity`.
+    pub fn of_table_rate(&self, sensitivity: f64) -> Component {
+        Component::of(InputQuantity::TableRate, self.rate_uncertainty, "1", sensitivity)
+    }
+
+    /// The thermometer as a component of a quantity that changes with temperature by `sensitivity`, per degC.
+    pub fn of_thermometer(&self, sensitivity: f64) -> Component {
+        Component::of(InputQuantity::Thermometer, self.temperature_uncertainty_deg_c, "degC", sensitivity)
+    }
 }
 
 impl Default for Setup {
