@@ -64,9 +64,12 @@ impl Request<'_> {
 
 /// Who evaluated, where and when.
 pub fn session(request: &Request<'_>) -> Session {
+    let day = request.now.date_naive().to_string();
+    let serial = request.unit.serial.as_deref();
     Session {
         operator: request.operator.clone(),
         station: request.station.clone(),
+        protocol: request.procedure.protocol_number(serial, &day).filter(|_| request.is_run()),
         evaluated_at: request.now.to_rfc3339_opts(chrono::SecondsFormat::Secs, true),
     }
 }

@@ -89,6 +89,7 @@ impl<'a> Setup<'a> {
         Session {
             operator: self.args.operator.clone(),
             station: self.args.station.clone(),
+            protocol: None,
             evaluated_at: self.now.to_rfc3339_opts(SecondsFormat::Secs, true),
         }
     }

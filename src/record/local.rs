@@ -106,6 +106,18 @@ field!(
     "author_by_language"
 );
 field!(
+    /// Organisation that answers for the protocol.
+    organisation,
+    "organisation",
+    "organisation_by_language"
+);
+field!(
+    /// Where the test was made.
+    place,
+    "place",
+    "place_by_language"
+);
+field!(
     /// Where the values come from.
     source,
     "source",

@@ -55,7 +55,9 @@ pub use integrity::{FaultRecord, FaultText, Integrity};
 pub use interval_mean::IntervalMeanRecord;
 pub use lot::{LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, SerialSource, VerdictCounts};
 pub use message::Message;
-pub use origin::{ColumnRecord, LimitsFile, ProcedureRecord, Program, RecordingFile, Session, UnitUnderTest};
+pub use origin::{
+    ColumnRecord, LimitsFile, ProcedureRecord, Program, RecordingFile, Session, Signatory, UnitUnderTest,
+};
 pub use phase::PhaseRecord;
 pub use proof::{
     ClaimOrigin, CourseRecord, FoundValue, Hidden, HiddenKind, KnownRecord, PROOF_FORMAT, ProofOutcome,

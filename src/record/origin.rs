@@ -47,8 +47,43 @@ pub struct ProcedureRecord {
     /// The roles whose signatures it asks for: `tested`, `reviewed`, `approved`; absent in earlier results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub signatures: Option<Vec<String>>,
+    /// Organisation that answers for the protocol.
+    #[serde(flatten, with = "super::local::organisation")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::organisation::Members<Option<String>>"))]
+    pub organisation: Option<LocalText>,
+    /// Where the test is made.
+    #[serde(flatten, with = "super::local::place")]
+    #[cfg_attr(feature = "schema", schemars(with = "super::local::place::Members<Option<String>>"))]
+    pub place: Option<LocalText>,
+    /// Who signs the printed protocol beside those who tested, reviewed and decided.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub signatories: Vec<Signatory>,
     /// The limits file, when one was given.
     pub limits: Option<LimitsFile>,
+}
+
+/// Who signs a printed protocol on behalf of others than the laboratory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Signatory {
+    /// Quality control of the maker (ОТК).
+    QualityControl,
+    /// Representative of the customer, such as a military representative (ВП).
+    CustomerRepresentative,
+}
+
+impl Signatory {
+    /// Everyone.
+    pub const ALL: [Signatory; 2] = [Signatory::QualityControl, Signatory::CustomerRepresentative];
+
+    /// Word of it in files.
+    pub const fn id(self) -> &'static str {
+        match self {
+            Signatory::QualityControl => "quality_control",
+            Signatory::CustomerRepresentative => "customer_representative",
+        }
+    }
 }
 
 /// Identity of a limits file.
@@ -137,6 +172,9 @@ pub struct Session {
     pub operator: Option<String>,
     /// Station.
     pub station: Option<String>,
+    /// Number of the protocol.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub protocol: Option<String>,
     /// When the evaluation ran, RFC 3339, UTC.
     pub evaluated_at: String,
 }

@@ -14,7 +14,7 @@ use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::measurand::Measurand;
 use crate::output::sha256;
-use crate::record::{ClauseRecord, ExclusionRecord, ProcedureRecord, WaiverRecord};
+use crate::record::{ClauseRecord, ExclusionRecord, ProcedureRecord, Signatory, WaiverRecord};
 use crate::recording::Channel;
 use crate::signing::Role;
 use crate::temperature::{TemperatureTest, WarmUpTest};
@@ -290,7 +290,26 @@ pub struct ReportSpec {
     /// Who must sign the result, each by a key of their own; `sagnac verify` asks for it. Default: nobody.
     #[key(example = ["tested", "approved"])]
     pub signatures: Vec<Role>,
+    /// Number of the protocol; `{serial}` and `{date}` stand for the serial number and the day of the evaluation.
+    #[key(example = "GT-{serial}-{date}")]
+    pub protocol: Option<String>,
+    /// Organisation that answers for the protocol.
+    #[key(example = "Gyro Test Laboratory")]
+    pub organisation: Option<LocalText>,
+    /// Where the test is made.
+    #[key(example = "Hall 4, thermal chamber 2")]
+    pub place: Option<LocalText>,
+    /// Who signs the printed protocol beside those who tested, reviewed and decided.
+    #[key(example = ["quality_control", "customer_representative"])]
+    pub signatories: Vec<Signatory>,
 }
+
+const SIGNATORIES: &[Word] = &[
+    ("quality_control", "quality control of the maker"),
+    ("customer_representative", "representative of the customer"),
+];
+
+words!(Signatory, SIGNATORIES, |word: &str| Signatory::ALL.into_iter().find(|who| who.id() == word));
 
 const SIGNER_ROLES: &[Word] = &[
     ("tested", "who made the test"),
@@ -362,12 +381,21 @@ impl Loaded<Procedure> {
             path: self.path.clone(),
             sha256: self.sha256.clone(),
             signatures: Some(self.value.report.signatures.iter().map(|role| role.id().to_owned()).collect()),
+            organisation: self.value.report.organisation.clone(),
+            place: self.value.report.place.clone(),
+            signatories: self.value.report.signatories.clone(),
             limits: limits.map(|file| file.record()),
         }
     }
 }
 
 impl Procedure {
+    /// The number of the protocol of a unit, by the pattern of the procedure; `day` is in ISO 8601.
+    pub fn protocol_number(&self, serial: Option<&str>, day: &str) -> Option<String> {
+        let pattern = self.report.protocol.as_ref()?;
+        Some(pattern.replace("{serial}", serial.unwrap_or_default()).replace("{date}", day))
+    }
+
     /// The channels that deliver a gyro output, in the order of the file.
     pub fn gyro_channels(&self) -> impl Iterator<Item = &ChannelSpec> {
         self.channels.iter().filter(|c| c.channel.role.is_gyro())

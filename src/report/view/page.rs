@@ -90,8 +90,12 @@ fn identity_section(whole: &Part<'_>) -> Block {
 fn head(whole: &Part<'_>) -> Head {
     let (record, words) = (whole.record, whole.words);
     let kind = if record.kind == RunKind::Run { "report.kind_run" } else { "report.kind_analyze" };
+    let organisation = record.procedure.as_ref().and_then(|p| p.organisation.as_ref());
+    let number = record.session.protocol.as_ref();
+    let numbered = number.map(|n| words.with("report.protocol_number", &[("number", n)]));
+    let kind = [organisation.map(|o| words.local(o)), Some(words.t(kind)), numbered];
     Head {
-        kind: words.t(kind),
+        kind: kind.into_iter().flatten().collect::<Vec<_>>().join(" · "),
         title: whole.title(),
         is_signed: true,
         label: words.t("report.verdict"),
@@ -259,6 +263,13 @@ fn identity(record: &RunRecord, words: Translator) -> Vec<(String, String)> {
             put("report.limits_source", local(&l.source).as_deref());
         }
     }
+    put("report.protocol", record.session.protocol.as_deref());
+    let place = record.procedure.as_ref().and_then(|p| p.place.as_ref());
+    put("report.place", place.map(|text| words.local(text)).as_deref());
+    put(
+        "report.tested_at",
+        record.recording.first().and_then(|f| f.start.as_deref()).map(date_time).as_deref(),
+    );
     put("report.station", record.session.station.as_deref());
     put("report.operator", record.session.operator.as_deref());
     put("report.evaluated_at", Some(&date_time(&record.session.evaluated_at)));

@@ -7,6 +7,7 @@ mod fixture;
 mod language;
 mod locale;
 mod print;
+mod protocol;
 mod render;
 mod russian;
 mod sentences;
