@@ -1,5 +1,6 @@
 //! A recording that can be read: a file, several joined, or columns in memory.
 
+use super::beside_columns::Beside;
 use super::byte_stream::{self, ByteStream, Packing, io_error};
 use super::error::{IngestError, IngestErrorKind};
 use super::file_identity::FileIdentity;
@@ -37,6 +38,8 @@ pub struct Source {
     time_unit: Option<Unit>,
     /// Of a recording of several files.
     several: Option<SeveralFiles>,
+    /// Columns of files that were recorded beside it.
+    beside: Option<Beside>,
 }
 
 /// A recording of several files, for what only such a one has.
@@ -141,6 +144,7 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         identity: Some(FileIdentity::of(&metadata)),
         opened,
         several: None,
+        beside: None,
     })
 }
 
@@ -176,6 +180,7 @@ impl Source {
             sensors: None,
             time_unit: None,
             several: None,
+            beside: None,
         }
     }
 
@@ -198,7 +203,16 @@ impl Source {
             sensors,
             time_unit: None,
             several: Some(several),
+            beside: None,
         }
+    }
+
+    /// The recording with columns of files beside it.
+    pub(crate) fn with_beside(mut self, columns: Vec<Column>, notes: Vec<Note>, beside: Beside) -> Source {
+        self.opened.columns.extend(columns);
+        self.opened.notes.extend(notes);
+        self.beside = Some(beside);
+        self
     }
 
     /// The files of the recording, in order: one, unless several were joined.
@@ -404,6 +418,22 @@ impl Source {
 
     /// As [`Source::read_parts`], with the columns judged or not.
     pub(crate) fn read_with(
+        &self,
+        wanted: &[usize],
+        no_numbers: NoNumbers,
+        on_block: &mut OnBlock<'_>,
+        on_part: &mut dyn FnMut(usize, PartFacts),
+    ) -> Result<Option<FileFacts>, IngestError> {
+        match &self.beside {
+            Some(beside) => beside.read(wanted, on_block, |wanted, on_block| {
+                self.read_own(wanted, no_numbers, on_block, on_part)
+            }),
+            None => self.read_own(wanted, no_numbers, on_block, on_part),
+        }
+    }
+
+    /// The same for columns of the recording's own files.
+    fn read_own(
         &self,
         wanted: &[usize],
         no_numbers: NoNumbers,
