@@ -123,6 +123,8 @@ struct Model<'a> {
     differences: Vec<f64>,
     steps_s: Vec<f64>,
     reference_s: f64,
+    /// Mean interval of the faster record, s.
+    interval_s: f64,
 }
 
 impl<'a> Model<'a> {
@@ -145,19 +147,23 @@ impl<'a> Model<'a> {
         let steps_s = pairs().map(|(a, b)| b.0 - a.0).collect();
         let times_s: Vec<f64> = kept.iter().map(|(t, _)| *t).collect();
         let reference_s = times_s.iter().sum::<f64>() / times_s.len() as f64;
-        Ok(Model { fast, times_s, differences, steps_s, reference_s })
+        let interval_s = (last_s - first_s) / fast.times_s.len().max(2) as f64;
+        Ok(Model { fast, times_s, differences, steps_s, reference_s, interval_s })
     }
 
-    /// Value and slope of the faster record at a time.
-    fn value_and_slope(&self, t: f64) -> (f64, f64) {
+    /// Value of the faster record at a time.
+    fn value_at(&self, t: f64) -> f64 {
         let (times, values) = (self.fast.times_s, self.fast.values);
         let after = times.partition_point(|x| *x < t).clamp(1, times.len().saturating_sub(1).max(1));
         let pair = |of: &[f64]| Some((*of.get(after - 1)?, *of.get(after)?));
-        let (Some((t0, t1)), Some((v0, v1))) = (pair(times), pair(values)) else {
-            return (f64::NAN, f64::NAN);
-        };
-        let slope = (v1 - v0) / (t1 - t0);
-        (v0 + slope * (t - t0), slope)
+        let (Some((t0, t1)), Some((v0, v1))) = (pair(times), pair(values)) else { return f64::NAN };
+        v0 + (v1 - v0) * (t - t0) / (t1 - t0)
+    }
+
+    /// Its slope over an interval on either side: a slope of one side alone would hold the noise of the difference that it
+    /// explains, and shift the offset.
+    fn slope_at(&self, t: f64) -> f64 {
+        (self.value_at(t + self.interval_s) - self.value_at(t - self.interval_s)) / (2.0 * self.interval_s)
     }
 
     /// The offset of the highest likelihood in the range, with the ratio of the noises there.
@@ -208,8 +214,9 @@ impl<'a> Model<'a> {
             .iter()
             .map(|s| {
                 let from_middle = s - self.reference_s;
-                let (value, slope) = self.value_and_slope(s + at.offset_s + at.rate * from_middle);
-                (value, slope, slope * from_middle)
+                let placed = s + at.offset_s + at.rate * from_middle;
+                let slope = self.slope_at(placed);
+                (self.value_at(placed), slope, slope * from_middle)
             })
             .collect();
         let pairs = || placed.iter().zip(placed.get(1..).unwrap_or_default());
