@@ -14,12 +14,21 @@ pub struct SourceArgs {
     /// Time added to the timestamps of that file, s [default: from the dates of both]
     #[arg(long, value_name = "S", requires = "source", allow_hyphen_values = true)]
     source_offset: Option<f64>,
+    /// Standard uncertainty of that time, or of the dates, s
+    #[arg(long, value_name = "S", requires = "source", value_parser = not_negative)]
+    source_offset_uncertainty: Option<f64>,
     /// Estimate the offset and rate of that file's clock from what both record: the angle of a table, a temperature
-    #[arg(long, requires = "source", conflicts_with_all = ["source_offset", "source_rate"])]
+    #[arg(long, requires = "source", conflicts_with_all = ["source_offset", "source_rate", "source_offset_uncertainty"])]
     estimate_offset: bool,
     /// Relative excess of that file's seconds, ppm
     #[arg(long, value_name = "PPM", requires = "source", allow_hyphen_values = true)]
     source_rate: Option<f64>,
+}
+
+/// A number that is not negative.
+fn not_negative(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|n: &f64| n.is_finite() && *n >= 0.0);
+    number.ok_or_else(|| "0, 0.2, 1e-3".to_owned())
 }
 
 impl SourceArgs {
@@ -30,8 +39,12 @@ impl SourceArgs {
             .iter()
             .map(|path| format!(" --source {}", for_shell(&path.display().to_string())))
             .collect();
-        for (option, number) in [("--source-offset", self.source_offset), ("--source-rate", self.source_rate)]
-        {
+        let numbers = [
+            ("--source-offset", self.source_offset),
+            ("--source-offset-uncertainty", self.source_offset_uncertainty),
+            ("--source-rate", self.source_rate),
+        ];
+        for (option, number) in numbers {
             typed.extend(number.map(|number| format!(" {option} {number}")));
         }
         if self.estimate_offset {
@@ -46,6 +59,7 @@ impl SourceArgs {
             path: path.clone(),
             offset_s: self.source_offset,
             rate: self.source_rate.unwrap_or(0.0) * 1e-6,
+            offset_uncertainty_s: self.source_offset_uncertainty.unwrap_or(0.0),
             estimate: self.estimate_offset,
         };
         self.source.iter().map(of).collect()

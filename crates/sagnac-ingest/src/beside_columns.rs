@@ -2,11 +2,38 @@
 
 use crate::stamp_column::Stamps;
 use crate::{Block, FieldFault, FieldFaultKind, FileFacts, IngestError, OnBlock};
+use std::path::PathBuf;
+use std::sync::Arc;
 
 /// Longest time between two samples of a second file across which it is interpolated, in its middle steps.
 pub(crate) const MAX_STEPS_APART: f64 = 5.0;
 
+/// A standard uncertainty of the clock of a file beside a recording, in one of the two ways in which a clock can be wrong.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClockUncertainty {
+    /// The file.
+    pub file: PathBuf,
+    /// Position of the file among those beside the recording, from 0.
+    position: usize,
+    /// Its offset, s; 0 where the rate is meant.
+    pub offset_s: f64,
+    /// Its rate about the middle of what ties it, relative; 0 where the offset is meant.
+    pub rate: f64,
+}
+
+/// Standard uncertainty of the tie between the clock of a file and that of the recording.
+#[derive(Debug, Clone, Copy, Default, PartialEq)]
+pub(crate) struct TieUncertainty {
+    /// Of the offset, s.
+    pub offset_s: f64,
+    /// Of the rate.
+    pub rate: f64,
+    /// Time of the recording about which the rate is uncertain, s.
+    pub about_s: f64,
+}
+
 /// The columns of second files beside those of a recording.
+#[derive(Clone)]
 pub(crate) struct Beside {
     /// Number of the recording's own columns.
     pub own: usize,
@@ -17,13 +44,18 @@ pub(crate) struct Beside {
 }
 
 /// The columns of one second file.
+#[derive(Clone)]
 pub(crate) struct Track {
+    /// The file.
+    pub file: PathBuf,
+    /// How well its clock is known.
+    pub uncertainty: TieUncertainty,
     /// Stamps of its rows on the clock of the recording, s, increasing.
     pub at_s: Vec<f64>,
     /// Longest time between two rows across which values are interpolated, s.
     pub longest_s: f64,
     /// The values, by column.
-    pub values: Vec<Vec<f64>>,
+    pub values: Arc<Vec<Vec<f64>>>,
 }
 
 impl Track {
@@ -45,6 +77,31 @@ impl Track {
 }
 
 impl Beside {
+    /// What is known of the uncertainty of the clocks.
+    pub fn uncertainties(&self) -> Vec<ClockUncertainty> {
+        let of = |(position, track): (usize, &Track)| {
+            let is = |offset_s: f64, rate: f64| ClockUncertainty {
+                file: track.file.clone(),
+                position,
+                offset_s,
+                rate,
+            };
+            [is(track.uncertainty.offset_s, 0.0), is(0.0, track.uncertainty.rate)]
+        };
+        let all = self.files.iter().enumerate().flat_map(of);
+        all.filter(|u| u.offset_s > 0.0 || u.rate > 0.0).collect()
+    }
+
+    /// The columns with the clock of a file moved by an uncertainty, times a factor.
+    pub fn moved(&self, by: &ClockUncertainty, factor: f64) -> Beside {
+        let mut moved = self.clone();
+        if let Some(track) = moved.files.get_mut(by.position) {
+            let about_s = track.uncertainty.about_s;
+            track.at_s.iter_mut().for_each(|t| *t += factor * (by.offset_s + by.rate * (*t - about_s)));
+        }
+        moved
+    }
+
     /// Reads columns of the recording and of the files beside it. `read`: reads those of the recording alone.
     ///
     /// # Errors

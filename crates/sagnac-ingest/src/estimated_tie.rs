@@ -1,11 +1,12 @@
-//! The tie between the clocks of two files from what both record: the angle of a table against the integral of a rate, or
-//! one temperature twice.
+//! The tie between the clocks of two files from what both record: the angle of a table against the integral of a rate,
+//! a rate twice, or one temperature twice.
 
 use crate::column_inference::InferredColumn;
 use crate::stamp_column::Stamps;
+use crate::turns::{TURN_ARCSEC, unwrap_turns};
 use crate::{IngestError, IngestErrorKind, Source};
 use sagnac_core::message::{Note, note};
-use sagnac_core::numeric::clock_tie::{ClockTie, NoTie, Timed, tie};
+use sagnac_core::numeric::clock_tie::{ClockTie, Following, NoTie, Timed, tie};
 use sagnac_core::recording::Role;
 use sagnac_core::units::{Affine, Unit};
 use std::ops::ControlFlow;
@@ -20,6 +21,8 @@ const RANGE_SHARE: f64 = 0.125;
 pub(crate) struct EstimatedTie {
     /// Time that is added to stamps of the second file, s.
     pub shift_s: f64,
+    /// Time of the recording at which offset and rate are uncorrelated, s.
+    pub about_s: f64,
     /// Offset and rate with their uncertainty.
     pub tie: ClockTie,
     /// What both record.
@@ -56,7 +59,7 @@ pub(crate) fn estimate(
         slow.times_s.iter_mut().for_each(|t| *t -= begins);
         if by == Common::Angle {
             integrate(&mut fast);
-            unwrap_turns(&mut slow.values);
+            unwrap_turns(&mut slow.values, TURN_ARCSEC);
         }
         let length = |of: &Recorded| of.times_s.last().zip(of.times_s.first()).map_or(0.0, |(b, a)| b - a);
         let range_s = RANGE_S.min(RANGE_SHARE * length(&fast).min(length(&slow)));
@@ -66,11 +69,13 @@ pub(crate) fn estimate(
             Timed { times_s: &fast.0, values: &fast.1 },
             Timed { times_s: &slow.0, values: &slow.1 },
             range_s,
+            by.following(),
         );
         match found {
             Ok(tie) if best.as_ref().is_none_or(|b| tie.offset_sd_s < b.tie.offset_sd_s) => {
                 let shift_s = centre - begins + tie.offset_s - tie.rate * tie.reference_s;
-                best = Some(EstimatedTie { shift_s, tie, by: by.note() });
+                let about_s = centre + tie.reference_s + tie.offset_s;
+                best = Some(EstimatedTie { shift_s, about_s, tie, by: by.note() });
             }
             Ok(_) => {}
             Err(reason) => why = refusal(reason, by.note()),
@@ -83,13 +88,23 @@ pub(crate) fn estimate(
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Common {
     Angle,
+    Rate,
     Temperature,
 }
 
 impl Common {
+    /// Of two thermometers one may lag behind the other.
+    fn following(self) -> Following {
+        match self {
+            Common::Angle | Common::Rate => Following::AtOnce,
+            Common::Temperature => Following::MayLag,
+        }
+    }
+
     fn note(self) -> Note {
         match self {
             Common::Angle => note!("ingest.beside.common_angle"),
+            Common::Rate => note!("ingest.beside.common_rate"),
             Common::Temperature => note!("ingest.beside.common_temperature"),
         }
     }
@@ -100,10 +115,12 @@ fn refusal(reason: NoTie, by: Note) -> Note {
         NoTie::TooFew => note!("ingest.beside.tie_too_few", by),
         NoTie::Unrelated => note!("ingest.beside.tie_unrelated", by),
         NoTie::Ambiguous => note!("ingest.beside.tie_ambiguous", by),
+        NoTie::Lags => note!("ingest.beside.tie_lags", by),
     }
 }
 
-/// Columns of both files that record one quantity: rates with the angle of a table, temperatures with temperatures.
+/// Columns of both files that record one quantity: rates with the angle or the rate of a table, temperatures with
+/// temperatures.
 fn pairs(source: &Source, second: &Source) -> Vec<(usize, usize, Common)> {
     let of = |source: &Source, role: Role| -> Vec<usize> {
         let like = |g: InferredColumn| g.role == role && g.unit_is_named;
@@ -114,8 +131,16 @@ fn pairs(source: &Source, second: &Source) -> Vec<(usize, usize, Common)> {
         let others = of(second, b);
         of(source, a).into_iter().flat_map(|i| others.iter().map(move |j| (i, *j, by))).collect()
     };
-    let angles = each(Role::Rate, Role::TableAngle, Common::Angle);
-    if angles.is_empty() { each(Role::Temperature, Role::Temperature, Common::Temperature) } else { angles }
+    // The sharpest first: what a table turns is known better than how fast, and both better than a temperature.
+    [
+        (Role::Rate, Role::TableAngle, Common::Angle),
+        (Role::Rate, Role::TableRate, Common::Rate),
+        (Role::Temperature, Role::Temperature, Common::Temperature),
+    ]
+    .into_iter()
+    .map(|(own, other, by)| each(own, other, by))
+    .find(|pairs| !pairs.is_empty())
+    .unwrap_or_default()
 }
 
 /// Reads a column with its stamps; rows whose stamps do not increase are left out.
@@ -152,22 +177,5 @@ fn integrate(of: &mut Recorded) {
         }
         before = Some((*t, rate));
         *value = angle;
-    }
-}
-
-/// Angle of a turn, arcsec.
-const TURN_ARCSEC: f64 = 360.0 * 3600.0;
-
-/// Undoes the restart of an angle after each turn.
-fn unwrap_turns(angles: &mut [f64]) {
-    let (mut turns, mut before) = (0.0, None::<f64>);
-    for angle in angles {
-        let raw = *angle;
-        let step = before.map_or(0.0, |b| raw - b);
-        if step.abs() > 0.5 * TURN_ARCSEC {
-            turns -= (step / TURN_ARCSEC).round();
-        }
-        before = Some(raw);
-        *angle = raw + turns * TURN_ARCSEC;
     }
 }

@@ -59,7 +59,7 @@
 //! | what a column is, by its name and unit | [`column_inference`] |
 //! | what a column is by its first values and the header | `first_values`, `column_judgement`, `time_scale` |
 //! | which rows are read | `selected_rows`, `cycle` |
-//! | columns of a second file with a clock of its own | `second_source`, `beside_columns`, `estimated_tie` |
+//! | columns of a second file with a clock of its own | `second_source`, `beside_columns`, `estimated_tie`, `turns` |
 //! | the interval of the samples, gaps, roll-overs | [`clock`] |
 //! | rows placed on the grid of the recording | [`Plan`], `row_clock` |
 //! | outliers, stuck and repeated values | [`value_checks`] |
@@ -133,8 +133,10 @@ mod stated_scales;
 mod stream;
 mod system;
 mod time_scale;
+mod turns;
 pub mod value_checks;
 
+pub use beside_columns::ClockUncertainty;
 pub use block::{Block, FieldFault, FieldFaultKind, FileFacts};
 pub use byte_stream::Packing;
 pub use column::Column;

@@ -34,7 +34,9 @@ pub struct SecondSource {
     pub offset_s: Option<f64>,
     /// Relative length of its seconds beyond those of the recording.
     pub rate: f64,
-    /// Offset and rate are estimated from what both files record, in place of the two before.
+    /// Standard uncertainty of that offset, or of the dates, s.
+    pub offset_uncertainty_s: f64,
+    /// Offset and rate are estimated from what both files record, in place of the three before.
     pub estimate: bool,
 }
 

@@ -2,15 +2,18 @@
 //! with another clock. The second file is interpolated at the stamps of the recording, never the other way round: no
 //! output of a gyro is interpolated.
 
-use crate::beside_columns::{Beside, MAX_STEPS_APART, Track};
+use crate::beside_columns::{Beside, MAX_STEPS_APART, TieUncertainty, Track};
 use crate::byte_stream::digest;
 use crate::estimated_tie::{EstimatedTie, estimate};
 use crate::stamp_column::Stamps;
+use crate::turns::{TURN_ARCSEC, unwrap_turns};
 use crate::{Column, IngestError, IngestErrorKind, SecondSource, Source};
 use sagnac_core::message::{Arg, Note, note};
 use sagnac_core::recording::Role;
+use sagnac_core::units::Unit;
 use std::ops::ControlFlow;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Most values that are kept of a second file.
 const MAX_VALUES: usize = 64 << 20;
@@ -34,14 +37,14 @@ pub fn beside(source: Source, files: &[SecondSource]) -> Result<Source, IngestEr
     for file in files {
         let second = crate::open(&file.path)?;
         let its = stamps_of(&second).ok_or_else(|| without_time(&file.path))?;
-        let Tied { shift_s, rate, by } = tie(&source, &stamps, &second, &its, file)?;
+        let tied = tie(&source, &stamps, &second, &its, file)?;
         let wanted = added.take(&source, &second, its.column)?;
-        let track = read(&second, &its, &wanted, shift_s, rate)?;
+        let track = read(&second, &its, &wanted, &tied)?;
         let ends = track.at_s.first().zip(track.at_s.last());
         if ends.is_none_or(|(_, last)| begins_s.is_some_and(|begins| *last < begins)) {
             return Err(apart(&file.path, ends.map(|(a, b)| (*a, *b)), begins_s.unwrap_or(f64::NAN)));
         }
-        added.say(&second, &wanted, by)?;
+        added.say(&second, &wanted, tied.by)?;
         tracks.push(track);
     }
     let own = source.columns().len();
@@ -116,6 +119,7 @@ struct Tied {
     /// Time that is added to its stamps, s.
     shift_s: f64,
     rate: f64,
+    uncertainty: TieUncertainty,
     /// By what.
     by: Note,
 }
@@ -130,7 +134,7 @@ fn tie(
 ) -> Result<Tied, IngestError> {
     let dates = its.epoch_s.zip(stamps.epoch_s).map(|(its, own)| its - own);
     if file.estimate {
-        let EstimatedTie { shift_s, tie, by } = estimate(source, stamps, second, its, dates)?;
+        let EstimatedTie { shift_s, about_s, tie, by } = estimate(source, stamps, second, its, dates)?;
         let by = note!(
             "ingest.beside.by_estimate",
             by,
@@ -139,9 +143,11 @@ fn tie(
             rate_ppm = Arg::figures(tie.rate * 1e6, 3),
             rate_sd_ppm = Arg::figures(tie.rate_sd * 1e6, 2)
         );
-        return Ok(Tied { shift_s, rate: tie.rate, by });
+        let uncertainty = TieUncertainty { offset_s: tie.offset_sd_s, rate: tie.rate_sd, about_s };
+        return Ok(Tied { shift_s, rate: tie.rate, uncertainty, by });
     }
-    let stated = |shift_s: f64, by: Note| Tied { shift_s, rate: file.rate, by };
+    let uncertainty = TieUncertainty { offset_s: file.offset_uncertainty_s, ..TieUncertainty::default() };
+    let stated = |shift_s: f64, by: Note| Tied { shift_s, rate: file.rate, uncertainty, by };
     let offset = |s: f64| note!("ingest.beside.by_offset", offset_s = Arg::Stated(s));
     match (dates, file.offset_s) {
         (Some(between), Some(s)) => Ok(stated(between + s, offset(s))),
@@ -189,32 +195,25 @@ fn first_stamp(source: &Source, stamps: &Stamps) -> Result<Option<f64>, IngestEr
 }
 
 /// Reads the columns of a second file, on the clock of the recording; rows whose stamps do not increase are left out.
-fn read(
-    second: &Source,
-    its: &Stamps,
-    wanted: &[usize],
-    shift_s: f64,
-    rate: f64,
-) -> Result<Track, IngestError> {
+fn read(second: &Source, its: &Stamps, wanted: &[usize], tied: &Tied) -> Result<Track, IngestError> {
     let mut columns = vec![its.column];
     columns.extend_from_slice(wanted);
     let mut unwrapper = its.unwrapper();
-    let mut track =
-        Track { at_s: Vec::new(), longest_s: f64::INFINITY, values: vec![Vec::new(); wanted.len()] };
+    let (mut at_s, mut kept) = (Vec::new(), vec![Vec::new(); wanted.len()]);
     let (mut begins, mut too_large) = (None, false);
     second.read(&columns, &mut |block| {
         let Some((stamps, values)) = block.columns.split_first_mut() else { return ControlFlow::Break(()) };
         its.seconds(stamps, &mut unwrapper);
         for (row, stamp) in stamps.iter().copied().enumerate().filter(|(_, s)| s.is_finite()) {
             let begins = *begins.get_or_insert(stamp);
-            let at = begins + (stamp - begins) * (1.0 + rate) + shift_s;
-            if track.at_s.last().is_none_or(|last| at > *last) {
-                track.at_s.push(at);
+            let at = begins + (stamp - begins) * (1.0 + tied.rate) + tied.shift_s;
+            if at_s.last().is_none_or(|last| at > *last) {
+                at_s.push(at);
                 let of = |column: &Vec<f64>| column.get(row).copied().unwrap_or(f64::NAN);
-                track.values.iter_mut().zip(values.iter()).for_each(|(to, column)| to.push(of(column)));
+                kept.iter_mut().zip(values.iter()).for_each(|(to, column)| to.push(of(column)));
             }
         }
-        too_large = track.at_s.len().saturating_mul(columns.len()) > MAX_VALUES;
+        too_large = at_s.len().saturating_mul(columns.len()) > MAX_VALUES;
         if too_large { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
     if too_large {
@@ -222,12 +221,27 @@ fn read(
         return Err(IngestError::new(IngestErrorKind::Bomb, second.path(), note));
     }
     let mut steps: Vec<f64> =
-        track.at_s.iter().zip(track.at_s.get(1..).unwrap_or_default()).map(|(a, b)| b - a).collect();
+        at_s.iter().zip(at_s.get(1..).unwrap_or_default()).map(|(a, b)| b - a).collect();
+    let mut longest_s = f64::INFINITY;
     if !steps.is_empty() {
         let middle = steps.len() / 2;
-        track.longest_s = MAX_STEPS_APART * *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
+        longest_s = MAX_STEPS_APART * *steps.select_nth_unstable_by(middle, f64::total_cmp).1;
     }
-    Ok(track)
+    // Between 359 and 1 deg lies 0, not 180.
+    for (index, angles) in wanted.iter().zip(&mut kept) {
+        if let Some(turn) = second.columns().get(*index).and_then(turn_of) {
+            unwrap_turns(angles, turn);
+        }
+    }
+    let (file, uncertainty) = (second.path().to_owned(), tied.uncertainty);
+    Ok(Track { file, uncertainty, at_s, longest_s, values: Arc::new(kept) })
+}
+
+/// A turn in the unit of a column that holds the angle of a table; `None` for other columns.
+fn turn_of(column: &Column) -> Option<f64> {
+    let inferred = column.inferred();
+    let arcsec = inferred.unit.factor_to(&Unit::parse("arcsec").ok()?).ok()? * inferred.scale;
+    (inferred.role == Role::TableAngle && arcsec > 0.0).then_some(TURN_ARCSEC / arcsec)
 }
 
 #[cfg(test)]

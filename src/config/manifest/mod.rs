@@ -268,13 +268,23 @@ fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>
 /// The files that were recorded beside the recording.
 fn sources(listed: Vec<SourceKeys>, folder: &Path, reader: &mut Reader<'_>) -> Vec<SecondSource> {
     let mut found = Vec::new();
-    for SourceKeys { path, sha256, time_offset_s, estimate_offset, time_rate, section } in listed {
+    for SourceKeys {
+        path,
+        sha256,
+        time_offset_s,
+        time_offset_uncertainty_s,
+        estimate_offset,
+        time_rate,
+        section,
+    } in listed
+    {
         let Some(text) = path else { continue };
         let at = reader.source.inside_quotes(&section.span_of("path"));
         let Some(file) = contained_files::file(&text, folder, &at, reader) else { continue };
         if sha256.is_none_or(|stated| hash_holds(&stated, &file.path, &section, reader)) {
             let (path, offset_s, estimate) = (file.path, time_offset_s, estimate_offset);
-            found.push(SecondSource { path, offset_s, rate: time_rate, estimate });
+            let offset_uncertainty_s = time_offset_uncertainty_s;
+            found.push(SecondSource { path, offset_s, rate: time_rate, offset_uncertainty_s, estimate });
         }
     }
     found

@@ -108,6 +108,9 @@ pub(super) struct SourceKeys {
     /// Time that is added to its timestamps to give those of the recording. May be omitted if both files state dates.
     #[key(quantity = "s", example = "-3.2 s")]
     pub time_offset_s: Option<f64>,
+    /// Standard uncertainty of that time, or of the dates. It becomes a component of every quantity that depends on it.
+    #[key(quantity = "s", min = 0, default = "0 s", example = "0.2 s")]
+    pub time_offset_uncertainty_s: f64,
     /// True to estimate the offset and rate of its clock from what both files record, the angle of a table and a rate or a
     /// temperature in both. Without dates, the two must have started within a minute of each other.
     #[key(default = false, example = true)]
