@@ -10,8 +10,8 @@ use std::path::Path;
 const AHEAD_S: f64 = 1234.5;
 
 /// A sample over temperature as two files: the gyro, and every third temperature by a clock that is ahead.
-fn split(folder: &Path) {
-    let text = fs::read_to_string(shipped("samples/temperature-soak-pass.csv")).unwrap();
+fn split(folder: &Path, sample: &str) {
+    let text = fs::read_to_string(shipped(&format!("samples/{sample}.csv"))).unwrap();
     let (mut gyro, mut chamber) = (String::new(), String::from("time_s,temp_degC\n"));
     for (i, line) in text.lines().enumerate() {
         match line.split(',').collect::<Vec<_>>()[..] {
@@ -31,8 +31,12 @@ fn split(folder: &Path) {
 }
 
 fn run(folder: &Path, recording: &str, more: &[&str]) -> Said {
-    let (procedure, limits) =
-        (shipped("procedures/temperature-soak.toml"), shipped("procedures/limits/sample-temperature.toml"));
+    run_of("temperature-soak", folder, recording, more)
+}
+
+fn run_of(procedure: &str, folder: &Path, recording: &str, more: &[&str]) -> Said {
+    let procedure = shipped(&format!("procedures/{procedure}.toml"));
+    let limits = shipped("procedures/limits/sample-temperature.toml");
     let all = ["run", &procedure, recording, "--limits", &limits, "--out", "r", "--force"];
     sagnac(folder, &[&all[..], more].concat())
 }
@@ -59,7 +63,7 @@ fn agree(found: &Value, single: &Value) {
 fn a_temperature_from_a_second_file_gives_the_figures_of_one() {
     let single = sample_once("temperature-soak-pass");
     let folder = tempfile::tempdir().unwrap();
-    split(folder.path());
+    split(folder.path(), "temperature-soak-pass");
     let said = run(
         folder.path(),
         "gyro.csv",
@@ -79,7 +83,7 @@ fn a_temperature_from_a_second_file_gives_the_figures_of_one() {
 #[test]
 fn a_clock_without_a_tie_is_refused_by_name() {
     let folder = tempfile::tempdir().unwrap();
-    split(folder.path());
+    split(folder.path(), "temperature-soak-pass");
     let said = sagnac(folder.path(), &["inspect", "gyro.csv", "--source", "chamber.csv"]);
     assert_eq!(said.code, 2);
     let named = ["chamber.csv", "gyro.csv", "--source-offset"];
@@ -87,4 +91,35 @@ fn a_clock_without_a_tie_is_refused_by_name() {
     let said =
         sagnac(folder.path(), &["inspect", "gyro.csv", "--source", "chamber.csv", "--estimate-offset"]);
     assert!(said.code == 2 && said.err.contains("in common"), "{}", said.err);
+}
+
+/// Half the width of the interval of a row, and the row.
+fn half_width<'a>(result: &'a Value, id: &str) -> (f64, &'a Value) {
+    let row = result["measurands"].as_array().unwrap().iter().find(|m| m["id"] == id).unwrap();
+    let end = |key: &str| row["interval"][key].as_f64().unwrap();
+    (0.5 * (end("high") - end("low")), row)
+}
+
+#[test]
+fn the_uncertainty_of_a_clock_is_a_component_of_what_depends_on_it() {
+    let folder = tempfile::tempdir().unwrap();
+    split(folder.path(), "temperature-pass");
+    let ramp = |uncertainty: &str| {
+        let source = ["--source", "chamber.csv", "--source-offset=-1234.5"];
+        let more =
+            [&["--serial", "SN-0101", "--source-offset-uncertainty", uncertainty], &source[..]].concat();
+        let said = run_of("temperature-ramp", folder.path(), "gyro.csv", &more);
+        assert_ne!(said.code, 2, "{}", said.err);
+        result(&folder.path().join("r"))
+    };
+    let (known, unsure) = (ramp("0"), ramp("150"));
+    // A thermometer that is 150 s late has a coil that lags 150 s less behind it.
+    let ((before, _), (after, row)) = (half_width(&known, "thermal_lag"), half_width(&unsure, "thermal_lag"));
+    let expected = before.hypot(1.96 * 150.0);
+    assert!((after / expected - 1.0).abs() < 0.25, "{before} s and {after} s instead of {expected} s");
+    let told = row["notes"].to_string();
+    assert!(told.contains("clock_offset_component") && told.contains("chamber.csv"), "{told}");
+    // The curve of a slow temperature hardly depends on the clock, the noise not at all.
+    let noise = |of: &Value| half_width(of, "angle_random_walk_at_temperature").0;
+    assert!((noise(&unsure) / noise(&known) - 1.0).abs() < 0.05);
 }
