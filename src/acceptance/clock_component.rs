@@ -5,12 +5,15 @@
 use super::kinds;
 use super::request::Request;
 use super::test_kind::{Progress, Run};
-use crate::estimate::Estimate;
-use crate::i18n::{Arg, Note};
+use crate::estimate::{Estimate, Spread};
+use crate::i18n::{Arg, Note, note};
 use crate::ingest::{ClockUncertainty, Source};
 
 /// Share of the half width of its interval above which a component is told beside an estimate.
 const TOLD_SHARE: f64 = 0.01;
+
+/// Sides to which a clock is moved.
+const SIDES: usize = 2;
 
 /// Adds the components to estimates of a request.
 ///
@@ -23,12 +26,11 @@ pub(super) fn add(request: &Request<'_>, estimates: &mut [Estimate], progress: P
             let moved = Request { source: &source, ..request.clone() };
             kinds::of_request(&moved).estimates(&moved, &mut *progress)
         };
-        let sides = [with_clock_moved(1.0)?, with_clock_moved(-1.0)?];
+        let sides: [Vec<Estimate>; SIDES] = [with_clock_moved(1.0)?, with_clock_moved(-1.0)?];
         for position in 0..estimates.len() {
-            let of = |side: &[Estimate]| same(estimates, position, side).cloned();
-            let (above, below) = (of(&sides[0]), of(&sides[1]));
+            let moved: Vec<Estimate> =
+                sides.iter().filter_map(|side| same(estimates, position, side).cloned()).collect();
             if let Some(estimate) = estimates.get_mut(position) {
-                let moved: Vec<Estimate> = [above, below].into_iter().flatten().collect();
                 widen(estimate, &moved, &uncertainty);
             }
         }
@@ -60,21 +62,24 @@ fn widen(estimate: &mut Estimate, moved: &[Estimate], by: &ClockUncertainty) {
     if let Some(limit) = &mut estimate.lower_limit {
         limit.value -= lower;
     }
-    let Some(value) = estimate.value.filter(|_| component > 0.0 && component.is_finite()) else { return };
+    let Some(value) = estimate.value else { return };
+    let file = by.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
+    let (key, size) = if by.offset_s > 0.0 {
+        ("note.clock_offset_component", by.offset_s)
+    } else {
+        ("note.clock_rate_component", by.rate * 1e6)
+    };
+    if moved.len() < SIDES || moved.iter().any(|e| e.value.is_none()) {
+        // Shown by one clock and not by another as likely: how much it depends on the clock is not known.
+        estimate.spread = Spread::Unknown;
+        estimate.notes.push(note!("note.clock_decides", file));
+        return;
+    }
     let half_width = estimate.interval95().map_or(0.0, |i| 0.5 * (i.high - i.low));
     estimate.spread = estimate.spread.with_component(value, component);
     if component > TOLD_SHARE * half_width {
-        let key = if by.offset_s > 0.0 { "note.clock_offset_component" } else { "note.clock_rate_component" };
-        let size = if by.offset_s > 0.0 { by.offset_s } else { by.rate * 1e6 };
-        estimate.notes.push(
-            Note::new(key)
-                .with(
-                    "file",
-                    by.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned()),
-                )
-                .with("size", Arg::figures(size, 2))
-                .with("component", Arg::figures(component, 2))
-                .with("unit", Arg::key("unit", estimate.unit)),
-        );
+        let told = Note::new(key).with("file", file).with("size", Arg::figures(size, 2));
+        let told = told.with("component", Arg::figures(component, 2));
+        estimate.notes.push(told.with("unit", Arg::key("unit", estimate.unit)));
     }
 }
