@@ -199,7 +199,7 @@ fn read(second: &Source, its: &Stamps, wanted: &[usize], tied: &Tied) -> Result<
     let mut columns = vec![its.column];
     columns.extend_from_slice(wanted);
     let mut unwrapper = its.unwrapper();
-    let (mut at_s, mut kept) = (Vec::new(), vec![Vec::new(); wanted.len()]);
+    let (mut at_s, mut kept) = (Vec::<f64>::new(), vec![Vec::<f64>::new(); wanted.len()]);
     let (mut begins, mut too_large) = (None, false);
     second.read(&columns, &mut |block| {
         let Some((stamps, values)) = block.columns.split_first_mut() else { return ControlFlow::Break(()) };
