@@ -5,7 +5,7 @@
 use super::kinds;
 use super::request::Request;
 use super::test_kind::{Progress, Run};
-use crate::estimate::{Estimate, Spread};
+use crate::estimate::{Component, Estimate, InputQuantity, Spread, UncertaintySource};
 use crate::i18n::{Arg, Note, note};
 use crate::ingest::{ClockUncertainty, Source};
 
@@ -64,11 +64,6 @@ fn widen(estimate: &mut Estimate, moved: &[Estimate], by: &ClockUncertainty) {
     }
     let Some(value) = estimate.value else { return };
     let file = by.file.file_name().map_or_else(String::new, |n| n.to_string_lossy().into_owned());
-    let (key, size) = if by.offset_s > 0.0 {
-        ("note.clock_offset_component", by.offset_s)
-    } else {
-        ("note.clock_rate_component", by.rate * 1e6)
-    };
     if moved.len() < SIDES || moved.iter().any(|e| e.value.is_none()) {
         // Shown by one clock and not by another as likely: how much it depends on the clock is not known.
         estimate.spread = Spread::Unknown;
@@ -77,7 +72,21 @@ fn widen(estimate: &mut Estimate, moved: &[Estimate], by: &ClockUncertainty) {
     }
     let half_width = estimate.interval95().map_or(0.0, |i| 0.5 * (i.high - i.low));
     estimate.spread = estimate.spread.with_component(value, component);
+    let (input, standard, unit) = if by.offset_s > 0.0 {
+        (InputQuantity::ClockOffset, by.offset_s, "s")
+    } else {
+        (InputQuantity::ClockRate, by.rate, "1")
+    };
+    let source = if by.estimated { UncertaintySource::Measured } else { UncertaintySource::Certificate };
+    estimate
+        .components
+        .push(Component { source, ..Component::of(input, standard, unit, component / standard) });
     if component > TOLD_SHARE * half_width {
+        let (key, size) = if by.offset_s > 0.0 {
+            ("note.clock_offset_component", by.offset_s)
+        } else {
+            ("note.clock_rate_component", by.rate * 1e6)
+        };
         let told = Note::new(key).with("file", file).with("size", Arg::figures(size, 2));
         let told = told.with("component", Arg::figures(component, 2));
         estimate.notes.push(told.with("unit", Arg::key("unit", estimate.unit)));

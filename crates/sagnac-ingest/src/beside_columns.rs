@@ -19,6 +19,8 @@ pub struct ClockUncertainty {
     pub offset_s: f64,
     /// Its rate about the middle of what ties it, relative; 0 where the offset is meant.
     pub rate: f64,
+    /// Estimated from the data, not stated.
+    pub estimated: bool,
 }
 
 /// Standard uncertainty of the tie between the clock of a file and that of the recording.
@@ -80,7 +82,9 @@ impl Beside {
     /// What is known of the uncertainty of the clocks.
     pub fn uncertainties(&self) -> Vec<ClockUncertainty> {
         let of = |(position, track): (usize, &Track)| {
+            let estimated = track.uncertainty.rate > 0.0;
             let is = |offset_s: f64, rate: f64| ClockUncertainty {
+                estimated,
                 file: track.file.clone(),
                 position,
                 offset_s,
