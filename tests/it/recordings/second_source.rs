@@ -106,8 +106,8 @@ fn the_uncertainty_of_a_clock_is_a_component_of_what_depends_on_it() {
     split(folder.path(), "temperature-pass");
     let ramp = |uncertainty: &str| {
         let source = ["--source", "chamber.csv", "--source-offset=-1234.5"];
-        let more =
-            [&["--serial", "SN-0101", "--source-offset-uncertainty", uncertainty], &source[..]].concat();
+        let stated = ["--serial", "SN-0101", "--source-offset-uncertainty", uncertainty];
+        let more = [&source[..], &stated[..]].concat();
         let said = run_of("temperature-ramp", folder.path(), "gyro.csv", &more);
         assert_ne!(said.code, 2, "{}", said.err);
         result(&folder.path().join("r"))
