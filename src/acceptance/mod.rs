@@ -5,6 +5,7 @@
 //! | `pipeline` | the way from a recording to its record: collect, judge, measure, record |
 //! | `analysis`, `column_choice` | what stands in for a procedure where there is none |
 //! | `kinds` | what each kind of test adds to that way; one file or folder a kind, one list |
+//! | `clock_component` | what the clocks of files beside the recording add to uncertainties |
 //! | `derived` | rows by a formula over others |
 //! | `condition` | whether the test was done as required; one condition a file |
 //! | `figures` | plots as data |
@@ -16,6 +17,7 @@
 pub mod analysis;
 mod build_record;
 pub mod claimed;
+mod clock_component;
 pub mod column_choice;
 pub mod compare;
 pub mod condition;

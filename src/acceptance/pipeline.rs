@@ -1,6 +1,7 @@
 //! The way from a recording to its record, the same for every kind of test: collect, judge, measure, record.
 
 use super::build_record::build_record;
+use super::clock_component;
 use super::condition::checks::CheckLog;
 use super::condition::thermometer::Thermometer;
 use super::condition::{ColumnFact, Facts, judge_all};
@@ -12,6 +13,7 @@ use super::sinks::{Overview, StabilitySink};
 use super::test_kind::{Evidence, Progress, Reading, Run, TestKind};
 use super::verdict;
 use crate::config::procedure::limits::gyro_of;
+use crate::estimate::Estimate;
 use crate::ingest::Plan;
 use crate::record::{ConditionRecord, ConditionStatus, MeasurandRecord, Window};
 use crate::recording::window::Windowed;
@@ -27,6 +29,12 @@ pub(super) trait Test {
     /// # Errors
     /// There is nothing to evaluate.
     fn run(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Outcome>;
+
+    /// The estimates alone, before limits.
+    ///
+    /// # Errors
+    /// As [`Test::run`].
+    fn estimates(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Vec<Estimate>>;
 }
 
 impl<K: TestKind> Test for K {
@@ -36,13 +44,20 @@ impl<K: TestKind> Test for K {
 
     fn run(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Outcome> {
         let options = self.options(request);
-        let (reading, evidence) = collect(*self, request, progress)?;
+        let (reading, evidence) = collect(*self, request, &mut *progress)?;
         let conditions = judge(&reading, &evidence);
-        let rows = measure(&reading, &evidence, K::MISSING_REASON);
+        let mut estimates = estimates(&reading, &evidence);
+        clock_component::add(request, &mut estimates, progress)?;
+        let rows = rows(&reading, &evidence, &estimates, K::MISSING_REASON);
         let figures = evidence.figures(&reading);
         let mut record = build_record(&reading, K::OWN_CHECKS, conditions, rows, &figures, options);
         let tables = evidence.complete(&reading, &mut record);
         Ok(Outcome { record, figures, tables })
+    }
+
+    fn estimates(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Vec<Estimate>> {
+        let (reading, evidence) = collect(*self, request, progress)?;
+        Ok(estimates(&reading, &evidence))
     }
 }
 
@@ -127,16 +142,25 @@ fn judge(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<ConditionRecord>
     conditions
 }
 
-/// Estimates every measurand of the procedure, and sets each estimate against its limit. `missing` is the key of the reason
-/// for one without an estimate.
-fn measure(reading: &Reading<'_>, evidence: &dyn Evidence, missing: &'static str) -> Vec<MeasurandRecord> {
-    let request = reading.request;
-    let procedure = request.procedure;
+/// The estimates of every measurand of the procedure.
+fn estimates(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<Estimate> {
     let mut estimates = Vec::new();
-    for spec in &procedure.measurands {
+    for spec in &reading.request.procedure.measurands {
         let asked = |channel: &str| spec.channel.as_deref().is_none_or(|c| c == gyro_of(channel));
         estimates.extend(evidence.estimates(reading, spec).into_iter().filter(|e| asked(&e.channel)));
     }
+    estimates
+}
+
+/// Sets each estimate against its limit. `missing` is the key of the reason for a measurand without an estimate.
+fn rows(
+    reading: &Reading<'_>,
+    evidence: &dyn Evidence,
+    estimates: &[Estimate],
+    missing: &'static str,
+) -> Vec<MeasurandRecord> {
+    let request = reading.request;
+    let procedure = request.procedure;
     let rows = estimates.iter().map(|e| verdict::row(e, request.limits, procedure)).collect();
     // An analysis shows what the recording has; nobody asked for one value by name.
     let mut rows = if request.is_run() {
@@ -147,7 +171,7 @@ fn measure(reading: &Reading<'_>, evidence: &dyn Evidence, missing: &'static str
     let gyros = reading.channels.iter().filter(|c| c.role.is_gyro());
     let gyros: Vec<&str> = gyros.map(|c| c.id.as_str()).collect();
     let correlation = |one: &_, other: &_| evidence.correlation(one, other);
-    rows.extend(derived::rows(procedure, request.limits, &gyros, &estimates, &correlation));
+    rows.extend(derived::rows(procedure, request.limits, &gyros, estimates, &correlation));
     rows
 }
 

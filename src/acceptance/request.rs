@@ -11,6 +11,7 @@ use chrono::{DateTime, Utc};
 use std::fmt;
 
 /// Request for a run. Clock, host and people are passed in: the outcome is a pure function of a request.
+#[derive(Clone)]
 pub struct Request<'a> {
     /// `run` or `analyze`.
     pub kind: RunKind,

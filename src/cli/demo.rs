@@ -6,6 +6,7 @@ use super::options::OutputArgs;
 use super::printer::Printer;
 use super::run;
 use super::run_args::{EachArgs, RunArgs};
+use super::source::SourceArgs;
 use super::{next_step, options::GridArgs, place};
 use crate::i18n::{Lang, Localize, note};
 use clap::Args;
@@ -39,6 +40,7 @@ pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
         recording: vec![recording],
         join: JoinArgs::default(),
         each: EachArgs::default(),
+        sources: SourceArgs::default(),
         limits: Some("sample-unit".into()),
         require_limits: false,
         serial: Some("SN-0001".to_owned()),

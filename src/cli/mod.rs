@@ -46,6 +46,7 @@ mod selftest;
 mod sign;
 mod simulate;
 mod single_test;
+mod source;
 mod stdout;
 mod store;
 mod test_setup;

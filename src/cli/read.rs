@@ -1,6 +1,7 @@
 //! Options that say how a recording is to be read.
 
 use super::place::for_shell;
+use super::source::SourceArgs;
 use crate::config::recording_keys::{
     DECIMAL_WORDS, DELIMITER_WORDS, ENCODING_WORDS, decimal, delimiter, encoding, rows,
 };
@@ -47,6 +48,8 @@ pub struct ReadArgs {
     /// First and last row to read, counted from 1 [default: all]
     #[arg(long, value_name = "FIRST-LAST", value_parser = row_range)]
     rows: Option<String>,
+    #[command(flatten)]
+    sources: SourceArgs,
 }
 
 /// A text that names a column and a value.
@@ -91,7 +94,7 @@ impl ReadArgs {
         if let Some(path) = &self.layout {
             add("--layout", &path.display().to_string());
         }
-        typed
+        typed + &self.sources.as_typed()
     }
 
     /// The decisions as keys of the table `recording` of a procedure, without the layout: names and TOML values.
@@ -135,6 +138,7 @@ impl ReadArgs {
             time_unit: self.time_unit.clone(),
             only: self.only.as_deref().and_then(RowMatch::parse),
             rows: self.rows.as_deref().and_then(rows),
+            sources: self.sources.sources(),
         }
     }
 }

@@ -4,6 +4,7 @@ use super::exit;
 use super::join::JoinArgs;
 use super::keep::StoreArgs;
 use super::options::{GridArgs, OutputArgs};
+use super::source::SourceArgs;
 use crate::i18n::Lang;
 use crate::ingest::unit_data::UnitData;
 use crate::report::Results;
@@ -22,6 +23,8 @@ pub struct RunArgs {
     pub join: JoinArgs,
     #[command(flatten)]
     pub each: EachArgs,
+    #[command(flatten)]
+    pub sources: SourceArgs,
     /// Limits file; overrides the procedure's limits for the same measurand
     #[arg(long, value_name = "FILE")]
     pub limits: Option<PathBuf>,

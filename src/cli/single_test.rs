@@ -13,7 +13,7 @@ use crate::config::procedure::{
     EffectiveLimits, LimitsFile, Loaded, Procedure, effective, load, load_limits,
 };
 use crate::i18n::{Lang, Localize, note};
-use crate::ingest::{Recording, RecordingError, Source, open_recording};
+use crate::ingest::{ReadOptions, Recording, RecordingError, Source, open_recording};
 use crate::record::UnitUnderTest;
 use chrono::{DateTime, Utc};
 use std::path::{Path, PathBuf};
@@ -76,8 +76,10 @@ impl<'a> SingleTest<'a> {
 
     /// The inputs of the result of a recording.
     pub fn inputs(&self, recording: &[PathBuf], serial: Option<&str>) -> Inputs {
-        let read = &self.procedure.value.recording.read;
-        self.common_inputs().recording_as_read(recording, read).text("unit", serial)
+        let read = self.read_options();
+        let sources = (!read.sources.is_empty()).then(|| format!("{:?}", read.sources));
+        let inputs = self.common_inputs().recording_as_read(recording, &read).text("unit", serial);
+        inputs.text("sources", sources.as_deref())
     }
 
     /// Opens a recording as the procedure says.
@@ -85,7 +87,13 @@ impl<'a> SingleTest<'a> {
     /// # Errors
     /// [`RecordingError`].
     pub fn open(&self, recording: &[PathBuf]) -> Result<Recording, RecordingError> {
-        open_recording(recording, &self.procedure.value.recording.read)
+        open_recording(recording, &self.read_options())
+    }
+
+    /// How a recording is read: as the procedure says, with the files beside it that the command line names.
+    fn read_options(&self) -> ReadOptions {
+        let sources = self.args.sources.sources();
+        ReadOptions { sources, ..self.procedure.value.recording.read.clone() }
     }
 
     /// The unit as procedure and limits describe it.

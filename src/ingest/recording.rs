@@ -7,7 +7,7 @@ use crate::config::diagnostics::Problems;
 use crate::config::layout::{self, refused};
 use crate::config::manifest::{self, Manifest};
 use crate::i18n::{Lang, Localize, Note, note};
-use sagnac_ingest::pattern;
+use sagnac_ingest::{beside, pattern};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -85,6 +85,7 @@ pub fn open_recording(named: &[PathBuf], options: &ReadOptions) -> Result<Record
         let manifest = manifest::load(name).map_err(RecordingError::Manifest)?;
         let options = with_layout(&manifest.options_over(options))?;
         let source = multi_file::open(name, &manifest.parts(), manifest.contiguous, &options)?;
+        let source = beside(source, &options.sources)?;
         return Ok(Recording { source, manifest: Some(manifest) });
     }
     let options = &with_layout(options)?;
@@ -104,7 +105,8 @@ pub fn open_recording(named: &[PathBuf], options: &ReadOptions) -> Result<Record
     }
     let specs: Vec<PartSpec> =
         files.iter().map(|f| PartSpec { path: f.clone(), ..PartSpec::default() }).collect();
-    Ok(Recording { source: multi_file::open(name, &specs, false, options)?, manifest: None })
+    let source = beside(multi_file::open(name, &specs, false, options)?, &options.sources)?;
+    Ok(Recording { source, manifest: None })
 }
 
 /// The options with their layout read, where there is one.
@@ -122,7 +124,7 @@ fn with_layout(options: &ReadOptions) -> Result<ReadOptions, IngestError> {
 /// # Errors
 /// [`IngestError`] of the layout or the file.
 pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestError> {
-    sagnac_ingest::open_with(path, &with_layout(options)?)
+    beside(sagnac_ingest::open_with(path, &with_layout(options)?)?, &options.sources)
 }
 
 /// Opens files of a manifest as one recording, each with the phase given for it.
@@ -143,7 +145,10 @@ pub fn open_files(
     let options = &with_layout(options)?;
     match files {
         [one] if one.phase.is_none() => open_with(&one.path, options),
-        _ => multi_file::open(name, &files.iter().map(part).collect::<Vec<_>>(), contiguous, options),
+        _ => {
+            let parts: Vec<PartSpec> = files.iter().map(part).collect();
+            beside(multi_file::open(name, &parts, contiguous, options)?, &options.sources)
+        }
     }
 }
 
@@ -160,9 +165,11 @@ pub fn files_read(named: &[PathBuf], options: &ReadOptions) -> Vec<PathBuf> {
         files.push(path.clone());
         if let Ok(manifest) = manifest::load(path) {
             files.extend(manifest.files.iter().map(|f| f.path.clone()));
+            files.extend(manifest.options.sources.iter().map(|s| s.path.clone()));
             layout = manifest.options.layout.map(|l| l.path).or(layout);
         }
     }
+    files.extend(options.sources.iter().map(|s| s.path.clone()));
     files.extend(layout);
     files
 }

@@ -128,6 +128,38 @@ impl Spread {
         }
     }
 
+    /// The spread with an independent normal component of a standard uncertainty added.
+    #[must_use]
+    pub fn with_component(&self, value: f64, standard: f64) -> Spread {
+        if standard == 0.0 {
+            return self.clone();
+        }
+        match self {
+            Spread::Normal { standard_uncertainty: u } => {
+                Spread::Normal { standard_uncertainty: u.hypot(standard) }
+            }
+            Spread::StudentT { standard_uncertainty: u, dof } if *u > 0.0 => {
+                // JCGM 100:2008, G.4.1: the component has infinitely many degrees of freedom.
+                let total = u.hypot(standard);
+                Spread::StudentT { standard_uncertainty: total, dof: dof * (total / u).powi(4) }
+            }
+            Spread::StudentT { .. } => Spread::Normal { standard_uncertainty: standard },
+            Spread::ChiSquare { .. } | Spread::Curve(_) => {
+                // Each side is widened by itself, so that the law keeps its skewness.
+                let middle = self.bound(value, 0.5).unwrap_or(value);
+                let scores =
+                    (-CURVE_STEPS..=CURVE_STEPS).map(|i| CURVE_SCORE * f64::from(i) / f64::from(CURVE_STEPS));
+                let widened = |z: f64| {
+                    let from_middle = self.bound(value, normal_probability(z))? - middle;
+                    let total = from_middle.hypot(z * standard);
+                    Some((z, middle + if z < 0.0 { -total } else { total }))
+                };
+                Spread::Curve(scores.filter_map(widened).collect())
+            }
+            Spread::Unknown => Spread::Unknown,
+        }
+    }
+
     /// The two-sided interval with the given coverage, equal tails.
     pub fn interval(&self, value: f64, coverage: f64) -> Option<Interval> {
         let tail = 0.5 * (1.0 - coverage);
@@ -135,6 +167,12 @@ impl Spread {
         (low.is_finite() && high.is_finite()).then_some(Interval { low, high, coverage })
     }
 }
+
+/// Largest normal score of a curve that a component was added to.
+const CURVE_SCORE: f64 = 6.0;
+
+/// Points of such a curve on either side.
+const CURVE_STEPS: i32 = 48;
 
 /// Normal scores over which the slope of a tail is read.
 const TAIL_SCORES: f64 = 1.0;

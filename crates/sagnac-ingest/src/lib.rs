@@ -59,6 +59,7 @@
 //! | what a column is, by its name and unit | [`column_inference`] |
 //! | what a column is by its first values and the header | `first_values`, `column_judgement`, `time_scale` |
 //! | which rows are read | `selected_rows`, `cycle` |
+//! | columns of a second file with a clock of its own | `second_source`, `beside_columns`, `estimated_tie`, `turns` |
 //! | the interval of the samples, gaps, roll-overs | [`clock`] |
 //! | rows placed on the grid of the recording | [`Plan`], `row_clock` |
 //! | outliers, stuck and repeated values | [`value_checks`] |
@@ -71,6 +72,7 @@
 #![cfg_attr(not(feature = "all"), allow(dead_code))]
 
 mod angle_differences;
+mod beside_columns;
 #[cfg(any(feature = "matlab", feature = "numpy", feature = "raw"))]
 mod binary;
 mod block;
@@ -92,6 +94,7 @@ mod decode_pipeline;
 #[cfg(test)]
 mod english;
 mod error;
+mod estimated_tie;
 pub mod faults;
 mod field_faults;
 mod file_identity;
@@ -121,15 +124,19 @@ mod pauses;
 mod plan;
 mod requested_columns;
 mod row_clock;
+mod second_source;
 mod selected_rows;
 mod similar_column;
 mod source;
+mod stamp_column;
 mod stated_scales;
 mod stream;
 mod system;
 mod time_scale;
+mod turns;
 pub mod value_checks;
 
+pub use beside_columns::ClockUncertainty;
 pub use block::{Block, FieldFault, FieldFaultKind, FileFacts};
 pub use byte_stream::Packing;
 pub use column::Column;
@@ -141,9 +148,10 @@ pub use formats::FORMATS;
 pub use guarded::decoder_is_running;
 pub use in_memory::{MemoryColumn, MemoryValues};
 pub use named_file::{FileFault, open_file, read_file, read_text};
-pub use options::{Encoding, ReadOptions, RowMatch, StampOptions, StampWriting, TextOptions};
+pub use options::{Encoding, ReadOptions, RowMatch, SecondSource, StampOptions, StampWriting, TextOptions};
 pub use pauses::Pauses;
 pub use plan::{Plan, TimeBaseSpec, prepare};
+pub use second_source::beside;
 pub use source::{PartFacts, Source, open, open_with};
 pub use stream::{ChannelFacts, FileReport, StreamReport, locate, stream, stream_path};
 pub use system::io_reason;

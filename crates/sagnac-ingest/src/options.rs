@@ -2,6 +2,7 @@
 
 use crate::layout::LayoutFile;
 use sagnac_core::recording::ColumnRef;
+use std::path::PathBuf;
 
 /// How a file is to be read. Whatever is `None` is detected, and a note of the recording says what was detected.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -20,6 +21,23 @@ pub struct ReadOptions {
     pub only: Option<RowMatch>,
     /// First and last row that are read, counted from 1 among those that match.
     pub rows: Option<(u64, u64)>,
+    /// Files that were recorded beside it, each with a clock of its own; [`crate::beside`] reads them.
+    pub sources: Vec<SecondSource>,
+}
+
+/// A file that was recorded beside a recording, with a clock of its own.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct SecondSource {
+    /// The file.
+    pub path: PathBuf,
+    /// Time that is added to its stamps to give those of the recording, s; `None`: both clocks tell the date.
+    pub offset_s: Option<f64>,
+    /// Relative length of its seconds beyond those of the recording.
+    pub rate: f64,
+    /// Standard uncertainty of that offset, or of the dates, s.
+    pub offset_uncertainty_s: f64,
+    /// Offset and rate are estimated from what both files record, in place of the three before.
+    pub estimate: bool,
 }
 
 /// The rows in which a column has a value.

@@ -1,5 +1,6 @@
 //! A recording that can be read: a file, several joined, or columns in memory.
 
+use super::beside_columns::{Beside, ClockUncertainty};
 use super::byte_stream::{self, ByteStream, Packing, io_error};
 use super::error::{IngestError, IngestErrorKind};
 use super::file_identity::FileIdentity;
@@ -18,11 +19,13 @@ use sagnac_core::units::Unit;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// Most columns whose names are listed in a hint.
 const NAMED_COLUMNS: usize = 30;
 
 /// A recording that can be read: a file, or columns in memory.
+#[derive(Clone)]
 pub struct Source {
     path: PathBuf,
     format: &'static str,
@@ -30,13 +33,15 @@ pub struct Source {
     bytes: u64,
     /// Of a file; columns in memory have none.
     identity: Option<FileIdentity>,
-    opened: Opened,
+    opened: Arc<Opened>,
     /// Several sensors whose rows take turns, where none was chosen.
     sensors: Option<Sensors>,
     /// Unit of time stamps as the user states it.
     time_unit: Option<Unit>,
     /// Of a recording of several files.
-    several: Option<SeveralFiles>,
+    several: Option<Arc<SeveralFiles>>,
+    /// Columns of files that were recorded beside it.
+    beside: Option<Beside>,
 }
 
 /// A recording of several files, for what only such a one has.
@@ -139,8 +144,9 @@ pub fn open_with(path: &Path, options: &ReadOptions) -> Result<Source, IngestErr
         packing,
         bytes: metadata.len(),
         identity: Some(FileIdentity::of(&metadata)),
-        opened,
+        opened: Arc::new(opened),
         several: None,
+        beside: None,
     })
 }
 
@@ -172,10 +178,11 @@ impl Source {
             packing: Packing::Plain,
             bytes: 0,
             identity: None,
-            opened,
+            opened: Arc::new(opened),
             sensors: None,
             time_unit: None,
             several: None,
+            beside: None,
         }
     }
 
@@ -194,11 +201,33 @@ impl Source {
             packing,
             bytes,
             identity: None,
-            opened: described,
+            opened: Arc::new(described),
             sensors,
             time_unit: None,
-            several: Some(several),
+            several: Some(Arc::new(several)),
+            beside: None,
         }
+    }
+
+    /// The recording with columns of files beside it.
+    pub(crate) fn with_beside(mut self, columns: Vec<Column>, notes: Vec<Note>, beside: Beside) -> Source {
+        if let Some(opened) = Arc::get_mut(&mut self.opened) {
+            opened.columns.extend(columns);
+            opened.notes.extend(notes);
+            self.beside = Some(beside);
+        }
+        self
+    }
+
+    /// Uncertainties of the clocks of the files beside it, as far as they are known.
+    pub fn clock_uncertainties(&self) -> Vec<ClockUncertainty> {
+        self.beside.as_ref().map(Beside::uncertainties).unwrap_or_default()
+    }
+
+    /// The recording with the clock of a file beside it moved by an uncertainty, times a factor.
+    #[must_use]
+    pub fn with_clock_moved(&self, by: &ClockUncertainty, factor: f64) -> Source {
+        Source { beside: self.beside.as_ref().map(|beside| beside.moved(by, factor)), ..self.clone() }
     }
 
     /// The files of the recording, in order: one, unless several were joined.
@@ -404,6 +433,22 @@ impl Source {
 
     /// As [`Source::read_parts`], with the columns judged or not.
     pub(crate) fn read_with(
+        &self,
+        wanted: &[usize],
+        no_numbers: NoNumbers,
+        on_block: &mut OnBlock<'_>,
+        on_part: &mut dyn FnMut(usize, PartFacts),
+    ) -> Result<Option<FileFacts>, IngestError> {
+        match &self.beside {
+            Some(beside) => beside.read(wanted, on_block, |wanted, on_block| {
+                self.read_own(wanted, no_numbers, on_block, on_part)
+            }),
+            None => self.read_own(wanted, no_numbers, on_block, on_part),
+        }
+    }
+
+    /// The same for columns of the recording's own files.
+    fn read_own(
         &self,
         wanted: &[usize],
         no_numbers: NoNumbers,

@@ -16,10 +16,10 @@ use crate::record::UnitUnderTest;
 use sagnac_ingest::layout::LayoutFile;
 use sagnac_ingest::multi_file::PartSpec;
 use sagnac_ingest::pattern::natural;
-use sagnac_ingest::{ReadOptions, TextOptions, byte_stream, pattern};
+use sagnac_ingest::{ReadOptions, SecondSource, TextOptions, byte_stream, pattern};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use tables::{FileKeys, MANIFEST_FILE, ManifestTables, ReadingKeys, UnitKeys};
+use tables::{FileKeys, MANIFEST_FILE, ManifestTables, ReadingKeys, SourceKeys, UnitKeys};
 
 /// Messages for a manifest that cannot be read at all.
 const READ_MESSAGES: Wording = Wording { unreadable: "manifest.unreadable", folder: "text_file.no_manifest" };
@@ -82,6 +82,7 @@ impl Manifest {
             time_unit: own.time_unit.or_else(|| other.time_unit.clone()),
             only: own.only.or_else(|| other.only.clone()),
             rows: own.rows.or(other.rows),
+            sources: if own.sources.is_empty() { other.sources.clone() } else { own.sources },
         }
     }
 }
@@ -121,7 +122,10 @@ pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Man
             serial: tables.serial.take(),
             unit: std::mem::take(&mut tables.unit).into(),
             contiguous: tables.contiguous,
-            options: options(std::mem::take(&mut tables.recording), folder, reader),
+            options: ReadOptions {
+                sources: sources(std::mem::take(&mut tables.sources), folder, reader),
+                ..options(std::mem::take(&mut tables.recording), folder, reader)
+            },
             files: files(tables, folder, reader),
         }
     });
@@ -256,6 +260,31 @@ fn by_pattern(pattern: &str, span: &Span, folder: &Path, reader: &mut Reader<'_>
         let relative = path.strip_prefix(folder).unwrap_or(&path).to_string_lossy().into_owned();
         if let Some(file) = contained_files::file(&relative, folder, &at, reader) {
             found.push(ManifestFile { path: file.path, sha256: None, phase: None });
+        }
+    }
+    found
+}
+
+/// The files that were recorded beside the recording.
+fn sources(listed: Vec<SourceKeys>, folder: &Path, reader: &mut Reader<'_>) -> Vec<SecondSource> {
+    let mut found = Vec::new();
+    for SourceKeys {
+        path,
+        sha256,
+        time_offset_s,
+        time_offset_uncertainty_s,
+        estimate_offset,
+        time_rate,
+        section,
+    } in listed
+    {
+        let Some(text) = path else { continue };
+        let at = reader.source.inside_quotes(&section.span_of("path"));
+        let Some(file) = contained_files::file(&text, folder, &at, reader) else { continue };
+        if sha256.is_none_or(|stated| hash_holds(&stated, &file.path, &section, reader)) {
+            let (path, offset_s, estimate) = (file.path, time_offset_s, estimate_offset);
+            let offset_uncertainty_s = time_offset_uncertainty_s;
+            found.push(SecondSource { path, offset_s, rate: time_rate, offset_uncertainty_s, estimate });
         }
     }
     found

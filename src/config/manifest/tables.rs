@@ -37,6 +37,9 @@ pub(super) struct ManifestTables {
     /// The files, one table each, in their order.
     #[key(name = "file")]
     pub listed: Vec<FileKeys>,
+    /// Files recorded beside the recording with clocks of their own, one table each.
+    #[key(name = "source")]
+    pub sources: Vec<SourceKeys>,
     #[key(section)]
     pub section: Section,
 }
@@ -87,6 +90,34 @@ pub(super) struct FileKeys {
     /// Phase of the test that the file belongs to.
     #[key(id, example = "soak")]
     pub phase: Option<String>,
+    #[key(section)]
+    pub section: Section,
+}
+
+/// A file recorded beside the recording, such as the log of a chamber. Its columns are interpolated at the timestamps of
+/// the recording; outputs of gyros in it are not read.
+#[derive(Table)]
+#[table("source")]
+pub(super) struct SourceKeys {
+    /// Path relative to the manifest, with `/`. It cannot lead out of the manifest's folder.
+    #[key(required, example = "chamber.csv")]
+    pub path: Option<String>,
+    /// SHA-256 of the file, checked before anything is read.
+    #[key(example = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855")]
+    pub sha256: Option<String>,
+    /// Time that is added to its timestamps to give those of the recording. May be omitted if both files state dates.
+    #[key(quantity = "s", example = "-3.2 s")]
+    pub time_offset_s: Option<f64>,
+    /// Standard uncertainty of that time, or of the dates. It becomes a component of every quantity that depends on it.
+    #[key(quantity = "s", min = 0, default = "0 s", example = "0.2 s")]
+    pub time_offset_uncertainty_s: f64,
+    /// True to estimate the offset and rate of its clock from what both files record, the angle of a table and a rate or a
+    /// temperature in both. Without dates, the two must have started within a minute of each other.
+    #[key(default = false, example = true)]
+    pub estimate_offset: bool,
+    /// Relative excess of its seconds over those of the recording.
+    #[key(quantity = "1", min = -0.1, max = 0.1, default = "0 ppm", example = "20 ppm")]
+    pub time_rate: f64,
     #[key(section)]
     pub section: Section,
 }

@@ -5,6 +5,7 @@
 //!
 //! `SAGNAC_REAL_DATA=... cargo test --test it real -- --nocapture`
 
+mod clocks;
 mod explain;
 mod inspect;
 mod kinds;

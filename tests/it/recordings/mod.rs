@@ -8,5 +8,6 @@ mod cut;
 mod inspect;
 mod plausible;
 mod raw;
+mod second_source;
 mod text;
 mod time_base;

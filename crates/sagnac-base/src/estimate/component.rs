@@ -31,6 +31,10 @@ pub enum InputQuantity {
     TemperatureDifference,
     /// Rounding of the readings.
     Rounding,
+    /// Offset of the clock of a file beside the recording.
+    ClockOffset,
+    /// Rate of the clock of a file beside the recording.
+    ClockRate,
     /// What the inputs of a formula have in common.
     FormulaInputs,
 }
@@ -121,7 +125,7 @@ impl CommonTo {
 
 impl InputQuantity {
     /// All of them.
-    pub const ALL: [InputQuantity; 11] = [
+    pub const ALL: [InputQuantity; 13] = [
         InputQuantity::Readings,
         InputQuantity::EarthRate,
         InputQuantity::TableRate,
@@ -132,6 +136,8 @@ impl InputQuantity {
         InputQuantity::InfluenceLevel,
         InputQuantity::TemperatureDifference,
         InputQuantity::Rounding,
+        InputQuantity::ClockOffset,
+        InputQuantity::ClockRate,
         InputQuantity::FormulaInputs,
     ];
 
@@ -145,7 +151,8 @@ impl InputQuantity {
             InputQuantity::TableRate | InputQuantity::AxisAlignment => {
                 (Certificate, Normal, Some(CommonTo::Table))
             }
-            InputQuantity::TableAngle => (Certificate, Normal, None),
+            InputQuantity::TableAngle | InputQuantity::ClockOffset => (Certificate, Normal, None),
+            InputQuantity::ClockRate => (Measured, Normal, None),
             InputQuantity::EarthOverTurns
             | InputQuantity::TemperatureDifference
             | InputQuantity::Rounding => (Assumed, Uniform, None),
@@ -173,6 +180,8 @@ impl InputQuantity {
             InputQuantity::InfluenceLevel => "influence_level",
             InputQuantity::TemperatureDifference => "temperature_difference",
             InputQuantity::Rounding => "rounding",
+            InputQuantity::ClockOffset => "clock_offset",
+            InputQuantity::ClockRate => "clock_rate",
             InputQuantity::FormulaInputs => "formula_inputs",
         }
     }

@@ -110,3 +110,31 @@ fn a_quantity_known_to_be_beyond_its_limit_fails_though_it_has_no_value() {
     assert_eq!(judge(&at_least(8000.0, 0.95), &limit).verdict, Verdict::Indeterminate);
     assert_eq!(judge(&at_least(10_000.0, 0.5), &limit).verdict, Verdict::Indeterminate);
 }
+
+#[test]
+fn a_component_adds_in_quadrature_on_each_side() {
+    let half = |spread: &Spread| {
+        let interval = spread.interval(1.0, 0.95).unwrap();
+        (1.0 - interval.low, interval.high - 1.0)
+    };
+    let laws = [
+        Spread::Normal { standard_uncertainty: 0.03 },
+        Spread::StudentT { standard_uncertainty: 0.03, dof: 200.0 },
+        Spread::ChiSquare { dof: 20.0 },
+        Spread::Curve(vec![(-3.0, 0.7), (0.0, 1.0), (3.0, 1.9)]),
+    ];
+    for law in &laws {
+        let middle = law.bound(1.0, 0.5).unwrap();
+        let wider = law.with_component(1.0, 0.1);
+        let sides = |of: &Spread| {
+            let (low, high) = half(of);
+            [middle - 1.0 + low, high + 1.0 - middle]
+        };
+        for (before, after) in sides(law).into_iter().zip(sides(&wider)) {
+            let expected = before.hypot(1.96 * 0.1);
+            assert!((after / expected - 1.0).abs() < 0.01, "{law:?}: {after} instead of {expected}");
+        }
+        assert_eq!(&law.with_component(1.0, 0.0), law);
+    }
+    assert_eq!(Spread::Unknown.with_component(1.0, 0.1), Spread::Unknown);
+}

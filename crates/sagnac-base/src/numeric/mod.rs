@@ -2,6 +2,7 @@
 //!
 //! | module | what it has |
 //! |---|---|
+//! | [`clock_tie`] | offset and rate between two clocks from a quantity that both record |
 //! | [`cosine`] | discrete cosine transforms, and the modes of a sinusoid |
 //! | [`optimize`] | bisection, golden sections, step rules of Newton ascents, bounded quadratics |
 //! | [`least_squares`] | weighted least squares with priors |
@@ -13,6 +14,7 @@
 //! | [`range`], [`decimal`] | magnitudes that figures are right for; decimals of a number |
 
 pub mod cholesky;
+pub mod clock_tie;
 pub mod cosine;
 pub mod decimal;
 pub mod least_squares;
