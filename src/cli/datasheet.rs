@@ -12,10 +12,10 @@ use crate::ingest::each_of;
 use crate::ingest::result_table::{TableResult, results_in, tables_at};
 use crate::lot::tolerance::Promise;
 use crate::output::{Kind, StagedFolder};
-use crate::record::DataSheet;
+use crate::record::{DataSheet, SheetAudience};
 use crate::report::Results;
 use crate::store::Filter;
-use clap::Args;
+use clap::{Args, ValueEnum};
 use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
@@ -45,11 +45,21 @@ pub struct DatasheetArgs {
     /// Rows, names, units and footnotes of the sheet (TOML) [default: every quantity]
     #[arg(long, value_name = "FILE")]
     sheet: Option<PathBuf>,
+    /// Pages of the reader: the engineer's with every detail, or one for customers with it as an annex
+    #[arg(long, value_name = "AUDIENCE", default_value = "engineer")]
+    audience: Audience,
     /// Output folder [default: named after the model and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
     #[command(flatten)]
     output: OutputArgs,
+}
+
+/// Reader of the pages.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Audience {
+    Engineer,
+    Customer,
 }
 
 pub fn main(args: &DatasheetArgs, lang: Lang) -> Result<u8, String> {
@@ -94,6 +104,10 @@ impl<'a> Sheet<'a> {
         })?;
         selected.notes.extend(broken);
         let mut sheet = datasheet(selected, promise, frame.stamp());
+        sheet.audience = match args.audience {
+            Audience::Engineer => SheetAudience::Engineer,
+            Audience::Customer => SheetAudience::Customer,
+        };
         if let Some(rows) = &rows {
             apply(&mut sheet, rows);
         }

@@ -15,6 +15,7 @@ mod explain;
 mod explain_args;
 mod explain_jointly;
 mod export;
+mod figure;
 mod help;
 mod history;
 mod init;
@@ -120,6 +121,11 @@ enum Verb {
     #[command(after_help = "Examples:\n  sagnac export reports/SN-0042 --for kalibr --out imu0.yaml\n  \
         sagnac export reports/SN-0042 --for gazebo --channels gyro_x,gyro_y,gyro_z")]
     Export(export::ExportArgs),
+    /// Draw a figure of results for a paper: of several records in one, with few layers, at the width of a column
+    #[command(after_help = "Examples:\n  sagnac figure reports/SN-0042 sigma-tau --out allan.pdf --width 85mm\n  \
+        sagnac figure reports/SN-0042 reports/SN-0043 sigma-tau --unit deg/sqrt(h) --out two.svg\n  \
+        sagnac figure reports/SN-0042 sigma-tau --layers data,terms,labels --out terms.svg")]
+    Figure(figure::FigureArgs),
     /// Find where a recording differs from its simulation, and why
     #[command(
         after_help = "Exit codes: 0 consistent, 1 mismatch explained, 2 could not run, 3 unknown mismatch.\n\n\
@@ -159,7 +165,7 @@ enum Verb {
     Effects(effects::EffectsArgs),
     /// Write the data sheet of a lot from the results of its units, with limits that it can keep
     #[command(after_help = "Examples:\n  sagnac datasheet reports/*/result.json --out sheet\n  \
-        sagnac datasheet 'samples/lot/*/result.json' --lang ru --out sheet\n  \
+        sagnac datasheet 'samples/lot/*/result.json' --audience customer --out sheet\n  \
         sagnac datasheet --store /srv/sagnac --device-model OIUS-501 --lot 2026-14")]
     Datasheet(datasheet::DatasheetArgs),
     /// Compare Russian and Allan figures and explain their ratio
@@ -248,6 +254,7 @@ pub fn main() -> ExitCode {
         Verb::Analyze(args) => analyze::main(&args, lang),
         Verb::Report(args) => report::main(&args, lang),
         Verb::Export(args) => export::main(&args, lang),
+        Verb::Figure(args) => figure::main(&args, lang),
         Verb::Compare(args) => compare::main(&args, lang),
         Verb::Datasheet(args) => datasheet::main(&args, lang),
         Verb::Model(args) => model::main(&args, lang),

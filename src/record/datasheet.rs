@@ -18,6 +18,9 @@ pub struct DataSheet {
     pub program: Program,
     /// When, RFC 3339, UTC.
     pub made_at: String,
+    /// Reader of its pages; absent for the engineer.
+    #[serde(default, skip_serializing_if = "SheetAudience::is_engineer")]
+    pub audience: SheetAudience,
     /// Title that a sheet file gives.
     #[serde(flatten, with = "super::local::title")]
     #[cfg_attr(feature = "schema", schemars(with = "super::local::title::Members<Option<String>>"))]
@@ -45,6 +48,25 @@ pub struct DataSheet {
     pub temperature_curves: Vec<SheetTemperatureCurve>,
     /// The results that count, each with its hash.
     pub results: Vec<SheetResult>,
+}
+
+/// Reader of the pages of a sheet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum SheetAudience {
+    /// Who tests the units: every detail.
+    #[default]
+    Engineer,
+    /// Who buys them: one page, with the details as its annex.
+    Customer,
+}
+
+impl SheetAudience {
+    /// True for the reader that a sheet has where it names none.
+    pub fn is_engineer(&self) -> bool {
+        *self == SheetAudience::Engineer
+    }
 }
 
 /// Identity of a procedure.

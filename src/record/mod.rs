@@ -36,10 +36,10 @@ pub use comparison::{
 };
 pub use context::{ClauseRecord, ExclusionRecord, InstrumentRecord, OptionRecord, WaiverRecord};
 pub use datasheet::{
-    DATASHEET_FORMAT, DataSheet, SheetBound, SheetCondition, SheetCurve, SheetLargest, SheetLimit, SheetOf,
-    SheetOutlook, SheetPair, SheetPoint, SheetProcedure, SheetQuantity, SheetResult, SheetRisk, SheetScale,
-    SheetShare, SheetSide, SheetSpread, SheetTemperatureCurve, SheetTemperaturePoint, SheetTypical,
-    SheetUnitCurve, SheetValue,
+    DATASHEET_FORMAT, DataSheet, SheetAudience, SheetBound, SheetCondition, SheetCurve, SheetLargest,
+    SheetLimit, SheetOf, SheetOutlook, SheetPair, SheetPoint, SheetProcedure, SheetQuantity, SheetResult,
+    SheetRisk, SheetScale, SheetShare, SheetSide, SheetSpread, SheetTemperatureCurve, SheetTemperaturePoint,
+    SheetTypical, SheetUnitCurve, SheetValue,
 };
 pub use day::{DAY_FORMAT, DayRecord, DayTest, EVENT_FORMAT, HookState, Untested, WatchEvent};
 pub use deviation::DeviationRecord;

@@ -17,6 +17,7 @@ pub mod lot;
 pub mod methods;
 pub mod number;
 pub mod page;
+pub mod paper;
 pub mod parameters;
 pub mod pdf;
 pub mod plan;

@@ -137,6 +137,8 @@ pub enum ReportError {
     Parquet(String),
     /// This build makes no PDF.
     NoPdf,
+    /// This build writes figures as SVG alone.
+    SvgOnly,
     /// A page cannot be typeset.
     Pdf(String),
 }
@@ -175,6 +177,7 @@ impl ReportError {
                 note!("dcc.refused", list = Arg::Several(all, "; ".into()))
             }
             ReportError::NoPdf => "pdf.none".into(),
+            ReportError::SvgOnly => "figure_paper.svg_only".into(),
             ReportError::Pdf(reason) => note!("pdf.refused", reason = reason.as_str()),
         }
     }

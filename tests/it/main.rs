@@ -19,6 +19,7 @@ mod each;
 mod edges;
 mod error_reports;
 mod explain;
+mod figure;
 mod extended;
 mod goodness_of_fit;
 mod guarded_decoders;

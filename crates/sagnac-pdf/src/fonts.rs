@@ -8,7 +8,8 @@ use typst::utils::LazyHash;
 /// Families in the order in which a letter is looked for.
 pub const FONT_FAMILIES: [&str; 3] = ["Noto Sans", "Noto Sans Math", "Noto Sans Symbols2"];
 
-static FONT_FILES: [&[u8]; 6] = [
+/// The files of the fonts.
+pub static FONT_FILES: [&[u8]; 6] = [
     include_bytes!("../fonts/NotoSans-Regular.ttf"),
     include_bytes!("../fonts/NotoSans-Bold.ttf"),
     include_bytes!("../fonts/NotoSans-Italic.ttf"),

@@ -5,12 +5,14 @@
 //! `<!-- summary -->`, is the summary.
 
 mod attached;
+mod drawing;
 mod fonts;
 mod layout;
 mod markup;
 mod world;
 
 pub use attached::attached;
+pub use drawing::{Drawing, drawing_as_pdf, drawing_as_png};
 
 use std::collections::BTreeMap;
 use typst::diag::{SourceDiagnostic, Warned};
@@ -112,7 +114,7 @@ pub struct PdfError(Vec<String>);
 /// # Errors
 /// [`PdfError`] with what the typesetter says: a drawing that cannot be read, or a text that no standard allows.
 pub fn typeset(paper: &Paper<'_>) -> Result<Vec<u8>, PdfError> {
-    let world = InMemory::new(paper);
+    let world = InMemory::of_paper(paper);
     let Warned { output, .. } = typst::compile::<PagedDocument>(&world);
     let document = output.map_err(|errors| said(&errors))?;
     let standards = PdfStandards::new(&[PdfStandard::A_3a, PdfStandard::Ua_1])
@@ -138,6 +140,7 @@ impl Moment {
     }
 }
 
+/// What the typesetter says.
 fn said(errors: &[SourceDiagnostic]) -> PdfError {
     PdfError(errors.iter().map(|e| e.message.to_string()).collect())
 }

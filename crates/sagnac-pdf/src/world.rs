@@ -18,15 +18,20 @@ pub struct InMemory {
 }
 
 impl InMemory {
-    /// The files of a document.
-    pub fn new(paper: &Paper<'_>) -> InMemory {
+    /// The files of a paper.
+    pub fn of_paper(paper: &Paper<'_>) -> InMemory {
         let drawings = paper.drawings.iter().map(|(name, svg)| (name.as_str(), svg.as_slice()));
         let all = drawings.chain(paper.attachments.iter().map(|a| (a.name, a.bytes)));
+        InMemory::new(layout::document(paper), all)
+    }
+
+    /// A document in the typesetter's language with the files that it names.
+    pub fn new<'a>(document: String, all: impl Iterator<Item = (&'a str, &'a [u8])>) -> InMemory {
         // A name that is no path of this world is not found when the document asks for it.
         let files = all.filter_map(|(name, bytes)| Some((id(name)?, Bytes::new(bytes.to_vec())))).collect();
         let main = match id(layout::MAIN_FILE) {
-            Some(id) => Source::new(id, layout::document(paper)),
-            None => Source::detached(layout::document(paper)),
+            Some(id) => Source::new(id, document),
+            None => Source::detached(document),
         };
         InMemory { library: LazyHash::new(Library::default()), main, files }
     }

@@ -17,7 +17,9 @@ pub use units::{Refusal, TestedUnit, select};
 use crate::i18n::note;
 use crate::lot::free::units_for_largest;
 use crate::lot::tolerance::Promise;
-use crate::record::{DATASHEET_FORMAT, DataSheet, Message, Program, SheetCondition, SheetResult};
+use crate::record::{
+    DATASHEET_FORMAT, DataSheet, Message, Program, SheetAudience, SheetCondition, SheetResult,
+};
 use crate::recording::window::Window;
 use std::collections::BTreeSet;
 use units::Selected;
@@ -40,6 +42,7 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
         format: DATASHEET_FORMAT.to_owned(),
         program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
         made_at,
+        audience: SheetAudience::default(),
         title: None,
         model,
         procedure,

@@ -1,5 +1,6 @@
 //! The document of a data sheet: the quantities of a lot with their bounds, and where every value comes from.
 
+mod customer;
 mod quantity;
 
 use super::document::{Documented, Record};
@@ -11,7 +12,7 @@ use crate::acceptance::datasheet::figures::figure_id;
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize};
 use crate::output::Kind;
-use crate::record::{DataSheet, SheetCondition, SheetPair, SheetResult};
+use crate::record::{DataSheet, SheetAudience, SheetCondition, SheetPair, SheetResult};
 use quantity::{Printed, several_channels};
 
 impl Documented for DataSheet {
@@ -62,51 +63,96 @@ fn pages(sheet: &DataSheet, figures: &[Figure], words: Translator) -> Page {
         ..Head::default()
     };
     let all = Printed::all(sheet, words);
-    let notes = Block::remarks(sheet.notes.iter().map(|n| n.say(words.lang)));
-    let quantities = [Block::Table(quantity::table(&all, words)), Block::Hint(words.t("datasheet.reading"))];
-    let pairs = || {
-        let below = vec![
-            Block::Table(pairs(&sheet.pairs, several_channels(sheet), words)),
-            Block::Hint(words.t("datasheet.pairs_hint")),
-        ];
-        Block::section("", words.t("datasheet.pairs"), below)
+    let is_for_customers = sheet.audience == SheetAudience::Customer;
+    let kind = if is_for_customers { words.t("datasheet.customer.kind") } else { head.kind.clone() };
+    let title = format!("{} · {kind}", head.title);
+    let blocks = if is_for_customers {
+        // One curve of each kind fits on the page; the others stand in the annex.
+        let of = |kind| curves(sheet, figures, kind, words);
+        let (mut shown, mut others) = (vec![], vec![]);
+        for mut of_kind in [of(CurveKind::SigmaTau), of(CurveKind::OverTemperature)].map(Vec::into_iter) {
+            shown.extend(of_kind.next());
+            others.extend(of_kind);
+        }
+        let annex =
+            [customer::annex(words)].into_iter().chain(detailed(sheet, &all, figures, words, others, None));
+        // The summary has ended with the page for customers.
+        let annex = annex.filter(|block| *block != Block::SummaryEnd);
+        customer::blocks(sheet, &all, shown, words).into_iter().chain(annex).collect()
+    } else {
+        let of = |kind| curves(sheet, figures, kind, words);
+        let curves = of(CurveKind::SigmaTau).into_iter().chain(of(CurveKind::OverTemperature)).collect();
+        let below = detailed(sheet, &all, figures, words, curves, pairs_section(sheet, words));
+        std::iter::once(Block::Head(head)).chain(below).collect()
     };
-    let curves = sheet.curves.iter().map(|c| format!("sigma_tau_{}", c.channel));
-    let curves = curves
-        .chain(sheet.temperature_curves.iter().map(|c| format!("over_temperature_{}", c.channel)))
-        .filter_map(|id| FigureView::find(figures, &id, words))
-        .map(|f| {
-            Block::Section("figures", vec![Block::Figure(Box::new(FigureView { is_titled: true, ..f }))])
-        });
+    Page { title, footer: format!("{} · {generator}", date_time(&sheet.made_at)), blocks, generator }
+}
+
+/// Kinds of curves over the units of a lot.
+#[derive(Debug, Clone, Copy)]
+enum CurveKind {
+    SigmaTau,
+    OverTemperature,
+}
+
+/// The curves of a kind, as they are drawn.
+fn curves(sheet: &DataSheet, figures: &[Figure], kind: CurveKind, words: Translator) -> Vec<FigureView> {
+    let ids: Vec<String> = match kind {
+        CurveKind::SigmaTau => sheet.curves.iter().map(|c| format!("sigma_tau_{}", c.channel)).collect(),
+        CurveKind::OverTemperature => {
+            sheet.temperature_curves.iter().map(|c| format!("over_temperature_{}", c.channel)).collect()
+        }
+    };
+    ids.iter().filter_map(|id| FigureView::find(figures, id, words)).collect()
+}
+
+/// What an engineer reads of a sheet, below its head.
+fn detailed(
+    sheet: &DataSheet,
+    all: &[Printed<'_>],
+    figures: &[Figure],
+    words: Translator,
+    curves: Vec<FigureView>,
+    pairs: Option<Block>,
+) -> Vec<Block> {
+    let generator = format!("{} {}", sheet.program.name, sheet.program.version);
+    let notes = Block::remarks(sheet.notes.iter().map(|n| n.say(words.lang)));
+    let quantities = [Block::Table(quantity::table(all, words)), Block::Hint(words.t("datasheet.reading"))];
+    let curves = curves.into_iter().map(|f| {
+        Block::Section("figures", vec![Block::Figure(Box::new(FigureView { is_titled: true, ..f }))])
+    });
     let each = all.iter().enumerate();
     let each = each.map(|(i, q)| q.section(FigureView::find(figures, &figure_id(i), words)));
     let facts = identity(sheet, words, &generator).into_iter();
     let facts = facts.chain(sheet.conditions.iter().map(|c| condition(c, words)));
-    Page {
-        title: format!("{} · {}", head.title, head.kind),
-        footer: format!("{} · {generator}", date_time(&sheet.made_at)),
-        blocks: std::iter::once(Block::Head(head))
-            .chain(promise(sheet, words).map(Block::Hint))
-            .chain([
-                Block::section(
-                    "",
-                    words.t("datasheet.quantities"),
-                    quantities.into_iter().chain(notes).collect(),
-                ),
-                Block::section("identity", words.t("datasheet.conditions"), vec![Block::identity(facts)]),
-            ])
-            .chain((!sheet.pairs.is_empty()).then(pairs))
-            .chain(curves)
-            .chain((!all.is_empty()).then_some(Block::SummaryEnd))
-            .chain(each)
-            .chain([Block::section(
+    promise(sheet, words)
+        .map(Block::Hint)
+        .into_iter()
+        .chain([
+            Block::section(
                 "",
-                words.t("datasheet.results"),
-                vec![Block::Table(results(&sheet.results, words))],
-            )])
-            .collect(),
-        generator,
-    }
+                words.t("datasheet.quantities"),
+                quantities.into_iter().chain(notes).collect(),
+            ),
+            Block::section("identity", words.t("datasheet.conditions"), vec![Block::identity(facts)]),
+        ])
+        .chain(pairs)
+        .chain(curves)
+        .chain((!all.is_empty()).then_some(Block::SummaryEnd))
+        .chain(each)
+        .chain([Block::section(
+            "",
+            words.t("datasheet.results"),
+            vec![Block::Table(results(&sheet.results, words))],
+        )])
+        .collect()
+}
+
+/// Russian beside Allan values; `None` where the sheet has none.
+fn pairs_section(sheet: &DataSheet, words: Translator) -> Option<Block> {
+    let table = || pairs(&sheet.pairs, several_channels(sheet), words);
+    let below = || vec![Block::Table(table()), Block::Hint(words.t("datasheet.pairs_hint"))];
+    (!sheet.pairs.is_empty()).then(|| Block::section("", words.t("datasheet.pairs"), below()))
 }
 
 /// The title that a sheet file gives, or the model, or the procedure where none is named.

@@ -11,7 +11,8 @@ use crate::report::view::FigureView;
 
 /// A quantity over the lot, with how its numbers are printed.
 pub(super) struct Printed<'a> {
-    quantity: &'a SheetQuantity,
+    /// The quantity.
+    pub quantity: &'a SheetQuantity,
     /// Name, with its phase, and its channel where there are several.
     name: String,
     /// Rounding by the interval of the median; absent without a median.
@@ -53,8 +54,14 @@ impl<'a> Printed<'a> {
         sheet.quantities.iter().map(printed).collect()
     }
 
+    /// The name without the phase, which is a condition, and with the channel where there are several.
+    pub(super) fn parameter(&self) -> String {
+        let phase = self.quantity.phase.as_ref().map(|phase| format!(" · {phase}"));
+        phase.map_or_else(|| self.name.clone(), |phase| self.name.replacen(&phase, "", 1))
+    }
+
     /// A number as the median is rounded.
-    fn show(&self, value: f64) -> String {
+    pub(super) fn show(&self, value: f64) -> String {
         let lang = self.words.lang;
         self.rounding.map_or_else(|| limit_digits(value, 4, lang), |r| r.show(value, lang))
     }
@@ -188,7 +195,7 @@ fn promised(q: &SheetQuantity, b: &SheetBound, words: Translator) -> String {
     words.with(key, &[("value", &value), ("proportion", &proportion), ("confidence", &confidence)])
 }
 
-fn limit_text(q: &SheetQuantity, words: Translator) -> String {
+pub(super) fn limit_text(q: &SheetQuantity, words: Translator) -> String {
     let Some(limit) = q.limit else { return String::new() };
     let shown = |v: f64| crate::report::number::limit(v, words.lang);
     match (limit.min, limit.max) {

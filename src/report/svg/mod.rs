@@ -13,20 +13,35 @@ mod write;
 use crate::figure::{Figure, Panel};
 use crate::i18n::{Lang, lookup};
 use layer::Plot;
-use layout::{Layout, WIDTH, ends_abscissa};
+pub use layout::Canvas;
+use layout::{Layout, ends_abscissa};
 pub(crate) use pointer::readings;
 use std::fmt::Write;
 pub(crate) use write::escape;
 use write::{Anchor, FONT, px, text, width};
 
+/// A figure as it is drawn.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Drawing {
+    /// The drawing.
+    pub svg: String,
+    /// Width and height on paper, mm.
+    pub size_mm: (f64, f64),
+}
+
+/// Draws a figure for a page.
+pub fn render(figure: &Figure, lang: Lang) -> String {
+    draw(figure, Canvas::Page, lang).svg
+}
+
 /// Draws a figure.
 ///
 /// Data that cannot be drawn (nothing, one point, a constant, NaN, values without a logarithm) gives axes without it.
-pub fn render(figure: &Figure, lang: Lang) -> String {
+pub fn draw(figure: &Figure, canvas: Canvas, lang: Lang) -> Drawing {
     let say = |key: &str| lookup(lang, key).unwrap_or(key).to_owned();
     let id: String =
         figure.id.chars().map(|c| if c.is_ascii_alphanumeric() || c == '_' { c } else { '-' }).collect();
-    let layout = Layout::new(figure, lang);
+    let layout = Layout::new(figure, canvas, lang);
     let legends = layout.legends(figure, lang);
 
     let mut body = String::new();
@@ -34,25 +49,44 @@ pub fn render(figure: &Figure, lang: Lang) -> String {
     if !figure.channel.is_empty() {
         title = format!("{title} · {}", figure.channel);
     }
-    let shown_title = write::cut(&title, 14.0, WIDTH - 10.0);
-    text(&mut body, (0.0, 15.0), Anchor::Start, 14.0, " font-weight=\"600\"", &shown_title);
+    if canvas.is_titled() {
+        let shown = write::cut(&title, 14.0, canvas.width() - 10.0);
+        text(&mut body, (0.0, 15.0), Anchor::Start, 14.0, " font-weight=\"600\"", &shown);
+    }
 
     let mut description = vec![];
     let (plots, height) = layout.plots(figure, &legends);
     for (i, ((panel, plot), legend)) in figure.panels.iter().zip(&plots).zip(&legends).enumerate() {
         legend.draw(&mut body, layout.left, plot.top - legend.height() - 4.0);
-        draw_panel(&mut body, plot, panel, &format!("{id}-{i}"), ends_abscissa(figure, i), lang);
+        let place = Place {
+            clip: format!("{id}-{i}"),
+            ends_abscissa: ends_abscissa(figure, i),
+            width: canvas.width(),
+        };
+        draw_panel(&mut body, plot, panel, &place, lang);
         description.push(format!("{} / {}: {}", plot.y.title, plot.x.title, legend.words().join("; ")));
     }
-    page(&id, &title, &description.join(". "), height, &body)
+    let svg = page(&id, &title, &description.join(". "), (canvas, height), &body);
+    Drawing { svg, size_mm: (canvas.millimetres(canvas.width()), canvas.millimetres(height)) }
 }
 
 /// Size of the words of an ordinate on two lines, px.
 const SMALL: f64 = 10.0;
 
+/// A panel in its drawing.
+struct Place {
+    /// Id of what cuts its layers off.
+    clip: String,
+    /// True where the words of the abscissa stand below it.
+    ends_abscissa: bool,
+    /// Width of the drawing, px.
+    width: f64,
+}
+
 /// A panel with its axes, its layers cut off at the frame, and its words.
-fn draw_panel(body: &mut String, plot: &Plot<'_>, panel: &Panel, clip: &str, last: bool, lang: Lang) {
-    axes(body, plot, last);
+fn draw_panel(body: &mut String, plot: &Plot<'_>, panel: &Panel, place: &Place, lang: Lang) {
+    let clip = &place.clip;
+    axes(body, plot, place);
     let _ = writeln!(
         body,
         "<clipPath id=\"{clip}\"><rect x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\"/></clipPath>",
@@ -71,26 +105,34 @@ fn draw_panel(body: &mut String, plot: &Plot<'_>, panel: &Panel, clip: &str, las
 }
 
 /// The drawing around its body, with title and description for those who do not see it.
-fn page(id: &str, title: &str, description: &str, height: f64, body: &str) -> String {
+fn page(id: &str, title: &str, description: &str, (canvas, height): (Canvas, f64), body: &str) -> String {
     let mut out = String::with_capacity(body.len() + 700);
+    let (across, size) = match canvas {
+        Canvas::Page => (canvas.width(), String::new()),
+        Canvas::Paper { width_mm } => {
+            let size = format!("width=\"{width_mm}mm\" height=\"{:.2}mm\" ", canvas.millimetres(height));
+            (canvas.width(), size)
+        }
+    };
     let _ = writeln!(
         out,
-        "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {} {}\" role=\"img\" \
+        "<svg xmlns=\"http://www.w3.org/2000/svg\" {size}viewBox=\"0 0 {} {}\" role=\"img\" \
          aria-labelledby=\"{id}-title {id}-desc\" font-family=\"system-ui, 'Segoe UI', Roboto, 'Helvetica Neue', \
          Arial, sans-serif\" fill=\"#111\">",
-        px(WIDTH),
+        px(across),
         px(height)
     );
     let _ = writeln!(out, "<title id=\"{id}-title\">{}</title>", escape(title));
     let _ = writeln!(out, "<desc id=\"{id}-desc\">{}</desc>", escape(description));
-    let _ = writeln!(out, "<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>", px(WIDTH), px(height));
+    let _ = writeln!(out, "<rect width=\"{}\" height=\"{}\" fill=\"#fff\"/>", px(across), px(height));
     out.push_str(body);
     out.push_str("</svg>\n");
     out
 }
 
 /// Grid, marks and words of the axes; the words of the abscissa on the last panel that shares it.
-fn axes(out: &mut String, plot: &Plot<'_>, last: bool) {
+fn axes(out: &mut String, plot: &Plot<'_>, place: &Place) {
+    let last = place.ends_abscissa;
     let (left, top) = (plot.left, plot.top);
     let (right, bottom) = (left + plot.width, top + plot.height);
     let (mut major, mut minor, mut words) = (String::new(), String::new(), String::new());
@@ -101,7 +143,7 @@ fn axes(out: &mut String, plot: &Plot<'_>, last: bool) {
         if let (Some(label), true) = (&tick.label, last) {
             // The word of a mark at the very edge stays on the paper.
             let half = 0.5 * width(label, FONT);
-            let x = x.clamp(half, WIDTH - half);
+            let x = x.clamp(half, (place.width - half).max(half));
             text(&mut words, (x, bottom + 16.0), Anchor::Middle, FONT, "", label);
         }
     }

@@ -2,7 +2,7 @@
 
 use super::axis::Ruled;
 use super::layer::Plot;
-use super::layout::Layout;
+use super::layout::{Canvas, Layout};
 use super::style::look;
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 use crate::i18n::{Lang, lookup};
@@ -65,7 +65,7 @@ enum Kind {
 
 /// The readings of a figure as JSON; empty where nothing can be read off.
 pub(crate) fn readings(figure: &Figure, lang: Lang) -> String {
-    let layout = Layout::new(figure, lang);
+    let layout = Layout::new(figure, Canvas::Page, lang);
     let legends = layout.legends(figure, lang);
     let (plots, _) = layout.plots(figure, &legends);
     let drawn = figure.panels.iter().zip(&plots).filter(|(panel, _)| panel.x.scale != Scale::Polar);

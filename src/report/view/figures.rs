@@ -98,7 +98,7 @@ fn numbered(figure: &Figure, number: usize, part: &Part<'_>) -> Block {
 }
 
 /// What is to be seen, in a sentence, and the numbers that belong to it.
-fn caption(figure: &Figure, words: Translator) -> String {
+pub(in crate::report) fn caption(figure: &Figure, words: Translator) -> String {
     let id = figure.title.strip_prefix("figure.title.").unwrap_or_default();
     let mut sentences: Vec<String> =
         lookup(words.lang, &format!("figure.caption.{id}")).map(str::to_owned).into_iter().collect();

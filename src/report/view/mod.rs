@@ -26,6 +26,7 @@ mod table_steps;
 pub(super) use conditions::{Condition, conditions, declared};
 pub(super) use faults::FaultKinds;
 pub use figures::FigureView;
+pub(super) use figures::caption;
 pub(super) use lines::sentences as line_sentences;
 pub(super) use page::page;
 pub(super) use part::{Part, Phase};

@@ -3,6 +3,7 @@
 //! `cargo test --test it datasheet -- --ignored write_the_samples` writes `samples/lot/` anew.
 
 mod by_others;
+mod customer;
 mod over_temperature;
 mod rows;
 mod samples;
