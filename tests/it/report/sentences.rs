@@ -13,6 +13,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/config/procedure/tables/limits.rs", "meanings of words of keys for the schema and the guide"),
     ("src/config/procedure/tables/rate_table.rs", "meanings of words of keys for the schema and the guide"),
     ("src/config/procedure/tables/temperature.rs", "meanings of words of keys for the schema and the guide"),
+    ("src/config/procedure/instrument.rs", "meanings of words of keys for the schema and the guide"),
     ("src/config/procedure/unit_facts.rs", "meanings of words of keys for the schema and the guide"),
     ("src/config/laboratory.rs", "meanings of words of keys: documentation, as of procedures"),
     ("src/store/index/", "statements of SQL"),
@@ -70,6 +71,7 @@ const LITERALS: &[(&str, &str, &str)] = &[
     ("src/report/view/evidence.rs", "dense clauses cards", "classes of a table in HTML"),
     ("src/report/view/further.rs", "measurands matrix cards", "classes of a table in HTML"),
     ("src/report/day/mod.rs", "units small cards", "classes of a table in HTML"),
+    ("src/report/view/budget.rs", "units small cards", "classes of a table in HTML"),
     ("src/report/lot/quantity.rs", "units small cards", "classes of a table in HTML"),
     (
         "src/record/message.rs",
