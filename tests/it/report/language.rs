@@ -114,7 +114,6 @@ const LATIN: &[&str] = &[
     "Xsens",
     "RAWIMU",
     "ULog",
-    "SQLite",
     "datenum",
     "Windows",
     "NET",
