@@ -13,6 +13,9 @@ const UNCERTAINTY_DIGITS: usize = 2;
 /// Significant digits of a sensitivity.
 const SENSITIVITY_DIGITS: usize = 3;
 
+/// Difference from 1 that a share of the variance has by rounding alone.
+const SHARE_ROUNDING: f64 = 1e-9;
+
 /// A component with the row that it is of.
 struct Line<'a> {
     row: &'a Row<'a>,
@@ -56,7 +59,7 @@ fn table(part: &Part<'_>, rows: &[&Row<'_>]) -> Table {
             row.of.budget.iter().enumerate().map(line)
         })
         .collect();
-    let each = |of: &dyn Fn(&Line<'_>) -> String| lines.iter().map(|l| of(l)).collect::<Vec<_>>();
+    let each = |of: &dyn Fn(&Line<'_>) -> String| lines.iter().map(of).collect::<Vec<_>>();
     let name = |l: &Line<'_>| {
         if l.is_first { l.row.name_in(part.several_channels, words) } else { String::new() }
     };
@@ -75,10 +78,7 @@ fn table(part: &Part<'_>, rows: &[&Row<'_>]) -> Table {
             each(&|l| digits(l.component.sensitivity, SENSITIVITY_DIGITS, words.lang)),
         )
         .column(words.number_column("budget.contribution"), each(&|l| contribution(l, words)))
-        .column(
-            words.number_column("budget.share"),
-            each(&|l| percent(l.component.share_of_variance, words.lang)),
-        )
+        .column(words.number_column("budget.share"), each(&|l| share(l.component, words)))
         .column(words.column("budget.common_to"), each(&|l| common_to(l.component, words)))
 }
 
@@ -112,6 +112,12 @@ fn law(component: &Component, words: Translator) -> String {
 fn contribution(line: &Line<'_>, words: Translator) -> String {
     let number = digits(line.component.contribution, UNCERTAINTY_DIGITS, words.lang);
     words.quantity(&number, &line.row.of.unit)
+}
+
+/// Part of the variance; a component alone has all of it.
+fn share(component: &Component, words: Translator) -> String {
+    let whole = 1.0 - component.share_of_variance < SHARE_ROUNDING;
+    if whole { words.t("budget.whole") } else { percent(component.share_of_variance, words.lang) }
 }
 
 fn common_to(component: &Component, words: Translator) -> String {

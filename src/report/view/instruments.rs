@@ -16,10 +16,13 @@ pub fn section(part: &Part<'_>) -> Vec<Block> {
         return vec![];
     }
     let or_nothing = |text: &Option<String>| text.clone().unwrap_or_else(|| NOTHING.to_owned());
-    let table = Table::new("cards", all.len())
+    let mut table = Table::new("cards", all.len())
         .column(words.column("report.instrument"), all.iter().map(|i| words.local(&i.name)))
-        .column(words.column("report.serial"), all.iter().map(|i| or_nothing(&i.serial)))
-        .column(words.column("report.certificate"), all.iter().map(certificate))
+        .column(words.column("report.serial"), all.iter().map(|i| or_nothing(&i.serial)));
+    if all.iter().any(|i| i.certificate.is_some() || i.calibrated.is_some()) {
+        table = table.column(words.column("report.certificate"), all.iter().map(certificate));
+    }
+    table = table
         .column(words.column("report.calibration_due"), all.iter().map(|i| or_nothing(&i.calibration_due)))
         .column(words.column("report.state"), all.iter().map(|i| Value::State(state(i, record, words))));
     let hint = Block::Hint(words.t("report.instruments_declared"));

@@ -258,6 +258,7 @@ fn english_of_key(key: &str) -> Option<&str> {
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
     "budget.law_name.chi_square",
+    "budget.whole",
     "time_scale.parts",
     "watch.unreadable",
     "signer.quantity",
