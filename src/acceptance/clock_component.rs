@@ -2,9 +2,8 @@
 //! every quantity: each estimate is made again with such a clock moved by its standard uncertainty to either side, and what
 //! it changes by is a component of its uncertainty.
 
-use super::kinds;
 use super::request::Request;
-use super::test_kind::{Progress, Run};
+use super::test_kind::Run;
 use crate::estimate::{Component, Estimate, InputQuantity, Spread, UncertaintySource};
 use crate::i18n::{Arg, Note, note};
 use crate::ingest::{ClockUncertainty, Source};
@@ -15,16 +14,19 @@ const TOLD_SHARE: f64 = 0.01;
 /// Sides to which a clock is moved.
 const SIDES: usize = 2;
 
-/// Adds the components to estimates of a request.
+/// Adds the components to estimates of a request; `again` makes those of another request by the same test.
 ///
 /// # Errors
 /// Those of reading.
-pub(super) fn add(request: &Request<'_>, estimates: &mut [Estimate], progress: Progress<'_>) -> Run<()> {
+pub(super) fn add(
+    request: &Request<'_>,
+    estimates: &mut [Estimate],
+    again: &mut dyn FnMut(&Request<'_>) -> Run<Vec<Estimate>>,
+) -> Run<()> {
     for uncertainty in request.source.clock_uncertainties() {
         let mut with_clock_moved = |factor: f64| -> Run<Vec<Estimate>> {
             let source: Source = request.source.with_clock_moved(&uncertainty, factor);
-            let moved = Request { source: &source, ..request.clone() };
-            kinds::of_request(&moved).estimates(&moved, &mut *progress)
+            again(&Request { source: &source, ..request.clone() })
         };
         let sides: [Vec<Estimate>; SIDES] = [with_clock_moved(1.0)?, with_clock_moved(-1.0)?];
         for position in 0..estimates.len() {

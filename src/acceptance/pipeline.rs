@@ -29,12 +29,6 @@ pub(super) trait Test {
     /// # Errors
     /// There is nothing to evaluate.
     fn run(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Outcome>;
-
-    /// The estimates alone, before limits.
-    ///
-    /// # Errors
-    /// As [`Test::run`].
-    fn estimates(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Vec<Estimate>>;
 }
 
 impl<K: TestKind> Test for K {
@@ -46,18 +40,17 @@ impl<K: TestKind> Test for K {
         let options = self.options(request);
         let (reading, evidence) = collect(*self, request, &mut *progress)?;
         let conditions = judge(&reading, &evidence);
-        let mut estimates = estimates(&reading, &evidence);
-        clock_component::add(request, &mut estimates, progress)?;
-        let rows = rows(&reading, &evidence, &estimates, K::MISSING_REASON);
+        let mut found = estimates(&reading, &evidence);
+        clock_component::add(request, &mut found, &mut |moved| {
+            let Some(kind) = K::of(moved.procedure) else { return Ok(vec![]) };
+            let (reading, evidence) = collect(kind, moved, &mut *progress)?;
+            Ok(estimates(&reading, &evidence))
+        })?;
+        let rows = rows(&reading, &evidence, &found, K::MISSING_REASON);
         let figures = evidence.figures(&reading);
         let mut record = build_record(&reading, K::OWN_CHECKS, conditions, rows, &figures, options);
         let tables = evidence.complete(&reading, &mut record);
         Ok(Outcome { record, figures, tables })
-    }
-
-    fn estimates(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Vec<Estimate>> {
-        let (reading, evidence) = collect(*self, request, progress)?;
-        Ok(estimates(&reading, &evidence))
     }
 }
 

@@ -122,9 +122,11 @@ enum Verb {
         sagnac export reports/SN-0042 --for gazebo --channels gyro_x,gyro_y,gyro_z")]
     Export(export::ExportArgs),
     /// Draw a figure of results for a paper: of several records in one, with few layers, at the width of a column
-    #[command(after_help = "Examples:\n  sagnac figure reports/SN-0042 sigma-tau --out allan.pdf --width 85mm\n  \
+    #[command(
+        after_help = "Examples:\n  sagnac figure reports/SN-0042 sigma-tau --out allan.pdf --width 85mm\n  \
         sagnac figure reports/SN-0042 reports/SN-0043 sigma-tau --unit deg/sqrt(h) --out two.svg\n  \
-        sagnac figure reports/SN-0042 sigma-tau --layers data,terms,labels --out terms.svg")]
+        sagnac figure reports/SN-0042 sigma-tau --layers data,terms,labels --out terms.svg"
+    )]
     Figure(figure::FigureArgs),
     /// Find where a recording differs from its simulation, and why
     #[command(

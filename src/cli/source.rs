@@ -12,10 +12,10 @@ pub struct SourceArgs {
     #[arg(long = "source", value_name = "FILE")]
     source: Vec<PathBuf>,
     /// Time added to the timestamps of that file, s [default: from the dates of both]
-    #[arg(long, value_name = "S", requires = "source", allow_hyphen_values = true)]
+    #[arg(long, value_name = "NUMBER", requires = "source", allow_hyphen_values = true)]
     source_offset: Option<f64>,
     /// Standard uncertainty of that time, or of the dates, s
-    #[arg(long, value_name = "S", requires = "source", value_parser = not_negative)]
+    #[arg(long, value_name = "NUMBER", requires = "source", value_parser = not_negative)]
     source_offset_uncertainty: Option<f64>,
     /// Estimate the offset and rate of that file's clock from what both record: the angle of a table, a temperature
     #[arg(long, requires = "source", conflicts_with_all = ["source_offset", "source_rate", "source_offset_uncertainty"])]

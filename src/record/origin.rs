@@ -56,7 +56,6 @@ pub struct ProcedureRecord {
     #[cfg_attr(feature = "schema", schemars(with = "super::local::place::Members<Option<String>>"))]
     pub place: Option<LocalText>,
     /// Who signs the printed protocol beside those who tested, reviewed and decided.
-    #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub signatories: Vec<Signatory>,
     /// The limits file, when one was given.
     pub limits: Option<LimitsFile>,

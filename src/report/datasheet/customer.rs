@@ -2,7 +2,7 @@
 //! The page of the engineer is its annex.
 
 use super::quantity::{Printed, limit_text};
-use super::{condition, pairs_section, promise, size, title};
+use super::shared::{condition, pairs_section, promise, size, title};
 use crate::i18n::Localize;
 use crate::record::{DataSheet, SheetBound, SheetOf, SheetQuantity, SheetSide};
 use crate::report::number::{NOTHING, bound, limit};
