@@ -239,9 +239,10 @@ impl Component {
     }
 }
 
-/// Standard uncertainties of components together: the root of the sum of squares.
+/// Standard uncertainties of components together: the root of the sum of squares. Without components it is zero, where a sum of
+/// nothing would be minus zero.
 fn together<'a>(components: impl Iterator<Item = &'a Component>) -> f64 {
-    components.map(|c| c.contribution * c.contribution).sum::<f64>().sqrt()
+    components.fold(0.0, |sum: f64, c| sum + c.contribution * c.contribution).sqrt()
 }
 
 impl Estimate {
@@ -363,6 +364,7 @@ mod tests {
         assert!(unknown.budget().is_empty());
         let withheld = Estimate::not_identifiable("x", "z", None, "deg/h", "mean");
         assert!(withheld.budget().is_empty());
+        assert!(unknown.common() == 0.0 && unknown.common().is_sign_positive());
     }
 
     #[test]
