@@ -125,6 +125,7 @@ const OPEN: &[&str] = &[
     "budget.law_name",
     "budget.source_name",
     "datasheet.column",
+    "datasheet.customer.column",
     "datasheet.condition",
     "datasheet.method",
     "history.column",
@@ -135,6 +136,10 @@ const OPEN: &[&str] = &[
 
 /// Dotted names in the sources that only look like keys: tables of procedures.
 const NO_KEYS: &[&str] = &[
+    "budget.common_name",
+    "budget.input",
+    "budget.law_name",
+    "budget.source_name",
     "day.hook",
     "measurand.options",
     "attempt.number",
