@@ -26,14 +26,14 @@ pub struct Context {
     pub claim: String,
     /// True when the claim was identified from a simulated recording.
     pub identified: bool,
-    /// What the claim says of itself.
+    /// Description that the claim gives of itself.
     #[serde(flatten, with = "crate::record::local::description")]
     pub description: Option<LocalText>,
     /// RFC 3339.
     pub explained_at: String,
     /// True when `correction.csv` is written.
     pub correction: bool,
-    /// What must be known of the recording.
+    /// Remarks on the recording.
     #[serde(with = "crate::record::message::notes")]
     pub notes: Vec<Note>,
 }

@@ -11,7 +11,6 @@ pub use super::files::{Context, ExplainFile};
 pub(super) use tables::{fit, fit_summary};
 
 use super::document::{Documented, Record};
-
 use super::generator;
 use super::number::{count, date_time, digits, duration};
 use super::page::{Block, Head, Lead, Page, State, Table};
