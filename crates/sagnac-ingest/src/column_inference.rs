@@ -336,6 +336,7 @@ const INCREMENT: &[&str] =
 const TIME: &[&str] = &[
     "time",
     "t",
+    "ts",
     "timestamp",
     "stamp",
     "seconds",

@@ -5,6 +5,7 @@ use super::encoding::{self, FoundEncoding};
 use super::fields::{Comments, Separator, words};
 use super::header::{self, Header};
 use super::metadata::add_line;
+use super::number::{Field, field};
 use super::rows::Lines;
 use super::separator::{self, Cut, Looks, looks};
 use crate::error::{IngestError, IngestErrorKind};
@@ -33,7 +34,7 @@ pub(super) struct Dialect {
     pub metadata: Vec<(String, String)>,
     /// Words in the first rows of columns that hold few of them.
     pub labels: Vec<Labels>,
-    /// True where all lines looked at differ, as they do where a time or a counter runs.
+    /// True where all lines looked at differ as they do where a time or a counter runs.
     pub all_differ: bool,
     /// Mean length of the data lines looked at, bytes of the file.
     pub mean_line: f64,
@@ -115,11 +116,24 @@ pub(super) fn sniff(file: &Candidate) -> Result<Dialect, IngestError> {
         notes,
         metadata,
         labels: kinds.labels,
-        all_differ: cut.fields > 2
-            && data.len() > 8
+        all_differ: data.len() > 8
+            && (cut.fields > 2 || first_field_grows(&data, &cut))
             && data.windows(2).all(|w| matches!(w, [a, b] if a.text != b.text)),
         mean_line: total as f64 / data.len().max(1) as f64 / widening,
     })
+}
+
+/// True where the first field grows from line to line, as a time does. Two noisy fields tell no end of the data by lines
+/// that are equal: a sensor may be stuck.
+fn first_field_grows(data: &[&Line<'_>], cut: &Cut) -> bool {
+    let first = |line: &Line<'_>| {
+        let cells = cut.separator.cells(line.text);
+        match cells.first().map(|cell| field(cell, cut.decimal)) {
+            Some(Field::Value(value)) => value,
+            _ => f64::NAN,
+        }
+    };
+    cut.fields == 2 && data.windows(2).all(|w| matches!(w, [a, b] if first(a) < first(b)))
 }
 
 /// The first lines that are not blank, at most `most` without certain comments. The last line of a part of a file may
