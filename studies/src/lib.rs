@@ -54,6 +54,8 @@ pub static STUDIES: &[&Study] = &[
     &single_samples::DETECTION,
     &edges::INFLUENCE,
     &edges::NOISE,
+    &edges::NOISE_BANDS,
+    &edges::OVERLOAD,
     &edges::RATE_TABLE,
     &edges::SMALL_RATES,
     &edges::TEMPERATURE,

@@ -13,6 +13,7 @@ use crate::config::table::{Table, words};
 use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::measurand::Measurand;
+use crate::noise::in_band::NoiseTest;
 use crate::output::sha256;
 use crate::record::{ClauseRecord, ExclusionRecord, ProcedureRecord, Signatory, WaiverRecord};
 use crate::recording::Channel;
@@ -77,6 +78,8 @@ pub struct Procedure {
     pub analysis: Analysis,
     /// The model that the recording is explained against.
     pub explain: Option<ExplainSpec>,
+    /// A test of the noise by frequency.
+    pub noise_test: Option<NoiseTest>,
     /// A test over temperature.
     pub temperature_test: Option<TemperatureTest>,
     /// A test of the warm-up.

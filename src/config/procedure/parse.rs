@@ -102,6 +102,7 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         rate_table: file.rate_table.map(|keys| keys.setup(by_angle)),
         analysis: file.analysis,
         explain,
+        noise_test: file.noise_test.map(Into::into),
         temperature_test: file.temperature_test.map(Into::into),
         warm_up_test: file.warm_up_test.map(Into::into),
         repeatability_test: file.repeatability_test.map(Into::into),

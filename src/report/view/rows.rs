@@ -163,6 +163,16 @@ pub fn value(m: &MeasurandRecord, words: Translator) -> String {
     if let Some(value) = m.value {
         return rounding(m).show(value, words.lang);
     }
+    if let (Some(l), Some(u)) = (m.lower_limit, m.upper_limit) {
+        return words.with(
+            "report.bracketed",
+            &[
+                ("low", &bound(l.value, false, words.lang)),
+                ("high", &bound(u.value, true, words.lang)),
+                ("coverage", &limit_digits(100.0 * l.coverage.min(u.coverage), 3, words.lang)),
+            ],
+        );
+    }
     match m.upper_limit {
         Some(u) => {
             let most = words.with(
@@ -212,7 +222,11 @@ pub fn interval(m: &MeasurandRecord, words: Translator) -> String {
 /// The 95 % bound of a quantity without a value.
 pub fn bound_alone(m: &MeasurandRecord, words: Translator) -> String {
     match (m.value, m.upper_limit, m.lower_limit) {
-        (None, Some(u), _) => format!("≤\u{202f}{}", bound(u.value, true, words.lang)),
+        (None, Some(u), Some(l)) => {
+            let (low, high) = (bound(l.value, false, words.lang), bound(u.value, true, words.lang));
+            format!("{low}\u{202f}…\u{202f}{high}")
+        }
+        (None, Some(u), None) => format!("≤\u{202f}{}", bound(u.value, true, words.lang)),
         (None, None, Some(l)) => format!("≥\u{202f}{}", bound(l.value, false, words.lang)),
         _ => String::new(),
     }

@@ -56,6 +56,10 @@ pub struct RateTable {
     pub hz: f64,
     /// Temperature: mean, drift over the test and amplitude of a swing, degC.
     pub temperature: (f64, f64, f64),
+    /// Lowest and highest output, deg/h.
+    pub rails: Option<(f64, f64)>,
+    /// Time that the output stays at its rail after an input beyond it, s.
+    pub recovery_s: f64,
     /// Seed of the noise.
     pub seed: u64,
 }
@@ -91,6 +95,8 @@ impl Default for RateTable {
             acceleration: 50.0,
             hz: 10.0,
             temperature: (25.0, 1.5, 1.0),
+            rails: None,
+            recovery_s: 0.0,
             seed: 1,
         }
     }
@@ -152,6 +158,8 @@ impl RateTable {
         let (sin, cos) = (self.latitude.to_radians().sin(), self.latitude.to_radians().cos());
         let axial = (1.0 - self.tilt * self.tilt).sqrt();
         let mut carry = 0.0;
+        // Rail of the last overload, and the time until which the output stays there.
+        let mut held = (0.0, f64::NEG_INFINITY);
         let swing = 2.0 * std::f64::consts::PI * 2.7 / total;
         for (i, (cycle, wanted)) in sequence.iter().enumerate() {
             if *wanted != last {
@@ -198,6 +206,12 @@ impl RateTable {
                     + self.bias_per_c * (temperature - self.reference_c)
                     + moved
                     + self.n / (dt / 3600.0).sqrt() * normal(&mut rng);
+                if let Some((low, high)) = self.rails {
+                    if !(low..=high).contains(&y) {
+                        held = (y.clamp(low, high), t + self.recovery_s);
+                    }
+                    y = if t <= held.1 { held.0 } else { y };
+                }
                 if self.count_arcsec > 0.0 {
                     let angle = y * dt + carry;
                     let counts = (angle / self.count_arcsec).round();

@@ -2,6 +2,7 @@
 //! program. The studies are `cargo xtask validate scale-factor misalignment`.
 
 mod motion;
+mod overload;
 mod pauses;
 mod positions;
 mod runs;
@@ -51,6 +52,8 @@ fn files() -> Vec<(&'static str, String)> {
         ("samples/threshold-fail.csv", small_rates_csv(&wide)),
         ("samples/misalignment-pass.csv", two_axes_csv(&near)),
         ("samples/misalignment-fail.csv", two_axes_csv(&far)),
+        ("samples/maximum-rate-pass.csv", overload::csv(&overload::unit(-345.0, 340.0, 0.3, 51))),
+        ("samples/maximum-rate-fail.csv", overload::csv(&overload::unit(-280.0, 340.0, 2.5, 53))),
         ("samples/multi-position-pass.csv", positions_csv(12.467, 0.12)),
         ("samples/multi-position-software.csv", positions_csv(0.0, 12.9)),
     ]

@@ -6,6 +6,7 @@ use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::influence::Influence;
 use crate::influence::repeatability::Repeatability;
 use crate::noise::data::NoiseType;
+use crate::noise::in_band::NoiseTest;
 use crate::rate_table::design::Extra;
 use crate::temperature::findings::Findings;
 use crate::temperature::warm_up::WarmUpFindings;
@@ -26,6 +27,8 @@ pub struct Options {
 pub enum Test {
     /// Rate at rest at constant temperature.
     Static,
+    /// Rate at rest, by frequency, where the procedure states bands.
+    NoiseInBands,
     /// Rate at rest over temperature.
     Temperature,
     /// Rate at rest from switching on.
@@ -46,6 +49,8 @@ pub enum Test {
 pub enum Evaluation {
     /// From a gyro at rest.
     Static(fn(&Measurand, &GyroEvidence, &Options) -> Vec<Estimate>),
+    /// From a gyro at rest and what a test of its noise asks for.
+    NoiseInBands(fn(&Measurand, &GyroEvidence, &NoiseTest) -> Vec<Estimate>),
     /// From what a test over temperature showed of a channel.
     Temperature(fn(&Measurand, &str, &Findings) -> Vec<Estimate>),
     /// From what the warm-up of a channel showed.
@@ -88,6 +93,8 @@ pub enum Stimulus {
     OpenLoopRates,
     /// Rates near zero.
     SmallRates,
+    /// Rates about the input axis up to those that the output no longer follows.
+    Overload,
     /// Turns about the outer axis, which is square to the input axis.
     OuterTurns,
 }
@@ -172,6 +179,13 @@ impl fmt::Debug for Measurand {
     }
 }
 
+impl Test {
+    /// True where a gyro at rest at constant conditions shows it.
+    pub fn is_at_rest(self) -> bool {
+        matches!(self, Test::Static | Test::NoiseInBands)
+    }
+}
+
 impl Measurand {
     const fn new(
         id: &'static str,
@@ -204,6 +218,16 @@ impl Measurand {
         evaluate: fn(&Measurand, &GyroEvidence, &Options) -> Vec<Estimate>,
     ) -> Measurand {
         Measurand::new(id, unit, doc, Evaluation::Static(evaluate))
+    }
+
+    /// A measurand of a test of the noise in bands of frequency.
+    pub const fn of_noise_test(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &GyroEvidence, &NoiseTest) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::NoiseInBands(evaluate))
     }
 
     /// A measurand of a test over temperature.
@@ -348,6 +372,7 @@ impl Measurand {
     pub fn test(&self) -> Test {
         match self.evaluation {
             Evaluation::Static(_) => Test::Static,
+            Evaluation::NoiseInBands(_) => Test::NoiseInBands,
             Evaluation::Temperature(_) => Test::Temperature,
             Evaluation::WarmUp(_) => Test::WarmUp,
             Evaluation::RateTable { .. } => Test::RateTable,
@@ -381,6 +406,9 @@ impl Measurand {
     pub fn evaluate_gyro(&self, gyro: &GyroEvidence, options: &Options) -> Vec<Estimate> {
         let estimates = match self.evaluation {
             Evaluation::Static(evaluate) => evaluate(self, gyro, options),
+            Evaluation::NoiseInBands(evaluate) => {
+                gyro.noise_test.as_ref().map_or_else(Vec::new, |test| evaluate(self, gyro, test))
+            }
             Evaluation::Temperature(_) => {
                 let found = gyro.over_temperature.as_ref();
                 found.map_or_else(Vec::new, |found| self.evaluate_temperature(&gyro.channel, found))

@@ -12,8 +12,11 @@ mod dead_zone;
 mod descriptor;
 mod earth_rate;
 mod influence;
+mod maximum_rate;
 mod misalignment;
+mod noise_in_band;
 mod noise_terms;
+mod polarity;
 pub mod russian;
 pub mod russian_prediction;
 mod scale_factor;
@@ -67,6 +70,9 @@ registry! {
     russian::RUSSIAN_ARW_10S,
     spectral_line::LINE_FREQUENCY,
     spectral_line::LINE_AMPLITUDE,
+    noise_in_band::OUTPUT_NOISE_RMS,
+    noise_in_band::RATE_NOISE_DENSITY,
+    noise_in_band::SPECTRAL_MASK,
     correlated_noise::MARKOV_SIGMA,
     correlated_noise::MARKOV_CORRELATION_TIME,
     correlated_noise::QUASI_PERIODIC_AMPLITUDE,
@@ -102,6 +108,10 @@ registry! {
     scale_factor_changes::SCALE_FACTOR_HYSTERESIS,
     scale_factor_changes::SCALE_FACTOR_TEMPERATURE_SENSITIVITY,
     sine_response::SINE_RESPONSE,
+    polarity::POLARITY,
+    maximum_rate::MAXIMUM_RATE,
+    maximum_rate::SATURATION_LEVEL,
+    maximum_rate::OVERLOAD_RECOVERY,
     misalignment::MISALIGNMENT_X,
     misalignment::MISALIGNMENT_Y,
     cross_axis::CROSS_AXIS,

@@ -14,6 +14,7 @@ pub mod known;
 pub mod largest;
 pub mod model;
 pub mod noise;
+pub mod overload;
 pub mod scale_factor;
 pub mod settling;
 pub mod setup;

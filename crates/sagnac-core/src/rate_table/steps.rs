@@ -87,7 +87,7 @@ impl Steps {
 }
 
 /// The rate by which steps are found, a value a block: that of the rate channel, or the derivative of the angle.
-fn guide(blocks: &Blocks) -> Vec<f64> {
+pub(super) fn guide(blocks: &Blocks) -> Vec<f64> {
     let list = &blocks.list;
     if blocks.has_rate {
         return list.iter().map(|b| b.table_rate).collect();

@@ -4,6 +4,7 @@ pub(crate) mod conditions;
 pub(crate) mod derived;
 pub(crate) mod influence;
 pub mod limits;
+pub(crate) mod noise;
 pub mod phases;
 pub(crate) mod rate_table;
 pub mod temperature;
@@ -22,6 +23,7 @@ use conditions::{Conditions, Exclusion};
 use derived::{DerivedKeys, DerivedLimitKeys};
 use influence::{MagneticKeys, RepeatabilityKeys, SupplyKeys, VibrationKeys};
 use limits::{LimitKeys, ReferenceKeys, TypicalValues};
+use noise::NoiseKeys;
 use rate_table::RateTableKeys;
 use sagnac_ingest::StampWriting;
 use temperature::{TemperatureKeys, WarmUpKeys};
@@ -82,6 +84,8 @@ pub(in crate::config::procedure) struct ProcedureFile {
     pub analysis: Analysis,
     /// Comparison of the recording with the model of the unit's family.
     pub explain: Option<ExplainSpec>,
+    /// A test of the noise by frequency.
+    pub noise_test: Option<NoiseKeys>,
     /// A test over temperature.
     pub temperature_test: Option<TemperatureKeys>,
     /// A test of the warm-up.
