@@ -131,6 +131,7 @@ fn bands_and_masks_that_make_no_sense_are_named() {
         ("to = \"2 Hz\"", "to = \"0.4 Hz\"", "must be above `from`"),
         ("frequency = \"9.5 Hz\"", "frequency = \"0.5 Hz\"", "in the order of frequency"),
         ("[[noise_test.mask]]", "[[noise_test.band]]", "frequency"),
+        ("max = \"0.20 deg/h/sqrt(Hz)\"", "max = \"0.003 deg/sqrt(h)\"", "is not a density"),
         (
             recording,
             "[recording]\nsample_rate = \"10 Hz\"\n\n[[noise_test.band]]\nfrom = \"0.5 Hz\"",

@@ -293,14 +293,18 @@ mod tests {
         }
         let blocks =
             Blocks { list, interval_s: 0.1, gyros: vec!["g".into()], has_rate: true, ..Blocks::default() };
-        TableRun::new(blocks, &Setup::default())
+        TableRun::new(blocks, &setup())
+    }
+
+    /// Steps are evaluated once the output has left its rail.
+    fn setup() -> Setup {
+        Setup { settling_s: 4.0, maximum_rate_error: 0.01, ..Setup::default() }
     }
 
     fn found(rates: &[f64], of: &dyn Fn(f64, f64) -> f64) -> Overload {
         let run = run(rates, of);
-        let setup = Setup { maximum_rate_error: 0.01, ..Setup::default() };
-        let line = crate::rate_table::scale_factor::evaluate(&run, 0, &setup, &[]).unwrap();
-        evaluate(&run, 0, &line, &setup).unwrap()
+        let line = crate::rate_table::scale_factor::evaluate(&run, 0, &setup(), &[]).unwrap();
+        evaluate(&run, 0, &line, &setup()).unwrap()
     }
 
     const RATES: [f64; 13] = [0.0, 1e5, 3e5, 5e5, 7e5, 9e5, 1.1e6, 1e5, -3e5, -7e5, -9e5, -1.1e6, 0.0];
