@@ -56,6 +56,7 @@ macro_rules! shipped {
 
 /// Every procedure, by name.
 pub static SHIPPED_PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
+    "acceleration"
     "acceptance"
     "bias-repeatability"
     "magnetic-sensitivity"

@@ -15,6 +15,7 @@ use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::measurand::Measurand;
 use crate::noise::in_band::NoiseTest;
 use crate::output::sha256;
+use crate::rate_table::acceleration::AccelerationTest;
 use crate::record::{ClauseRecord, ExclusionRecord, ProcedureRecord, Signatory, WaiverRecord};
 use crate::recording::Channel;
 use crate::signing::Role;
@@ -84,6 +85,8 @@ pub struct Procedure {
     pub temperature_test: Option<TemperatureTest>,
     /// A test of the warm-up.
     pub warm_up_test: Option<WarmUpTest>,
+    /// A test in positions in the field of gravity.
+    pub acceleration_test: Option<AccelerationTest>,
     /// A series of switching off and on.
     pub repeatability_test: Option<RepeatabilityTest>,
     /// A comparison without and with an influence.
@@ -274,6 +277,7 @@ const REPORT_FIGURES: &[Word] = &[
     ("bias_of_runs", "bias of every switching-on with its interval"),
     ("influence", "bias of every interval without and with an influence, and over its level"),
     ("positions", "output in every position against the Earth rate"),
+    ("gravity", "output in every position in the field of gravity"),
     ("table_polar", "residual over the angle of the table, as a polar plot"),
 ];
 

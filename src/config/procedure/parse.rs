@@ -105,6 +105,7 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         noise_test: file.noise_test.map(Into::into),
         temperature_test: file.temperature_test.map(Into::into),
         warm_up_test: file.warm_up_test.map(Into::into),
+        acceleration_test: file.acceleration_test.map(Into::into),
         repeatability_test: file.repeatability_test.map(Into::into),
         comparison_test: comparison.into_iter().flatten().next(),
         measurands: file.measurands.into_iter().filter_map(MeasurandKeys::spec).collect(),

@@ -22,6 +22,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     super::derived::validate(procedure, reader);
     waivers(procedure, root, reader);
     averaging_times(procedure, root, reader);
+    super::tables::acceleration::validate(procedure, root, reader);
     super::tables::noise::validate(procedure, root, reader);
     super::tables::rate_table::validate(procedure, root, reader);
     super::tables::influence::validate(procedure, root, reader);

@@ -4,6 +4,7 @@
 //! which imports nothing from the analysis. One line in [`FAMILIES`] and a study name both.
 
 pub mod case;
+mod gravity;
 mod influence;
 mod noise;
 mod noise_bands;
@@ -25,8 +26,9 @@ use std::sync::LazyLock;
 use table::Bench;
 
 /// Every family.
-pub static FAMILIES: LazyLock<[Family; 8]> = LazyLock::new(|| {
+pub static FAMILIES: LazyLock<[Family; 9]> = LazyLock::new(|| {
     [
+        family::<gravity::InGravity>(include_str!("../../cases/edges/gravity.toml")),
         family::<influence::Bench>(include_str!("../../cases/edges/influence.toml")),
         family::<noise::Rest>(include_str!("../../cases/edges/noise.toml")),
         family::<noise::Rest>(include_str!("../../cases/edges/noise_bands.toml")),
@@ -52,6 +54,8 @@ const fn study(id: &'static str, title: &'static str, cases: fn() -> Vec<Case>) 
     Study { id, title, method: METHOD, records: 200, cases }
 }
 
+/// Sensitivity to acceleration.
+pub static GRAVITY: Study = study("edges-gravity", "Acceleration at its edges", || cases("gravity"));
 /// Repeatability, and sensitivities to a field, a supply and vibration.
 pub static INFLUENCE: Study = study("edges-influence", "Influences at their edges", || cases("influence"));
 /// Noise of a unit at rest.

@@ -12,6 +12,7 @@ use std::path::Path;
 /// The shipped procedures, each with its shortest sample that says most.
 const CASES: &[(&str, &str)] = &[
     ("acceptance", "acceptance-fail"),
+    ("acceleration", "acceleration-fail"),
     ("bias-repeatability", "bias-repeatability-fail"),
     ("magnetic-sensitivity", "magnetic-sensitivity-fail"),
     ("maximum-rate", "maximum-rate-fail"),

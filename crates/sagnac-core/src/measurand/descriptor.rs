@@ -7,6 +7,7 @@ use crate::influence::Influence;
 use crate::influence::repeatability::Repeatability;
 use crate::noise::data::NoiseType;
 use crate::noise::in_band::NoiseTest;
+use crate::rate_table::acceleration::Acceleration;
 use crate::rate_table::design::Extra;
 use crate::temperature::findings::Findings;
 use crate::temperature::warm_up::WarmUpFindings;
@@ -35,6 +36,8 @@ pub enum Test {
     WarmUp,
     /// Rate about the input axis given by a table, by known turns or by positions against the Earth rate.
     RateTable,
+    /// Rate at rest in positions in the field of gravity.
+    Acceleration,
     /// Rate at rest over switching off and on.
     Repeatability,
     /// Rate at rest without and with an influence other than temperature.
@@ -62,6 +65,8 @@ pub enum Evaluation {
         /// From inputs that are known without a table; `None`: they do not show it.
         known: Option<OfKnownInput>,
     },
+    /// From positions in the field of gravity.
+    Acceleration(fn(&Measurand, &Acceleration) -> Vec<Estimate>),
     /// From a series of switchings-on.
     Repeatability(fn(&Measurand, &Repeatability) -> Vec<Estimate>),
     /// From a comparison without and with an influence.
@@ -272,6 +277,16 @@ impl Measurand {
         Measurand::new(id, unit, doc, Evaluation::RateTable { steps: None, known: Some(known) })
     }
 
+    /// A measurand of positions in the field of gravity.
+    pub const fn of_acceleration(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &Acceleration) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::Acceleration(evaluate))
+    }
+
     /// A measurand of a series of switchings-on.
     pub const fn of_runs(
         id: &'static str,
@@ -376,6 +391,7 @@ impl Measurand {
             Evaluation::Temperature(_) => Test::Temperature,
             Evaluation::WarmUp(_) => Test::WarmUp,
             Evaluation::RateTable { .. } => Test::RateTable,
+            Evaluation::Acceleration(_) => Test::Acceleration,
             Evaluation::Repeatability(_) => Test::Repeatability,
             Evaluation::Comparison { .. } => Test::Comparison,
         }
@@ -446,6 +462,14 @@ impl Measurand {
     /// Its rows on all gyro channels from turns by known angles and positions; none where they do not show it.
     pub fn evaluate_known_input(&self, known: &KnownInputEvidence<'_>) -> Vec<Estimate> {
         self.by_known_input().map_or_else(Vec::new, |input| (input.evaluate)(self, known))
+    }
+
+    /// Its rows on a gyro channel from positions in the field of gravity; none for a measurand of other tests.
+    pub fn evaluate_acceleration(&self, found: &Acceleration) -> Vec<Estimate> {
+        match self.evaluation {
+            Evaluation::Acceleration(evaluate) => evaluate(self, found),
+            _ => vec![],
+        }
     }
 
     /// Its rows on a gyro channel from a series of switchings-on; none for a measurand of other tests.

@@ -3,6 +3,7 @@
 //! A [`Measurand`] says what it is and has its evaluation: a pure function of what its kind of test leaves behind
 //! ([`crate::evidence`]). Whoever singles one out names its constant.
 
+mod acceleration;
 pub mod allan_minimum;
 mod angle_random_walk_shift;
 mod bias_repeatability;
@@ -121,6 +122,14 @@ registry! {
     dead_zone::RESOLUTION,
     table_harmonics::TABLE_HARMONIC_1,
     table_harmonics::TABLE_HARMONIC_2,
+    acceleration::G_SENSITIVITY_I,
+    acceleration::G_SENSITIVITY_O,
+    acceleration::G_SENSITIVITY_S,
+    acceleration::G2_SENSITIVITY_II,
+    acceleration::G2_SENSITIVITY_OO,
+    acceleration::G2_SENSITIVITY_IO,
+    acceleration::G2_SENSITIVITY_IS,
+    acceleration::G2_SENSITIVITY_OS,
     influence::MAGNETIC_SENSITIVITY,
     influence::SUPPLY_SENSITIVITY,
     influence::VIBRATION_SENSITIVITY,

@@ -4,6 +4,7 @@
 //!
 //! Sources: IEEE Std 952-2020, 12.9 (scale factor), 12.10 (input rate), 12.12 (alignment); GUM (JCGM 100).
 
+pub mod acceleration;
 pub mod alignment;
 pub mod blocks;
 pub mod combine;

@@ -1,5 +1,6 @@
 //! The tables of a procedure file.
 
+pub(crate) mod acceleration;
 pub(crate) mod conditions;
 pub(crate) mod derived;
 pub(crate) mod influence;
@@ -19,6 +20,7 @@ use crate::i18n::LocalText;
 use crate::record::ClauseRecord;
 use crate::recording::{ColumnRef, Role};
 use crate::units::Unit;
+use acceleration::AccelerationKeys;
 use conditions::{Conditions, Exclusion};
 use derived::{DerivedKeys, DerivedLimitKeys};
 use influence::{MagneticKeys, RepeatabilityKeys, SupplyKeys, VibrationKeys};
@@ -90,6 +92,8 @@ pub(in crate::config::procedure) struct ProcedureFile {
     pub temperature_test: Option<TemperatureKeys>,
     /// A test of the warm-up.
     pub warm_up_test: Option<WarmUpKeys>,
+    /// A test in positions in the field of gravity.
+    pub acceleration_test: Option<AccelerationKeys>,
     /// A series of turn-ons.
     pub repeatability_test: Option<RepeatabilityKeys>,
     /// A comparison in a magnetic field.
