@@ -36,8 +36,8 @@ pub struct GravityEvidence {
 impl TestKind for InGravity {
     type Collector = Collector;
     type Evidence = GravityEvidence;
-    const CHECKS: &'static [&'static str] = &["noise_level", "distribution"];
-    const MISSING: &'static str = "unshown.few_positions";
+    const OWN_CHECKS: &'static [&'static str] = &["noise_level", "distribution"];
+    const MISSING_REASON: &'static str = "unshown.few_positions";
 
     fn of(procedure: &Procedure) -> Option<InGravity> {
         Some(InGravity { test: procedure.acceleration_test.clone()? })

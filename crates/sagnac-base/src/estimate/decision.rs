@@ -105,8 +105,8 @@ pub struct Judgement {
 
 /// Compares an estimate with a limit under the decision rule of the limit.
 ///
-/// A quantity that the record cannot show passes when its upper bound is inside the limit, fails when its lower bound is
-/// beyond an upper limit, and is otherwise indeterminate; a lower limit cannot be shown by it.
+/// A quantity that the record cannot show passes when its bounds are inside the limit, fails when one of them is beyond it, and
+/// is otherwise indeterminate. Whether one that can be negative may pass by bounds is for the caller to know.
 pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
     let Some(value) = estimate.value else { return judge_bounds(estimate, limit) };
     let margin = [limit.max.map(|max| max - value), limit.min.map(|min| value - min)]
@@ -131,7 +131,7 @@ pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
     Judgement { verdict, acceptance_max, acceptance_min, specific_risk, margin }
 }
 
-/// Decides on a quantity without a value by its bounds. One that is not bounded from below is at least 0.
+/// Decides on a quantity without a value by its bounds; one that is not bounded from below is taken to be at least 0.
 fn judge_bounds(estimate: &Estimate, limit: &Limit) -> Judgement {
     let sure = |coverage: f64| coverage >= 1.0 - limit.risk - 1e-9;
     let upper = estimate.upper_limit.filter(|bound| sure(bound.coverage)).map(|bound| bound.value);

@@ -5,7 +5,7 @@
 //! band, and no mean tells it.
 
 use super::digest::RateDigest;
-use super::lines::{FIRST_BIN, LOBE, SpectralLine};
+use super::lines::{FIRST_BIN, HALF_LOBE_BINS, SpectralLine};
 use super::welch::WelchResult;
 use crate::estimate::{Spread, normal_probability};
 use std::f64::consts::PI;
@@ -219,7 +219,7 @@ pub fn rms_dof(digest: &RateDigest, lines: &[SpectralLine]) -> Option<f64> {
     let bins = spectrum.density.len();
     // Density beside a line, in units of the sample interval.
     let beside = |line: &SpectralLine| {
-        let near = (1..bins).filter(|k| bins_from(line, *k) <= 3.0 * LOBE as f64);
+        let near = (1..bins).filter(|k| bins_from(line, *k) <= 3.0 * HALF_LOBE_BINS as f64);
         let told: Vec<f64> = near
             .filter(|k| line_over(lines, *k).is_none())
             .filter_map(|k| spectrum.density.get(k).copied())
@@ -249,7 +249,7 @@ pub fn rms_dof(digest: &RateDigest, lines: &[SpectralLine]) -> Option<f64> {
 
 /// The line that fills a bin.
 fn line_over(lines: &[SpectralLine], bin: usize) -> Option<&SpectralLine> {
-    lines.iter().find(|line| bins_from(line, bin) <= LOBE as f64 + 0.5)
+    lines.iter().find(|line| bins_from(line, bin) <= HALF_LOBE_BINS as f64 + 0.5)
 }
 
 /// Distance of a bin from a line, in bins.
@@ -259,7 +259,7 @@ fn bins_from(line: &SpectralLine, bin: usize) -> f64 {
 
 /// Share of a power that is left about the means of blocks, by frequency in cycles a sample.
 fn passed_by_block_means(frequency: f64) -> f64 {
-    let turn = PI * frequency * super::histogram::BLOCK as f64;
+    let turn = PI * frequency * super::histogram::BLOCK_SAMPLES as f64;
     1.0 - (turn.sin() / turn).powi(2)
 }
 
