@@ -3,6 +3,7 @@
 use super::{exit, place};
 use crate::config::shipped::{SHIPPED_LIMITS, SHIPPED_PROCEDURES, Shipped, StatedClause, find};
 use crate::i18n::{Lang, Localize, Note, note};
+use crate::report::terminal::wrapped;
 use clap::{Args, Subcommand};
 use sagnac_ingest::read_file;
 use std::collections::BTreeMap;
@@ -71,6 +72,15 @@ fn list(lang: Lang) {
     place::print(&format!("{text}\n{}\n", note!("procedures.more").say(lang)));
 }
 
+/// Columns of a list.
+const LIST_WIDTH_COLUMNS: usize = 80;
+
+/// A text in lines, set in by `indent`.
+fn lines(indent: &str, text: &str) -> String {
+    let within = LIST_WIDTH_COLUMNS - indent.len();
+    wrapped(text, within).iter().map(|line| format!("{indent}{line}\n")).collect()
+}
+
 /// Lists every clause that a shipped procedure names, with those that deal with it and their rows.
 fn clauses(lang: Lang) {
     let mut found: BTreeMap<Vec<u32>, (StatedClause, Vec<String>)> = BTreeMap::new();
@@ -80,19 +90,17 @@ fn clauses(lang: Lang) {
             let parts = clause.number.split('.').map(|part| part.parse().unwrap_or(u32::MAX)).collect();
             let dealt_with = clause.here.then(|| {
                 let note = if clause.note.is_empty() { String::new() } else { format!(": {}", clause.note) };
-                let rows = match clause.measurands.is_empty() {
-                    true => String::new(),
-                    false => format!("\n    {}", clause.measurands.join(", ")),
-                };
-                format!("  {}{note}{rows}\n", procedure.name)
+                let rows = clause.measurands.join(", ");
+                let named = lines("  ", &format!("{}{note}", procedure.name));
+                if rows.is_empty() { named } else { named + &lines("    ", &rows) }
             });
             found.entry(parts).or_insert_with(|| (clause, vec![])).1.extend(dealt_with);
         }
     }
     let of_clause = |(clause, dealt_with): &(StatedClause, Vec<String>)| {
-        let none = || format!("  {}\n", note!("procedures.no_clause").say(lang));
-        let lines = if dealt_with.is_empty() { none() } else { dealt_with.concat() };
-        format!("{} {}\n{lines}", clause.number, clause.title)
+        let none = || lines("  ", &note!("procedures.no_clause").say(lang));
+        let below = if dealt_with.is_empty() { none() } else { dealt_with.concat() };
+        format!("{} {}\n{below}", clause.number, clause.title)
     };
     place::print(&found.values().map(of_clause).collect::<Vec<String>>().join("\n"));
 }

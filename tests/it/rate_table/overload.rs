@@ -7,8 +7,7 @@ use serde_json::Value;
 use tempfile::tempdir;
 
 /// Rates of the samples on the way out, deg/s, in both directions.
-const OUT: [f64; 12] =
-    [0.0, 30.0, 75.0, 150.0, 200.0, 250.0, 275.0, 300.0, 325.0, 350.0, 375.0, 400.0];
+const OUT: [f64; 12] = [0.0, 30.0, 75.0, 150.0, 200.0, 250.0, 275.0, 300.0, 325.0, 350.0, 375.0, 400.0];
 
 /// A unit with these rails, deg/s, that stays there so long after an overload, s.
 pub fn unit(low: f64, high: f64, recovery_s: f64, seed: u64) -> RateTable {

@@ -4,7 +4,7 @@ use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
 use crate::estimate::{Estimate, LowerLimit, Spread, UpperLimit, normal_probability};
 use crate::message::{Arg, note};
-use crate::rate_table::overload::{CONFIDENCE, Overload, Side};
+use crate::rate_table::overload::{CLAIM_CONFIDENCE, Overload, Side};
 
 /// Largest rate, of both signs, up to which the output follows within the stated error.
 pub static MAXIMUM_RATE: Measurand = Measurand::of_steps(
@@ -73,8 +73,8 @@ fn maximum_rate(m: &Measurand, e: &TableEvidence<'_>, found: &Overload) -> Vec<E
     let least = positive.follows_to.min(negative.follows_to);
     let fails = [positive.fails_from, negative.fails_from].into_iter().flatten().reduce(f64::min);
     let shown = |rate: f64| rate / DEG_H_IN_DEG_S;
-    let row = none(fails.map(|rate| UpperLimit { value: shown(rate), coverage: CONFIDENCE }))
-        .at_least((least > 0.0).then_some(LowerLimit { value: shown(least), coverage: CONFIDENCE }));
+    let row = none(fails.map(|rate| UpperLimit { value: shown(rate), coverage: CLAIM_CONFIDENCE }))
+        .at_least((least > 0.0).then_some(LowerLimit { value: shown(least), coverage: CLAIM_CONFIDENCE }));
     let error = Arg::figures(100.0 * e.setup.maximum_rate_error, 3);
     let to = Arg::figures(shown(found.line_to), 4);
     let row = row.note(note!("overload.error", error, to));
@@ -110,7 +110,7 @@ fn recovery(m: &Measurand, e: &TableEvidence<'_>, found: &Overload) -> Estimate 
     };
     let told = note!("overload.resolution", block_s = Arg::figures(block_s, 2));
     if time_s <= 0.0 {
-        let limit = UpperLimit { value: block_s, coverage: CONFIDENCE };
+        let limit = UpperLimit { value: block_s, coverage: CLAIM_CONFIDENCE };
         return m.not_identifiable(&e.channel, Some(limit), METHOD).note(told);
     }
     let at = |score: f64| (score, (time_s + block_s * (2.0 * normal_probability(score) - 1.0)).max(0.0));

@@ -54,20 +54,20 @@ pub static SPECTRAL_MASK: Measurand = Measurand::of_noise_test(
     "Bonferroni; Berger, Technometrics 24 (1982) 295",
 );
 
-const RMS: &str = "about_block_means";
-const DENSITY: &str = "welch_band";
-const MASK: &str = "welch_mask";
+const RMS_METHOD: &str = "about_block_means";
+const DENSITY_METHOD: &str = "welch_band";
+const MASK_METHOD: &str = "welch_mask";
 /// Confidence of a bound from below.
-const CONFIDENCE: f64 = 0.95;
+const LOWER_BOUND_CONFIDENCE: f64 = 0.95;
 /// Standard deviations between the quartiles of a normal law.
-const QUARTILES: f64 = 1.348_979_500_392_163_5;
+const QUARTILE_DISTANCE_SIGMAS: f64 = 1.348_979_500_392_163_5;
 
 fn rms(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
     let histogram = &gyro.digest.histogram;
     let Some(dof) = rms_dof(&gyro.digest, &gyro.lines) else {
-        return m.not_identifiable(&gyro.channel, None, RMS).note(note!("in_band.no_scatter"));
+        return m.not_identifiable(&gyro.channel, None, RMS_METHOD).note(note!("in_band.no_scatter"));
     };
-    let row = m.measured(&gyro.channel, histogram.standard_deviation, Spread::ChiSquare { dof }, RMS);
+    let row = m.measured(&gyro.channel, histogram.standard_deviation, Spread::ChiSquare { dof }, RMS_METHOD);
     let band = note!("in_band.whole_band", highest_hz = 0.5 / gyro.tau0_s, rate_hz = 1.0 / gyro.tau0_s);
     let robust = robust_deviation(histogram).map(|robust| note!("in_band.robust", robust));
     robust.into_iter().chain(of_lines(gyro, None, "in_band.lines_in")).fold(row.note(band), Estimate::note)
@@ -91,7 +91,7 @@ fn robust_deviation(histogram: &Histogram) -> Option<f64> {
         None
     };
     let (low, high) = (quantile(0.25)?, quantile(0.75)?);
-    (low.0 < high.0).then(|| (high.1 - low.1) / QUARTILES)
+    (low.0 < high.0).then(|| (high.1 - low.1) / QUARTILE_DISTANCE_SIGMAS)
 }
 
 fn density(m: &Measurand, gyro: &GyroEvidence, band: Band, several: bool) -> Estimate {
@@ -99,20 +99,20 @@ fn density(m: &Measurand, gyro: &GyroEvidence, band: Band, several: bool) -> Est
         true => format!("{}@{}-{}Hz", gyro.channel, band.from_hz, band.to_hz),
         false => gyro.channel.clone(),
     };
-    let withheld = |why: Note| m.not_identifiable(&channel, None, DENSITY).note(why);
+    let withheld = |why: Note| m.not_identifiable(&channel, None, DENSITY_METHOD).note(why);
     let Some(spectrum) = spectrum(gyro) else { return withheld(note!("in_band.too_short")) };
     if !spectrum.shows(band) {
         return withheld(not_shown(&spectrum));
     }
     let Some(mean) = spectrum.mean(band, |_| 1.0) else { return withheld(note!("in_band.no_bin")) };
-    let row = m.measured(&channel, mean.power.sqrt(), Spread::ChiSquare { dof: mean.dof }, DENSITY);
+    let row = m.measured(&channel, mean.power.sqrt(), Spread::ChiSquare { dof: mean.dof }, DENSITY_METHOD);
     let told =
         note!("in_band.band", from_hz = band.from_hz, to_hz = band.to_hz, dof = Arg::figures(mean.dof, 3));
     of_lines(gyro, Some(band), "in_band.lines_out").into_iter().fold(row.note(told), Estimate::note)
 }
 
 fn mask(m: &Measurand, gyro: &GyroEvidence, test: &NoiseTest) -> Estimate {
-    let withheld = |why: Note| m.not_identifiable(&gyro.channel, None, MASK).note(why);
+    let withheld = |why: Note| m.not_identifiable(&gyro.channel, None, MASK_METHOD).note(why);
     let Some(spectrum) = spectrum(gyro) else { return withheld(note!("in_band.too_short")) };
     let Some((first, last)) = test.mask.first().zip(test.mask.last()) else {
         return withheld(note!("in_band.too_short"));
@@ -126,10 +126,10 @@ fn mask(m: &Measurand, gyro: &GyroEvidence, test: &NoiseTest) -> Estimate {
         sections = found.sections
     );
     let row = match spectrum.shows(whole) {
-        true => m.measured(&gyro.channel, found.ratio, found.spread, MASK),
+        true => m.measured(&gyro.channel, found.ratio, found.spread, MASK_METHOD),
         false => {
-            let least = found.spread.bound(found.ratio, 1.0 - CONFIDENCE);
-            let least = least.map(|value| LowerLimit { value, coverage: CONFIDENCE });
+            let least = found.spread.bound(found.ratio, 1.0 - LOWER_BOUND_CONFIDENCE);
+            let least = least.map(|value| LowerLimit { value, coverage: LOWER_BOUND_CONFIDENCE });
             withheld(not_shown(&spectrum)).at_least(least)
         }
     };
@@ -194,10 +194,10 @@ mod tests {
         assert!((chi_square(&found) / 8192.0 - 1.0).abs() < 0.15);
         assert_eq!(number(&found, "in_band.whole_band", "highest_hz"), 1.0);
         // The quartiles of an even law lie 1 apart.
-        within(number(&found, "in_band.robust", "robust"), 1.0 / QUARTILES, 0.03);
+        within(number(&found, "in_band.robust", "robust"), 1.0 / QUARTILE_DISTANCE_SIGMAS, 0.03);
         let mut flat = even();
         flat.digest.histogram.standard_deviation = 0.0;
-        withholds(&row(&OUTPUT_NOISE_RMS, &flat), None, RMS);
+        withholds(&row(&OUTPUT_NOISE_RMS, &flat), None, RMS_METHOD);
     }
 
     #[test]
@@ -213,7 +213,7 @@ mod tests {
             Some(NoiseTest { bands: vec![band, Band { from_hz: 0.5, to_hz: 1.5 }], mask: vec![] });
         let found = RATE_NOISE_DENSITY.evaluate_gyro(&gyro, &Options { remove_earth_rate: false });
         assert_eq!(found[0].channel, "g@0.1-0.9Hz");
-        withholds(&found[1], None, DENSITY);
+        withholds(&found[1], None, DENSITY_METHOD);
         assert_eq!(notes(&found[1]), ["in_band.not_shown"]);
     }
 
@@ -227,14 +227,14 @@ mod tests {
         gyro.noise_test = mask(0.95);
         let found = row(&SPECTRAL_MASK, &gyro);
         let ratio = found.value.unwrap();
-        shows(&found, ratio, MASK);
+        shows(&found, ratio, MASK_METHOD);
         // √(1/3)/0.5, and more by the scatter of the sections.
         assert!((1.15..1.45).contains(&ratio), "{ratio}");
         let points = curve(&found);
         assert!(points.windows(2).all(|w| w[0].1 <= w[1].1), "{points:?}");
         gyro.noise_test = mask(3.0);
         let part = row(&SPECTRAL_MASK, &gyro);
-        withholds(&part, None, MASK);
+        withholds(&part, None, MASK_METHOD);
         let least = part.lower_limit.unwrap().value;
         assert!((1.0..1.2).contains(&least), "{least}");
         assert_eq!(notes(&part), ["in_band.not_shown", "in_band.worst"]);

@@ -43,15 +43,15 @@ pub enum Term {
     OS,
 }
 
-const QUADRATIC: [Term; 9] =
+const QUADRATIC_TERMS: [Term; 9] =
     [Term::Bias, Term::I, Term::O, Term::S, Term::II, Term::OO, Term::IO, Term::IS, Term::OS];
 
 impl Order {
     /// Its terms.
     pub fn terms(self) -> &'static [Term] {
         match self {
-            Order::Linear => &QUADRATIC[..4],
-            Order::Quadratic => &QUADRATIC,
+            Order::Linear => &QUADRATIC_TERMS[..4],
+            Order::Quadratic => &QUADRATIC_TERMS,
         }
     }
 }
@@ -117,7 +117,7 @@ impl AccelerationTest {
 }
 
 /// Length of what is left of a column beside the others, as a share of it, from which it is one of its own.
-const INDEPENDENT: f64 = 1e-6;
+const MIN_INDEPENDENT_SHARE: f64 = 1e-6;
 
 /// Which terms positions determine, and how well.
 #[derive(Debug, Clone, PartialEq)]
@@ -170,7 +170,7 @@ fn independent(x: &DMatrix<f64>, without: Option<usize>) -> Vec<usize> {
         for b in basis.iter().chain(&basis) {
             left -= b * left.dot(b);
         }
-        if left.norm() > INDEPENDENT * own.norm().max(1e-12) {
+        if left.norm() > MIN_INDEPENDENT_SHARE * own.norm().max(1e-12) {
             basis.push(left.normalize());
             columns.push(j);
         }

@@ -13,17 +13,17 @@ use crate::numeric::reml::Combination;
 use nalgebra::DMatrix;
 
 /// Confidence of what is claimed of a level.
-pub const CONFIDENCE: f64 = 0.95;
+pub const CLAIM_CONFIDENCE: f64 = 0.95;
 /// Share of full scale up to which levels give the line.
-const LINE_TO: f64 = 0.5;
+const LINE_SHARE_OF_FULL_SCALE: f64 = 0.5;
 /// Relative difference within which a level is that of its nominal rate.
-const NEAR_NOMINAL: f64 = 1e-4;
+const NOMINAL_RATE_TOLERANCE: f64 = 1e-4;
 /// Part of the slope of the line below which the output does not rise any more.
-const FLAT_SLOPE: f64 = 0.02;
+const MAX_FLAT_SLOPE_SHARE: f64 = 0.02;
 /// Time for which the output must follow again, s.
 const FOLLOWS_FOR_S: f64 = 1.0;
 /// Standard deviations of a block within which it follows beside the stated error.
-const NOISE_OF_BLOCK: f64 = 4.0;
+const BLOCK_NOISE_SIGMAS: f64 = 4.0;
 
 /// What the rates of one sign show.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -55,7 +55,7 @@ pub struct Overload {
 /// Evaluates a channel by its levels; `None` where fewer than three levels give the line.
 pub fn evaluate(run: &TableRun, gyro: usize, line: &ScaleFactor, setup: &Setup) -> Option<Overload> {
     let levels = &line.response.levels;
-    let line_to = LINE_TO * line.full_scale * (1.0 + NEAR_NOMINAL);
+    let line_to = LINE_SHARE_OF_FULL_SCALE * line.full_scale * (1.0 + NOMINAL_RATE_TOLERANCE);
     let inner: Vec<usize> = (0..levels.len()).filter(|i| levels[*i].abs() <= line_to).collect();
     if inner.len() < 3 {
         return None;
@@ -97,7 +97,7 @@ pub fn evaluate(run: &TableRun, gyro: usize, line: &ScaleFactor, setup: &Setup) 
     let (positive, negative) = (side(1.0), side(-1.0));
     let response = Line { slope, offset, noise: noise_of_block(run, gyro, slope, offset, line_to) };
     let recovery_s = recovery(run, gyro, &response, setup, [positive, negative]);
-    Some(Overload { line_to: LINE_TO * line.full_scale, positive, negative, recovery_s })
+    Some(Overload { line_to: LINE_SHARE_OF_FULL_SCALE * line.full_scale, positive, negative, recovery_s })
 }
 
 /// Magnitude of the rate of a level, deg/h: the nominal one where the table was there, since the reading of an angle must not
@@ -112,7 +112,7 @@ fn stated(run: &TableRun, level: f64) -> f64 {
         .filter(|r| r.is_finite())
         .collect();
     let nominal = own.iter().sum::<f64>() / own.len() as f64;
-    if (nominal / level - 1.0).abs() <= NEAR_NOMINAL { nominal.abs() } else { level.abs() }
+    if (nominal / level - 1.0).abs() <= NOMINAL_RATE_TOLERANCE { nominal.abs() } else { level.abs() }
 }
 
 /// Whether the output of a level is within its error.
@@ -125,7 +125,7 @@ enum Follows {
 
 fn follows(residual: &Combination, allowed: f64, levels: usize) -> Follows {
     let quantile = |risk: f64| student_quantile(1.0 - risk, residual.dof) * residual.standard;
-    let (risk, off) = (1.0 - CONFIDENCE, residual.value.abs());
+    let (risk, off) = (1.0 - CLAIM_CONFIDENCE, residual.value.abs());
     if off + quantile(risk) <= allowed {
         Follows::Yes
     } else if off - quantile(risk / levels.max(1) as f64) > allowed {
@@ -147,7 +147,7 @@ fn saturation(
     let last = *bad.last()?;
     let flat = |level: &&usize| {
         (output(last) - output(**level)).abs()
-            <= FLAT_SLOPE * (slope * (levels[last] - levels[**level])).abs()
+            <= MAX_FLAT_SLOPE_SHARE * (slope * (levels[last] - levels[**level])).abs()
     };
     let held: Vec<f64> = bad.iter().rev().take_while(flat).map(|i| levels[*i]).collect();
     if held.len() < 2 {
@@ -213,7 +213,7 @@ fn recovery(
     let blocks = &run.blocks;
     let rates = guide(blocks);
     let range = positive.follows_to.max(negative.follows_to);
-    let allowed = setup.maximum_rate_error * (line.slope * range).abs() + NOISE_OF_BLOCK * line.noise;
+    let allowed = setup.maximum_rate_error * (line.slope * range).abs() + BLOCK_NOISE_SIGMAS * line.noise;
     let start_s = |at: usize| blocks.start_s(at);
     let back = |at: usize| {
         let limit = if rates[at] > 0.0 { positive.follows_to } else { negative.follows_to };

@@ -34,7 +34,7 @@ pub(crate) struct AccelerationKeys {
     /// acceleration along the input axis.
     #[key(quantity = "ppm", min = 0, default = "500 ppm", example = "500 ppm")]
     scale_factor_uncertainty_ppm: f64,
-    /// Uncertainty of every direction that states none.
+    /// Standard uncertainty (k = 1) of every direction.
     #[key(quantity = "deg", min = 0, max = 90, default = "1 arcmin", example = "1 arcmin")]
     direction_uncertainty_deg: f64,
     /// Positions at rest, in the order of time.
@@ -121,14 +121,14 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
     }
 }
 
-/// Mean rate over an hour of white noise of 1 deg/√h, deg/h.
-const PER_HOUR: f64 = 1.0;
+/// Angle random walk by which deviations are told where none is expected, deg/√h.
+const UNIT_ANGLE_RANDOM_WALK: f64 = 1.0;
 
 /// What the positions determine, for `sagnac check`: rank, missing terms, and the deviation of each term after an hour in each
 /// position, for `angle_random_walk` in deg/√h or for one of 1.
 pub(crate) fn determined(test: &AccelerationTest, angle_random_walk: Option<f64>) -> Vec<Note> {
     let design = test.design();
-    let n = angle_random_walk.unwrap_or(PER_HOUR);
+    let n = angle_random_walk.unwrap_or(UNIT_ANGLE_RANDOM_WALK);
     let terms = design.terms.iter().zip(&design.deviations);
     let deviations: Vec<Arg> = terms
         .filter_map(|(term, deviation)| {
