@@ -123,6 +123,14 @@ pub struct Recorded {
     pub cycles_ppm: Vec<f64>,
 }
 
+/// Where the output was held by the last overload.
+struct Rail {
+    /// deg/h
+    output: f64,
+    /// s
+    until_s: f64,
+}
+
 impl RateTable {
     /// Largest rate, deg/h.
     pub fn full_scale(&self) -> f64 {
@@ -134,6 +142,15 @@ impl RateTable {
         let full = self.full_scale();
         let x = rate / full;
         1e-6 * full * (self.cubic_ppm * x.powi(3) + self.even_ppm * x * x)
+    }
+
+    /// The output at a time, s: at its rail beyond it, and until it has recovered.
+    fn within_rails(&self, output: f64, time_s: f64, rail: &mut Rail) -> f64 {
+        let Some((low, high)) = self.rails else { return output };
+        if !(low..=high).contains(&output) {
+            *rail = Rail { output: output.clamp(low, high), until_s: time_s + self.recovery_s };
+        }
+        if time_s <= rail.until_s { rail.output } else { output }
     }
 
     /// The recording.
@@ -158,8 +175,7 @@ impl RateTable {
         let (sin, cos) = (self.latitude.to_radians().sin(), self.latitude.to_radians().cos());
         let axial = (1.0 - self.tilt * self.tilt).sqrt();
         let mut carry = 0.0;
-        // Rail of the last overload, and the time until which the output stays there.
-        let mut held = (0.0, f64::NEG_INFINITY);
+        let mut rail = Rail { output: 0.0, until_s: f64::NEG_INFINITY };
         let swing = 2.0 * std::f64::consts::PI * 2.7 / total;
         for (i, (cycle, wanted)) in sequence.iter().enumerate() {
             if *wanted != last {
@@ -206,12 +222,7 @@ impl RateTable {
                     + self.bias_per_c * (temperature - self.reference_c)
                     + moved
                     + self.n / (dt / 3600.0).sqrt() * normal(&mut rng);
-                if let Some((low, high)) = self.rails {
-                    if !(low..=high).contains(&y) {
-                        held = (y.clamp(low, high), t + self.recovery_s);
-                    }
-                    y = if t <= held.1 { held.0 } else { y };
-                }
+                y = self.within_rails(y, t, &mut rail);
                 if self.count_arcsec > 0.0 {
                     let angle = y * dt + carry;
                     let counts = (angle / self.count_arcsec).round();

@@ -102,3 +102,25 @@ fn terms_that_the_positions_do_not_tell_decide_nothing() {
     assert!(open["value"].is_null() && open["verdict"] == "indeterminate", "{open}");
     assert!(open["notes"].to_string().contains("acceleration.not_determined"), "{open}");
 }
+
+#[test]
+fn tests_that_make_no_sense_are_refused_with_the_place() {
+    let dir = tempdir().unwrap();
+    let shipped = shipped("procedures/acceleration.toml");
+    let first = "[[acceleration_test.position]]\nfrom = \"10 s\"\nto = \"300 s\"\n";
+    let backwards = first.replace("300 s", "5 s");
+    for (from, to, expected) in [
+        ("[site]", "[expected_site]", "needs [site]"),
+        (first, &*backwards, "`to` must be later than `from`"),
+        (first, "[[acceleration_test.position]]\n", "neither a phase nor a time"),
+        ("elevation = \"90 deg\"\nroll", "elevation = \"91 deg\"\nroll", "90 deg"),
+        ("order = \"quadratic\"", "order = \"cubic\"", "quadratic"),
+        ("id = \"g_sensitivity_i\"", "id = \"static_bias\"", "static_bias"),
+    ] {
+        altered(dir.path(), "p.toml", &shipped, &[(from, to)]);
+        let said = sagnac(dir.path(), &["check", "p.toml", "--lang", "en"]);
+        assert_eq!(said.code, 2, "{from}: {said:?}");
+        let text = format!("{}{}", said.out, said.err);
+        assert!(text.contains(expected) && text.contains("p.toml:"), "{expected}: {text}");
+    }
+}

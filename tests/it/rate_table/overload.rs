@@ -101,3 +101,48 @@ fn a_table_that_ends_first_says_at_least() {
         assert!(rows(&r, "saturation_level").iter().all(|row| row["value"].is_null()));
     }
 }
+
+#[test]
+fn a_reversed_unit_fails_its_polarity() {
+    let dir = tempdir().unwrap();
+    let unit = unit(-345.0, 340.0, 0.3, 4);
+    let reversed: String = csv(&unit)
+        .lines()
+        .enumerate()
+        .map(|(row, line)| match line.split(',').collect::<Vec<&str>>()[..] {
+            [time, rate, table, angle] if row > 0 => {
+                format!("{time},{},{table},{angle}\n", -rate.parse::<f64>().unwrap())
+            }
+            _ => format!("{line}\n"),
+        })
+        .collect();
+    std::fs::write(dir.path().join("r.csv"), reversed).unwrap();
+    let shipped = shipped("procedures/maximum-rate.toml");
+    let said = sagnac(dir.path(), &["run", &shipped, "r.csv", "--serial", "S", "--out", "o"]);
+    assert_eq!(said.code, 1, "{said:?}");
+    let r = result(&dir.path().join("o"));
+    let polarity = rows(&r, "polarity")[0];
+    assert_eq!((polarity["value"].as_f64(), polarity["verdict"].as_str()), (Some(-1.0), Some("fail")));
+    // Without a limit on it the test is not valid.
+    altered(dir.path(), "p.toml", &shipped, &[("[[limit]]\nmeasurand = \"polarity\"\nmin = \"1\"\n", "")]);
+    let said = sagnac(dir.path(), &["run", "p.toml", "r.csv", "--serial", "S", "--out", "o"]);
+    assert_eq!(said.code, 3, "{said:?}");
+}
+
+#[test]
+fn what_makes_no_sense_is_refused_with_the_place() {
+    let dir = tempdir().unwrap();
+    let shipped = shipped("procedures/maximum-rate.toml");
+    for (from, to, expected) in [
+        ("maximum_rate_error = \"1 %\"", "maximum_rate_error = \"60 %\"", "maximum_rate_error"),
+        ("maximum_rate_error = \"1 %\"", "maximum_rate_error = \"0 %\"", "maximum_rate_error"),
+        ("id = \"saturation_level\"", "id = \"g_sensitivity_i\"", "[acceleration_test]"),
+        ("min = \"300 deg/s\"", "min = \"300 s\"", "deg/s"),
+    ] {
+        altered(dir.path(), "p.toml", &shipped, &[(from, to)]);
+        let said = sagnac(dir.path(), &["check", "p.toml", "--lang", "en"]);
+        assert_eq!(said.code, 2, "{to}: {said:?}");
+        let text = format!("{}{}", said.out, said.err);
+        assert!(text.contains(expected) && text.contains("p.toml:"), "{expected}: {text}");
+    }
+}
