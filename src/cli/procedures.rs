@@ -10,9 +10,10 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct ProceduresArgs {
     /// List the clauses of the standard with the procedures and rows that deal with them
-    #[arg(long, conflicts_with = "what")]
+    #[arg(long)]
     clauses: bool,
     #[command(subcommand)]
     what: Option<What>,
