@@ -315,10 +315,18 @@ fn footnote(sentence: String, footnotes: &mut Vec<String>) -> usize {
     }) + 1
 }
 
-/// The verdict of a row in words. Of a quantity that the record does not resolve, only its upper limit is known to be inside.
+/// The verdict of a row in words. Of a quantity that the record does not resolve, only its bounds are known to be inside.
 pub fn verdict_word(m: &MeasurandRecord, words: Translator) -> String {
     match (m.verdict, m.value) {
-        (Verdict::Pass, None) => words.t("verdict.met_by_upper_limit"),
+        (Verdict::Pass, None) => {
+            let of_lower = m.limit.as_ref().is_some_and(|l| l.min.is_some()) && m.lower_limit.is_some();
+            let of_upper = m.limit.as_ref().is_some_and(|l| l.max.is_some());
+            words.t(match (of_lower, of_upper) {
+                (true, true) => "verdict.met_by_both_bounds",
+                (true, false) => "verdict.met_by_lower_limit",
+                (false, _) => "verdict.met_by_upper_limit",
+            })
+        }
         (verdict, _) => words.verdict(verdict),
     }
 }

@@ -4,7 +4,7 @@ use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
 use crate::estimate::{Estimate, LowerLimit, Spread, UpperLimit, normal_probability};
 use crate::message::{Arg, note};
-use crate::rate_table::overload::{CLAIM_CONFIDENCE, Overload, Side};
+use crate::rate_table::overload::{CLAIM_CONFIDENCE, Overload, Recovery, Side};
 
 /// Largest rate, of both signs, up to which the output follows within the stated error.
 pub static MAXIMUM_RATE: Measurand = Measurand::of_steps(
@@ -103,15 +103,16 @@ fn saturation(m: &Measurand, e: &TableEvidence<'_>, direction: &str, side: &Side
     }
 }
 
-/// The time is known to a block: the spread is even over one on each side.
+/// The time is known to a block: the spread is even over one on each side. Where only the commanded rate is known, the time bounds it.
 fn recovery(m: &Measurand, e: &TableEvidence<'_>, found: &Overload) -> Estimate {
-    let Some((time_s, block_s)) = found.recovery_s else {
+    let Some(Recovery { time_s, block_s, by_angle }) = found.recovery else {
         return m.not_identifiable(&e.channel, None, METHOD).note(note!("overload.no_return"));
     };
     let told = note!("overload.resolution", block_s = Arg::figures(block_s, 2));
-    if time_s <= 0.0 {
-        let limit = UpperLimit { value: block_s, coverage: CLAIM_CONFIDENCE };
-        return m.not_identifiable(&e.channel, Some(limit), METHOD).note(told);
+    if time_s <= 0.0 || !by_angle {
+        let limit = UpperLimit { value: time_s.max(0.0) + block_s, coverage: CLAIM_CONFIDENCE };
+        let row = m.not_identifiable(&e.channel, Some(limit), METHOD).note(told);
+        return if by_angle { row } else { row.note(note!("overload.commanded")) };
     }
     let at = |score: f64| (score, (time_s + block_s * (2.0 * normal_probability(score) - 1.0)).max(0.0));
     let spread = Spread::Curve((-12..=12).map(|i| at(0.25 * f64::from(i))).collect());
@@ -126,12 +127,12 @@ mod tests {
     use crate::rate_table::Setup;
 
     /// Rows of a channel whose rates of both signs showed this.
-    fn rows(m: &Measurand, positive: Side, negative: Side, recovery_s: Option<(f64, f64)>) -> Vec<Estimate> {
+    fn rows(m: &Measurand, positive: Side, negative: Side, recovery: Option<Recovery>) -> Vec<Estimate> {
         let (steps, line) = line(&[-1.0, 0.0, 1.0], &[0.0; 3], &[], diagonal(&[1.0; 3]));
         let setup = Setup::default();
         let mut evidence = on_table(&setup, &steps, Some(line));
         evidence.overload =
-            Some(Overload { line_to: 1e6, positive: Some(positive), negative: Some(negative), recovery_s });
+            Some(Overload { line_to: 1e6, positive: Some(positive), negative: Some(negative), recovery });
         m.evaluate_steps(&evidence)
     }
 
@@ -173,14 +174,18 @@ mod tests {
 
     #[test]
     fn a_recovery_is_known_to_a_block() {
-        let of =
-            |recovery_s| rows(&OVERLOAD_RECOVERY, side(0.0, None), side(0.0, None), recovery_s).remove(0);
-        let late = of(Some((0.4, 0.1)));
+        let of = |recovery| rows(&OVERLOAD_RECOVERY, side(0.0, None), side(0.0, None), recovery).remove(0);
+        let late = of(Some(Recovery { time_s: 0.4, block_s: 0.1, by_angle: true }));
         shows(&late, 0.4, METHOD);
         let interval = late.interval95().unwrap();
         near(interval.low, 0.305);
         near(interval.high, 0.495);
-        withholds(&of(Some((0.0, 0.1))), Some(0.1), METHOD);
+        let at_once = of(Some(Recovery { time_s: 0.0, block_s: 0.1, by_angle: true }));
+        withholds(&at_once, Some(0.1), METHOD);
+        // The table may have been late itself.
+        let commanded = of(Some(Recovery { time_s: 0.4, block_s: 0.1, by_angle: false }));
+        withholds(&commanded, Some(0.5), METHOD);
+        assert_eq!(notes(&commanded), ["overload.resolution", "overload.commanded"]);
         assert_eq!(notes(&of(None)), ["overload.no_return"]);
     }
 }

@@ -7,7 +7,7 @@
 use super::blocks::Blocks;
 use super::scale_factor::ScaleFactor;
 use super::setup::Setup;
-use super::steps::{Step, TableRun, guide};
+use super::steps::{Step, TableRun, guide, of_angle};
 use crate::estimate::student_quantile;
 use crate::numeric::reml::Combination;
 use nalgebra::DMatrix;
@@ -47,9 +47,20 @@ pub struct Overload {
     pub positive: Option<Side>,
     /// Negative rates.
     pub negative: Option<Side>,
-    /// Longest time until the output follows again, s, and the length of a block, s; `None` where no rate was too high or
-    /// the recording does not show the return.
-    pub recovery_s: Option<(f64, f64)>,
+    /// Longest time until the output follows again; `None` where no rate was too high or the recording does not show the return.
+    pub recovery: Option<Recovery>,
+}
+
+/// Time from the return of a rate into the range until the output follows.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Recovery {
+    /// The time, s.
+    pub time_s: f64,
+    /// Length of a block, which it is known to, s.
+    pub block_s: f64,
+    /// True where the angle shows when the table itself was back. A commanded rate is back before the table is, so that the time
+    /// contains what the table needs and bounds that of the unit from above.
+    pub by_angle: bool,
 }
 
 /// Evaluates a channel by its levels; `None` where fewer than three levels give the line.
@@ -96,8 +107,8 @@ pub fn evaluate(run: &TableRun, gyro: usize, line: &ScaleFactor, setup: &Setup) 
     };
     let (positive, negative) = (side(1.0), side(-1.0));
     let response = Line { slope, offset, noise: noise_of_block(run, gyro, slope, offset, line_to) };
-    let recovery_s = recovery(run, gyro, &response, setup, [positive, negative]);
-    Some(Overload { line_to: LINE_SHARE_OF_FULL_SCALE * line.full_scale, positive, negative, recovery_s })
+    let recovery = recovery(run, gyro, &response, setup, [positive, negative]);
+    Some(Overload { line_to: LINE_SHARE_OF_FULL_SCALE * line.full_scale, positive, negative, recovery })
 }
 
 /// Magnitude of the rate of a level, deg/h: the nominal one where the table was there, since the reading of an angle must not
@@ -197,21 +208,22 @@ fn noise_of_block(run: &TableRun, gyro: usize, slope: f64, offset: f64, line_to:
     (squares.iter().sum::<f64>() / squares.len().max(1) as f64).sqrt()
 }
 
-/// The longest time from where the table is back in the range until the output follows it, and the length of a block, s.
+/// The longest time from where the table is back in the range until the output follows it.
 fn recovery(
     run: &TableRun,
     gyro: usize,
     line: &Line,
     setup: &Setup,
     sides: [Option<Side>; 2],
-) -> Option<(f64, f64)> {
+) -> Option<Recovery> {
     let [positive, negative] = sides.map(|side| side.unwrap_or_default());
     let too_fast = |rate: f64| {
         let from = if rate > 0.0 { positive.fails_from } else { negative.fails_from };
         from.is_some_and(|from| rate.abs() >= from * (1.0 - 5e-3))
     };
     let blocks = &run.blocks;
-    let rates = guide(blocks);
+    let by_angle = blocks.has_angle;
+    let rates = if by_angle { of_angle(blocks) } else { guide(blocks) };
     let range = positive.follows_to.max(negative.follows_to);
     let allowed = setup.maximum_rate_error * (line.slope * range).abs() + BLOCK_NOISE_SIGMAS * line.noise;
     let start_s = |at: usize| blocks.start_s(at);
@@ -229,10 +241,10 @@ fn recovery(
         let held = ((FOLLOWS_FOR_S / length_s).ceil() as usize).max(1);
         let again =
             (first..blocks.list.len().saturating_sub(held)).find(|i| (*i..i + held).all(&followed))?;
-        Some((start_s(again) - start_s(first), length_s))
+        Some(Recovery { time_s: start_s(again) - start_s(first), block_s: length_s, by_angle })
     };
     let times = run.steps.list.iter().filter(|s| too_fast(s.rate)).filter_map(of_step);
-    times.max_by(|a, b| a.0.total_cmp(&b.0))
+    times.max_by(|a, b| a.time_s.total_cmp(&b.time_s))
 }
 
 /// Length of a block, s.
@@ -322,7 +334,7 @@ mod tests {
         assert_eq!((negative.fails_from, negative.saturation), (None, None));
         assert!((negative.highest_output + 1.02 * 1.1e6 - 50.0).abs() < 10.0);
         // It follows with the first block that is back.
-        assert_eq!(unit.recovery_s.map(|r| r.0), Some(0.0));
+        assert_eq!(unit.recovery.map(|r| (r.time_s, r.by_angle)), Some((0.0, false)));
     }
 
     #[test]
@@ -335,9 +347,9 @@ mod tests {
             if t < rail_until.get() { 8e5 } else { x }
         };
         let unit = found(&RATES, &of);
-        let (recovery_s, block_s) = unit.recovery_s.unwrap();
+        let Recovery { time_s, block_s, .. } = unit.recovery.unwrap();
         // Back below 700,000 deg/h some blocks after 800,000, and 3 s at the rail from there.
-        assert!((2.5..=3.0).contains(&recovery_s) && (block_s - 0.1).abs() < 1e-9, "{recovery_s}");
+        assert!((2.5..=3.0).contains(&time_s) && (block_s - 0.1).abs() < 1e-9, "{time_s}");
     }
 
     #[test]
