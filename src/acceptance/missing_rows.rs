@@ -8,7 +8,7 @@ use crate::config::procedure::obtainable;
 use crate::config::procedure::scale_factor_unit::scale_factor_unit;
 use crate::estimate::Estimate;
 use crate::i18n::Note;
-use crate::measurand::{Measurand, Test};
+use crate::measurand::Measurand;
 use crate::record::MeasurandRecord;
 use crate::recording::Channel;
 
@@ -66,7 +66,7 @@ fn without_value(
         "" => scale_factor_unit(procedure, channel).0,
         unit => unit,
     };
-    let general = if measurand.test() == Test::Static { "unshown.nothing" } else { missing };
+    let general = if measurand.test().is_at_rest() { "unshown.nothing" } else { missing };
     let why = obtainable::why_not(procedure, measurand, channel).unwrap_or_else(|| Note::new(general));
     Estimate::not_identifiable(measurand.id, channel, None, unit, "not_evaluated").note(why)
 }

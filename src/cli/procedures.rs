@@ -1,14 +1,20 @@
 //! `sagnac procedures`: the procedures and limits that the program carries.
 
 use super::{exit, place};
-use crate::config::shipped::{SHIPPED_LIMITS, SHIPPED_PROCEDURES, Shipped, find};
+use crate::config::shipped::{SHIPPED_LIMITS, SHIPPED_PROCEDURES, Shipped, StatedClause, find};
 use crate::i18n::{Lang, Localize, Note, note};
+use crate::report::terminal::wrapped;
 use clap::{Args, Subcommand};
 use sagnac_ingest::read_file;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 #[derive(Debug, Args)]
+#[command(args_conflicts_with_subcommands = true)]
 pub struct ProceduresArgs {
+    /// List the clauses of the standard with the procedures and rows that deal with them
+    #[arg(long)]
+    clauses: bool,
     #[command(subcommand)]
     what: Option<What>,
 }
@@ -30,6 +36,7 @@ enum What {
 
 pub fn main(args: &ProceduresArgs, lang: Lang) -> Result<u8, String> {
     match &args.what {
+        None if args.clauses => clauses(lang),
         None => list(lang),
         Some(What::Show { name }) => {
             let Some(shipped) = find(Path::new(name)) else {
@@ -64,6 +71,39 @@ fn list(lang: Lang) {
         [group("procedures.procedures", SHIPPED_PROCEDURES), group("procedures.limits", SHIPPED_LIMITS)]
             .join("\n");
     place::print(&format!("{text}\n{}\n", note!("procedures.more").say(lang)));
+}
+
+/// Columns of a list.
+const LIST_WIDTH_COLUMNS: usize = 80;
+
+/// A text in lines, set in by `indent`.
+fn lines(indent: &str, text: &str) -> String {
+    let within = LIST_WIDTH_COLUMNS - indent.len();
+    wrapped(text, within).iter().map(|line| format!("{indent}{line}\n")).collect()
+}
+
+/// Lists every clause that a shipped procedure names, with those that deal with it and their rows.
+fn clauses(lang: Lang) {
+    let mut found: BTreeMap<Vec<u32>, (StatedClause, Vec<String>)> = BTreeMap::new();
+    for procedure in SHIPPED_PROCEDURES {
+        for clause in procedure.clauses(lang) {
+            // Numbers are sorted by their parts: 12.9 comes before 12.10.
+            let parts = clause.number.split('.').map(|part| part.parse().unwrap_or(u32::MAX)).collect();
+            let dealt_with = clause.here.then(|| {
+                let note = if clause.note.is_empty() { String::new() } else { format!(": {}", clause.note) };
+                let rows = clause.measurands.join(", ");
+                let named = lines("  ", &format!("{}{note}", procedure.name));
+                if rows.is_empty() { named } else { named + &lines("    ", &rows) }
+            });
+            found.entry(parts).or_insert_with(|| (clause, vec![])).1.extend(dealt_with);
+        }
+    }
+    let of_clause = |(clause, dealt_with): &(StatedClause, Vec<String>)| {
+        let none = || lines("  ", &note!("procedures.no_clause").say(lang));
+        let below = if dealt_with.is_empty() { none() } else { dealt_with.concat() };
+        format!("{} {}\n{below}", clause.number, clause.title)
+    };
+    place::print(&found.values().map(of_clause).collect::<Vec<String>>().join("\n"));
 }
 
 /// Writes what is not there yet; a file of other content ends it before anything is written.

@@ -23,6 +23,27 @@ pub struct Shipped {
     pub text: &'static str,
 }
 
+/// A clause of the standard as a procedure states it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StatedClause {
+    /// Number of the clause.
+    pub number: String,
+    /// Its title.
+    pub title: String,
+    /// True where the procedure deals with it.
+    pub here: bool,
+    /// What of it.
+    pub note: String,
+    /// Rows of the report of the procedure.
+    pub measurands: Vec<String>,
+}
+
+/// A text of a file in a language.
+fn in_language(value: Option<&toml::Value>, lang: Lang) -> String {
+    let text = value.and_then(|t| t.as_str().or_else(|| t.get(lang.code())?.as_str()));
+    text.unwrap_or_default().to_owned()
+}
+
 macro_rules! shipped {
     ($kind:ident, $folder:literal: $($name:literal)*) => {
         &[$(Shipped {
@@ -35,11 +56,14 @@ macro_rules! shipped {
 
 /// Every procedure, by name.
 pub static SHIPPED_PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
+    "acceleration"
     "acceptance"
     "bias-repeatability"
     "magnetic-sensitivity"
+    "maximum-rate"
     "misalignment"
     "multi-position"
+    "output-noise"
     "scale-factor"
     "static-bias"
     "supply-sensitivity"
@@ -83,9 +107,25 @@ impl Shipped {
             ShippedKind::Limits => "limits",
         };
         let file = self.text.parse::<toml::Table>().unwrap_or_default();
-        let title = file.get(table).and_then(|identity| identity.get("title"));
-        let text = title.and_then(|t| t.as_str().or_else(|| t.get(lang.code())?.as_str()));
-        text.unwrap_or_default().to_owned()
+        in_language(file.get(table).and_then(|identity| identity.get("title")), lang)
+    }
+
+    /// The clauses of the standard that it states.
+    pub fn clauses(&self, lang: Lang) -> Vec<StatedClause> {
+        let file = self.text.parse::<toml::Table>().unwrap_or_default();
+        let tables =
+            |name: &str| file.get(name).and_then(|list| list.as_array()).cloned().unwrap_or_default();
+        let ids = tables("measurand");
+        let measurands: Vec<String> =
+            ids.iter().filter_map(|m| Some(m.get("id")?.as_str()?.to_owned())).collect();
+        let stated = |clause: &toml::Value| StatedClause {
+            number: in_language(clause.get("clause"), lang),
+            title: in_language(clause.get("title"), lang),
+            here: clause.get("status").and_then(toml::Value::as_str) == Some("here"),
+            note: in_language(clause.get("note"), lang),
+            measurands: measurands.clone(),
+        };
+        tables("clause").iter().map(stated).collect()
     }
 }
 

@@ -116,6 +116,16 @@ impl Translator {
         if let Some(number) = place.strip_prefix("ramp") {
             return self.with("report.at_ramp", &[("channel", base), ("number", number)]);
         }
+        if let "positive" | "negative" = place {
+            return self.with(&format!("report.{place}_rates"), &[("channel", base)]);
+        }
+        let band = place.strip_suffix("Hz").and_then(|band| band.split_once('-'));
+        if let Some((from, to)) = band {
+            let shown =
+                |hz: &str| hz.parse().map_or_else(|_| hz.to_owned(), |hz| number::limit(hz, self.lang));
+            let (from, to) = (shown(from), self.quantity(&shown(to), "Hz"));
+            return self.with("report.in_band", &[("channel", base), ("from", &from), ("to", &to)]);
+        }
         let (axis, level) = place.rsplit_once(':').unwrap_or(("", place));
         let level = level.parse().map_or_else(|_| level.to_owned(), |l| number::limit(l, self.lang));
         if measurand::find(measurand).is_some_and(|m| m.test() == Test::Temperature) {

@@ -66,11 +66,13 @@ fn allowed(row: &MeasurandRecord, limit: &LimitRecord) -> Vec<Verdict> {
     };
     let Some(value) = row.value else {
         let shown = 1.0 - limit.risk - ROUNDING_TOLERANCE;
-        let beyond =
-            limit.max.zip(row.lower_limit).is_some_and(|(max, b)| b.value > max && b.coverage >= shown);
-        let below =
-            limit.max.zip(row.upper_limit).is_some_and(|(max, b)| b.value <= max && b.coverage >= shown);
-        return match (beyond, below || limit.max.is_none()) {
+        let upper = row.upper_limit.filter(|b| b.coverage >= shown).map(|b| b.value);
+        let lower = row.lower_limit.filter(|b| b.coverage >= shown).map(|b| b.value);
+        let above = limit.max.zip(lower).is_some_and(|(max, least)| least > max);
+        let beyond = above || limit.min.zip(upper).is_some_and(|(min, most)| most < min);
+        let within = limit.max.is_none_or(|max| upper.is_some_and(|most| most <= max))
+            && limit.min.is_none_or(|min| min <= lower.unwrap_or(0.0).max(0.0));
+        return match (beyond, within) {
             (true, _) => vec![Verdict::Fail, Verdict::Indeterminate],
             (false, true) => vec![Verdict::Pass, Verdict::Indeterminate],
             (false, false) => vec![Verdict::Indeterminate],

@@ -316,6 +316,7 @@ pub fn simulate(model: &Composite, hours: f64, tau0_s: f64, seed: u64) -> GyroEv
         withheld_line: None,
         motion: Motion::Unknown,
         earth: None,
+        noise_test: None,
         over_temperature: None,
         warm_up: None,
         course: None,

@@ -133,6 +133,38 @@ fn shipped_files_are_found_by_name_and_a_file_of_the_name_wins() {
 }
 
 #[test]
+fn every_clause_is_listed_with_the_procedures_and_rows_that_deal_with_it() {
+    let folder = tempdir().unwrap();
+    let listed = |lang: &str| {
+        let done = printed(folder.path(), "80", &[], &["procedures", "--clauses", "--lang", lang]);
+        assert_eq!(done.status.code(), Some(0), "{done:?}");
+        text(&done, folder.path())
+    };
+    let english = listed("en");
+    let clauses: Vec<&str> =
+        english.split("\n\n").map(|part| part.split_whitespace().next().unwrap_or_default()).collect();
+    // By their numbers, not by their letters; what has none comes last.
+    assert_eq!(clauses[..3], ["12.1", "12.2", "12.3"]);
+    let place =
+        |number: &str| clauses.iter().position(|c| *c == number).unwrap_or_else(|| panic!("{number}"));
+    assert!(place("12.9") < place("12.10") && place("12.12") < place("Annex"), "{clauses:?}");
+    let of = |number: &str| english.split("\n\n").nth(place(number)).unwrap().to_owned();
+    assert!(of("12.7").contains("  maximum-rate: ") && of("12.7").contains("polarity"), "{english}");
+    assert!(of("12.11").contains("  acceleration: ") && of("12.11").contains("g_sensitivity_i"), "{english}");
+    assert!(of("12.11").contains("  output-noise: ") && of("12.11").contains("spectral_mask"), "{english}");
+    // No recording closes the leak test.
+    assert!(of("12.3").contains("no shipped procedure"), "{english}");
+    assert!(english.lines().all(|l| l.chars().count() <= 80), "{english}");
+    let russian = listed("ru");
+    assert!(
+        russian.contains("Испытания на скорость ухода") && russian.contains("нет встроенной"),
+        "{russian}"
+    );
+    let both = printed(folder.path(), "80", &[], &["procedures", "--clauses", "show", "static-bias"]);
+    assert_eq!(both.status.code(), Some(2), "{both:?}");
+}
+
+#[test]
 fn saved_procedures_are_the_shipped_ones_and_replace_nothing() {
     let folder = tempdir().unwrap();
     let at = folder.path();

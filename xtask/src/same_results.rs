@@ -90,7 +90,7 @@ fn pairs() -> Vec<Pair> {
     for (name, exit) in [("pass", 0), ("fail", 1), ("indeterminate", 3), ("faults", 3)] {
         add("static-bias", &format!("unit-{name}.csv"), Some("SN-0001"), Some("sample-unit"), exit);
     }
-    for procedure in ["scale-factor", "threshold", "misalignment"] {
+    for procedure in ["scale-factor", "threshold", "maximum-rate", "misalignment", "acceleration"] {
         for (name, exit) in [("pass", 0), ("fail", 1)] {
             add(procedure, &format!("{procedure}-{name}.csv"), Some("SN-1"), None, exit);
         }
@@ -113,6 +113,8 @@ fn pairs() -> Vec<Pair> {
     for (number, (procedure, name, exit)) in (111..).zip(tests) {
         add(procedure, &format!("{procedure}-{name}.csv"), Some(&format!("SN-0{number}")), None, exit);
     }
+    add("output-noise", "output-noise-pass.csv", Some("SN-0119"), None, 0);
+    add("output-noise", "output-noise-fail.csv", Some("SN-0120"), None, 1);
     for (name, exit) in [("pass", 0), ("fail", 1)] {
         add("acceptance", &format!("acceptance-{name}.toml"), None, None, exit);
     }

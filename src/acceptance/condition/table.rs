@@ -62,6 +62,8 @@ pub struct ChannelFact {
     pub channel: String,
     /// Whether something is asked of it.
     pub asked: bool,
+    /// Whether its polarity is a row with a limit, which a reversed output then fails.
+    pub polarity_judged: bool,
     /// Unit declared for it.
     pub unit: String,
     /// Output per input; `None` where no line could be drawn.
@@ -291,7 +293,10 @@ fn response(channel: &ChannelFact, facts: &TableFacts) -> Option<ConditionRecord
         return Some(record(id, ConditionStatus::Ok, &observed, required, note));
     }
     let note = response_error(channel, factor, facts);
-    Some(record(id, ConditionStatus::Invalid, &observed, required, note))
+    // A reversed output is what a limit on the polarity is for: the row fails, and the test was done right.
+    let left_to_row = channel.polarity_judged && note.id == "on_table.reversed";
+    let status = if left_to_row { ConditionStatus::Remark } else { ConditionStatus::Invalid };
+    Some(record(id, status, &observed, required, note))
 }
 
 /// The fault of an output that does not follow the table.

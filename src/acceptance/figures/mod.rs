@@ -5,6 +5,7 @@ pub mod autocorrelation;
 pub mod bias_of_runs;
 pub mod dead_zone;
 mod draw;
+pub mod gravity;
 pub mod histogram;
 pub mod influence;
 mod parts;

@@ -77,6 +77,11 @@ pub fn figure(gyro: &GyroEvidence) -> Option<Figure> {
         layers.push(draw::points(points, Style::Reference, "figure.legend.line"));
     }
     layers.extend(line_labels(gyro, &at));
+    if let Some(test) = gyro.noise_test.as_ref().filter(|t| !t.mask.is_empty()) {
+        // The mask is one-sided.
+        let corners = test.mask.iter().map(|p| (p.frequency_hz, 0.5 * p.density.powi(2))).collect();
+        layers.push(draw::line(corners, Style::Limit, "figure.legend.limit"));
+    }
     let mut panels = vec![draw::panel(
         draw::log("axis.frequency", "Hz"),
         draw::log("axis.density", "(deg/h)^2/Hz"),

@@ -1,6 +1,7 @@
 //! The kinds of test, each a file or a folder. A new kind is one file that implements
 //! [`TestKind`](super::test_kind::TestKind) and one line in [`TEST_KINDS`].
 
+mod acceleration;
 pub(super) mod at_rest;
 mod influence;
 mod positions;
@@ -21,6 +22,7 @@ type Maker = fn(&Procedure) -> Option<Box<dyn Test>>;
 const TEST_KINDS: &[Maker] = &[
     kind::<rate_table::RateTable>,
     kind::<positions::InPositions>,
+    kind::<acceleration::InGravity>,
     kind::<repeatability::Repeated>,
     kind::<influence::UnderInfluence>,
     kind::<temperature::OverTemperature>,

@@ -6,11 +6,13 @@ use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
 use super::pairs::{self, Answer};
 use super::phases::{Phase, Phased, is_phased, load_phased};
+use super::tables::acceleration;
 use crate::config::layout;
 use crate::config::manifest::{self, Manifest, is_manifest};
 use crate::config::model;
 use crate::config::text_file;
 use crate::i18n::{Arg, Lang, LocalText, Localize, Note, note, visible};
+use crate::measurand;
 use sagnac_ingest::layout::Layout;
 use std::path::Path;
 
@@ -130,9 +132,10 @@ fn warnings(checked: &Checked, procedures: &[&Loaded<Procedure>], answer: Answer
 /// Description of a sound file, in clauses.
 fn sentences(checked: &Checked, procedures: &[&Loaded<Procedure>]) -> Vec<Note> {
     match checked {
-        Checked::Procedure(p) => {
-            std::iter::once(procedure_sentence(p)).chain(nameless_instruments([&**p])).collect()
-        }
+        Checked::Procedure(p) => std::iter::once(procedure_sentence(p))
+            .chain(determined_terms(p))
+            .chain(nameless_instruments([&**p]))
+            .collect(),
         Checked::Limits(l) => {
             let names: Vec<&str> =
                 pairs::belonging(&l.value, procedures).iter().map(|p| p.value.id.as_str()).collect();
@@ -187,6 +190,14 @@ fn procedure_sentence(p: &Loaded<Procedure>) -> Note {
         .with("channels", count(p.channels.len(), "check.one_channel", "check.channels"))
         .with("measurands", count(p.measurands.len(), "check.one_measurand", "check.measurands"))
         .with("limits", count(p.limits.count(), "check.one_limit", "check.limits"))
+}
+
+/// What positions in the field of gravity determine.
+fn determined_terms(p: &Loaded<Procedure>) -> Vec<Note> {
+    let expected = &p.value.limits.expected;
+    let n = expected.iter().find(|e| *e.measurand == measurand::ANGLE_RANDOM_WALK).map(|e| e.value);
+    let test = p.value.acceleration_test.as_ref();
+    test.map_or_else(Vec::new, |test| acceleration::determined(test, n))
 }
 
 fn limits_sentence(l: &Loaded<LimitsFile>) -> Note {

@@ -13,7 +13,7 @@ use super::slips;
 use super::tables::limits::{LimitKeys, ReferenceKeys, TypicalValues};
 use crate::estimate::{Limit, Rule};
 use crate::i18n::{Note, note};
-use crate::measurand::Measurand;
+use crate::measurand::{Measurand, RATE_NOISE_DENSITY};
 use crate::record::{LimitsFile as LimitsFileRecord, ReferenceRecord};
 
 impl Loaded<LimitsFile> {
@@ -178,6 +178,9 @@ pub(super) fn read_set(
     }
     for keys in limits {
         let section = keys.section.clone();
+        if keys.measurand.is_some_and(|m| *m == RATE_NOISE_DENSITY) {
+            slips::not_a_density(&section, reader);
+        }
         if let Some(limit) = read_limit(keys, &set.references, reader) {
             set.limits.push(limit);
             set.fast_units.extend(slips::fast_unit(&section, reader));

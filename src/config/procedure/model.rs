@@ -13,7 +13,9 @@ use crate::config::table::{Table, words};
 use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
 use crate::measurand::Measurand;
+use crate::noise::in_band::NoiseTest;
 use crate::output::sha256;
+use crate::rate_table::acceleration::AccelerationTest;
 use crate::record::{ClauseRecord, ExclusionRecord, ProcedureRecord, Signatory, WaiverRecord};
 use crate::recording::Channel;
 use crate::signing::Role;
@@ -77,10 +79,14 @@ pub struct Procedure {
     pub analysis: Analysis,
     /// The model that the recording is explained against.
     pub explain: Option<ExplainSpec>,
+    /// A test of the noise by frequency.
+    pub noise_test: Option<NoiseTest>,
     /// A test over temperature.
     pub temperature_test: Option<TemperatureTest>,
     /// A test of the warm-up.
     pub warm_up_test: Option<WarmUpTest>,
+    /// A test in positions in the field of gravity.
+    pub acceleration_test: Option<AccelerationTest>,
     /// A series of switching off and on.
     pub repeatability_test: Option<RepeatabilityTest>,
     /// A comparison without and with an influence.
@@ -271,6 +277,7 @@ const REPORT_FIGURES: &[Word] = &[
     ("bias_of_runs", "bias of every switching-on with its interval"),
     ("influence", "bias of every interval without and with an influence, and over its level"),
     ("positions", "output in every position against the Earth rate"),
+    ("gravity", "output in every position in the field of gravity"),
     ("table_polar", "residual over the angle of the table, as a polar plot"),
 ];
 

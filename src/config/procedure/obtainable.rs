@@ -44,7 +44,9 @@ fn of_steps(procedure: &Procedure, setup: &Setup, measurand: &Measurand) -> Opti
             (!has(Role::OuterRate) || !has(Role::TableAngle)).then_some("unshown.needs_outer")
         }
         Some(Stimulus::SmallRates) => (!turned).then_some("unshown.needs_table_rates"),
-        Some(Stimulus::Rates | Stimulus::OpenLoopRates) => (!turned).then_some("unshown.needs_table"),
+        Some(Stimulus::Rates | Stimulus::OpenLoopRates | Stimulus::Overload) => {
+            (!turned).then_some("unshown.needs_table")
+        }
     }
 }
 

@@ -33,6 +33,19 @@ pub(super) fn fast_unit(section: &Section, reader: &Reader<'_>) -> Option<FastUn
     })
 }
 
+/// Reports a limit on a density that is written without the root of a frequency. Degrees per root hour have the same dimension,
+/// and state an angle random walk: the root of a two-sided density.
+pub(super) fn not_a_density(section: &Section, reader: &mut Reader<'_>) {
+    for key in ["max", "max_abs", "min"].into_iter().filter(|key| section.entry(key).is_some()) {
+        let at = reader.source.inside_quotes(&section.span_of(key));
+        let text = reader.source.text.get(at.clone()).unwrap_or_default();
+        if !["Hz", "Гц"].iter().any(|unit| text.contains(unit)) {
+            let text = text.to_owned();
+            reader.error(&at, note!("noise_check.no_density", text), Some("noise_check.help_density".into()));
+        }
+    }
+}
+
 /// Size of a unit of rate, deg/h.
 fn size(unit: &str) -> Option<f64> {
     Unit::parse(unit).ok()?.factor_to(&Unit::parse(RATE_UNIT).ok()?).ok()

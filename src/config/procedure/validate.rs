@@ -22,6 +22,8 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     super::derived::validate(procedure, reader);
     waivers(procedure, root, reader);
     averaging_times(procedure, root, reader);
+    super::tables::acceleration::validate(procedure, root, reader);
+    super::tables::noise::validate(procedure, root, reader);
     super::tables::rate_table::validate(procedure, root, reader);
     super::tables::influence::validate(procedure, root, reader);
 }
@@ -254,7 +256,7 @@ fn temperature_test(procedure: &Procedure, root: &Section, reader: &mut Reader<'
     let moves = root.table("temperature_test").or(root.table("warm_up_test")).is_some();
     for section in root.tables("measurand") {
         let Some(measurand) = section.measurand("id") else { continue };
-        if moves && measurand.test() == Test::Static && !measurand.from_site {
+        if moves && measurand.test().is_at_rest() && !measurand.from_site {
             let message = note!("check_temperature.static", id = measurand.id);
             reader.error(&section.span_of("id"), message, None);
         }

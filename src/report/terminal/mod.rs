@@ -11,3 +11,4 @@ mod wrap;
 pub use results::{results, verdict};
 pub use screen::Terminal;
 pub(super) use screen::verdict_style;
+pub use wrap::wrapped;

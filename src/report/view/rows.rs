@@ -163,6 +163,16 @@ pub fn value(m: &MeasurandRecord, words: Translator) -> String {
     if let Some(value) = m.value {
         return rounding(m).show(value, words.lang);
     }
+    if let (Some(l), Some(u)) = (m.lower_limit, m.upper_limit) {
+        return words.with(
+            "report.bracketed",
+            &[
+                ("low", &bound(l.value, false, words.lang)),
+                ("high", &bound(u.value, true, words.lang)),
+                ("coverage", &limit_digits(100.0 * l.coverage.min(u.coverage), 3, words.lang)),
+            ],
+        );
+    }
     match m.upper_limit {
         Some(u) => {
             let most = words.with(
@@ -212,7 +222,11 @@ pub fn interval(m: &MeasurandRecord, words: Translator) -> String {
 /// The 95 % bound of a quantity without a value.
 pub fn bound_alone(m: &MeasurandRecord, words: Translator) -> String {
     match (m.value, m.upper_limit, m.lower_limit) {
-        (None, Some(u), _) => format!("≤\u{202f}{}", bound(u.value, true, words.lang)),
+        (None, Some(u), Some(l)) => {
+            let (low, high) = (bound(l.value, false, words.lang), bound(u.value, true, words.lang));
+            format!("{low}\u{202f}…\u{202f}{high}")
+        }
+        (None, Some(u), None) => format!("≤\u{202f}{}", bound(u.value, true, words.lang)),
         (None, None, Some(l)) => format!("≥\u{202f}{}", bound(l.value, false, words.lang)),
         _ => String::new(),
     }
@@ -301,10 +315,18 @@ fn footnote(sentence: String, footnotes: &mut Vec<String>) -> usize {
     }) + 1
 }
 
-/// The verdict of a row in words. Of a quantity that the record does not resolve, only its upper limit is known to be inside.
+/// The verdict of a row in words. Of a quantity that the record does not resolve, only its bounds are known to be inside.
 pub fn verdict_word(m: &MeasurandRecord, words: Translator) -> String {
     match (m.verdict, m.value) {
-        (Verdict::Pass, None) => words.t("verdict.met_by_upper_limit"),
+        (Verdict::Pass, None) => {
+            let of_lower = m.limit.as_ref().is_some_and(|l| l.min.is_some()) && m.lower_limit.is_some();
+            let of_upper = m.limit.as_ref().is_some_and(|l| l.max.is_some());
+            words.t(match (of_lower, of_upper) {
+                (true, true) => "verdict.met_by_both_bounds",
+                (true, false) => "verdict.met_by_lower_limit",
+                (false, _) => "verdict.met_by_upper_limit",
+            })
+        }
         (verdict, _) => words.verdict(verdict),
     }
 }

@@ -56,6 +56,10 @@ pub struct RateTable {
     pub hz: f64,
     /// Temperature: mean, drift over the test and amplitude of a swing, degC.
     pub temperature: (f64, f64, f64),
+    /// Lowest and highest output, deg/h.
+    pub rails: Option<(f64, f64)>,
+    /// Time that the output stays at its rail after an input beyond it, s.
+    pub recovery_s: f64,
     /// Seed of the noise.
     pub seed: u64,
 }
@@ -91,6 +95,8 @@ impl Default for RateTable {
             acceleration: 50.0,
             hz: 10.0,
             temperature: (25.0, 1.5, 1.0),
+            rails: None,
+            recovery_s: 0.0,
             seed: 1,
         }
     }
@@ -117,6 +123,14 @@ pub struct Recorded {
     pub cycles_ppm: Vec<f64>,
 }
 
+/// Where the output was held by the last overload.
+struct Rail {
+    /// deg/h
+    output: f64,
+    /// s
+    until_s: f64,
+}
+
 impl RateTable {
     /// Largest rate, deg/h.
     pub fn full_scale(&self) -> f64 {
@@ -128,6 +142,15 @@ impl RateTable {
         let full = self.full_scale();
         let x = rate / full;
         1e-6 * full * (self.cubic_ppm * x.powi(3) + self.even_ppm * x * x)
+    }
+
+    /// The output at a time, s: at its rail beyond it, and until it has recovered.
+    fn within_rails(&self, output: f64, time_s: f64, rail: &mut Rail) -> f64 {
+        let Some((low, high)) = self.rails else { return output };
+        if !(low..=high).contains(&output) {
+            *rail = Rail { output: output.clamp(low, high), until_s: time_s + self.recovery_s };
+        }
+        if time_s <= rail.until_s { rail.output } else { output }
     }
 
     /// The recording.
@@ -152,6 +175,7 @@ impl RateTable {
         let (sin, cos) = (self.latitude.to_radians().sin(), self.latitude.to_radians().cos());
         let axial = (1.0 - self.tilt * self.tilt).sqrt();
         let mut carry = 0.0;
+        let mut rail = Rail { output: 0.0, until_s: f64::NEG_INFINITY };
         let swing = 2.0 * std::f64::consts::PI * 2.7 / total;
         for (i, (cycle, wanted)) in sequence.iter().enumerate() {
             if *wanted != last {
@@ -198,6 +222,7 @@ impl RateTable {
                     + self.bias_per_c * (temperature - self.reference_c)
                     + moved
                     + self.n / (dt / 3600.0).sqrt() * normal(&mut rng);
+                y = self.within_rails(y, t, &mut rail);
                 if self.count_arcsec > 0.0 {
                     let angle = y * dt + carry;
                     let counts = (angle / self.count_arcsec).round();

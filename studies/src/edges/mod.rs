@@ -4,9 +4,12 @@
 //! which imports nothing from the analysis. One line in [`FAMILIES`] and a study name both.
 
 pub mod case;
+mod gravity;
 mod influence;
 mod noise;
+mod noise_bands;
 mod on_table;
+mod overload;
 mod rate_table;
 mod small_rates;
 mod table;
@@ -23,10 +26,13 @@ use std::sync::LazyLock;
 use table::Bench;
 
 /// Every family.
-pub static FAMILIES: LazyLock<[Family; 6]> = LazyLock::new(|| {
+pub static FAMILIES: LazyLock<[Family; 9]> = LazyLock::new(|| {
     [
+        family::<gravity::InGravity>(include_str!("../../cases/edges/gravity.toml")),
         family::<influence::Bench>(include_str!("../../cases/edges/influence.toml")),
         family::<noise::Rest>(include_str!("../../cases/edges/noise.toml")),
+        family::<noise::Rest>(include_str!("../../cases/edges/noise_bands.toml")),
+        family::<overload::Rails>(include_str!("../../cases/edges/overload.toml")),
         family::<rate_table::Bench>(include_str!("../../cases/edges/rate_table.toml")),
         family::<small_rates::Sweep>(include_str!("../../cases/edges/small_rates.toml")),
         family::<temperature::Bench>(include_str!("../../cases/edges/temperature.toml")),
@@ -48,10 +54,17 @@ const fn study(id: &'static str, title: &'static str, cases: fn() -> Vec<Case>) 
     Study { id, title, method: METHOD, records: 200, cases }
 }
 
+/// Sensitivity to acceleration.
+pub static GRAVITY: Study = study("edges-gravity", "Acceleration at its edges", || cases("gravity"));
 /// Repeatability, and sensitivities to a field, a supply and vibration.
 pub static INFLUENCE: Study = study("edges-influence", "Influences at their edges", || cases("influence"));
 /// Noise of a unit at rest.
 pub static NOISE: Study = study("edges-noise", "Noise at its edges", || cases("noise"));
+/// Output noise and its density in bands.
+pub static NOISE_BANDS: Study =
+    study("edges-noise-bands", "Noise in bands at its edges", || cases("noise_bands"));
+/// Rates up to the range of a unit and beyond.
+pub static OVERLOAD: Study = study("edges-overload", "Overload at its edges", || cases("overload"));
 /// Scale factor and what belongs to it.
 pub static RATE_TABLE: Study =
     study("edges-rate-table", "Scale factors at their edges", || cases("rate_table"));

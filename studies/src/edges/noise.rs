@@ -1,6 +1,7 @@
 //! Noise of a unit at rest, beside its bias.
 
 use super::case::{Simulated, Truth};
+use super::noise_bands;
 use super::table::Bench;
 use crate::bench::EARTH;
 use crate::bench::noise_source::{NoiseSource, add, csv};
@@ -9,14 +10,14 @@ use std::f64::consts::{PI, TAU};
 use std::fmt::Write;
 
 /// N of every unit, deg/√h.
-const N: f64 = 0.002;
+pub(super) const N: f64 = 0.002;
 /// Steps a sample is cut into where a process is averaged over it.
 const FINE: usize = 16;
 
 /// What a unit has beside its white noise.
 #[derive(Deserialize)]
 #[serde(rename_all = "snake_case", deny_unknown_fields)]
-enum Part {
+pub(super) enum Part {
     /// Flicker, deg/h, from the interval to the length of the record: what is slower belongs to the bias.
     Flicker(f64),
     /// Random walk, deg/h/√h.
@@ -37,15 +38,15 @@ enum Part {
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Rest {
-    samples: usize,
+    pub(super) samples: usize,
     /// Interval of samples, s.
     #[serde(default = "a_second")]
-    dt_s: f64,
+    pub(super) dt_s: f64,
     /// deg/h
     bias: f64,
     /// In the order in which they are drawn.
     #[serde(default)]
-    parts: Vec<Part>,
+    pub(super) parts: Vec<Part>,
     /// The parts are too weak to move what white noise gives.
     #[serde(default)]
     weak: bool,
@@ -73,6 +74,7 @@ impl Bench for Rest {
         values.iter_mut().for_each(|v| *v += self.bias + earth);
         let mut truths = self.of_white();
         truths.extend(self.of_slow());
+        truths.extend(noise_bands::truths(self));
         truths.extend(self.parts.iter().flat_map(|part| self.of_part(part)));
         truths.push(Truth::new("earth_rate_component", earth));
         Simulated { csv: csv("rate_deg_h", &[&values]), procedure: procedure(self.dt_s, ids), truths }
@@ -222,6 +224,7 @@ fn procedure(dt_s: f64, ids: &[String]) -> String {
          elevation_uncertainty = \"30 arcsec\"\nheading = \"0 deg\"\nheading_uncertainty = \"30 arcsec\"\n",
         1.0 / dt_s
     );
+    text += &noise_bands::table(dt_s, ids);
     for id in ids {
         let earth = if *id == "static_bias" { "options.earth_rate = \"remove\"\n" } else { "" };
         // Writing to a text cannot fail.

@@ -1,8 +1,7 @@
 //! Every measurand where a truth lies at its edge, or where a second effect walks in step with the first, in short.
 //!
 //! A case draws a recording, the procedure and the truth; the program tests it as a user would, and `result.json` is set
-//! against the truth. The studies are `cargo xtask validate edges-influence edges-noise edges-rate-table edges-small-rates
-//! edges-temperature edges-tilts`.
+//! against the truth. The studies are `cargo xtask validate edges-...`, one a family.
 
 mod in_step;
 mod noise_source;

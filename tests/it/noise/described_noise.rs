@@ -107,6 +107,7 @@ fn gyro() -> GyroEvidence {
         warm_up: None,
         course: None,
         rounding: Default::default(),
+        noise_test: None,
         objections: Default::default(),
     }
 }

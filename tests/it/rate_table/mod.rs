@@ -1,7 +1,9 @@
 //! Tests on a rate table against a table made of geometry (`sagnac_studies::bench::rate_table`), which imports nothing of the
 //! program. The studies are `cargo xtask validate scale-factor misalignment`.
 
+mod gravity;
 mod motion;
+mod overload;
 mod pauses;
 mod positions;
 mod runs;
@@ -44,13 +46,18 @@ fn tilted() -> TwoAxes {
 fn files() -> Vec<(&'static str, String)> {
     let [small, wide] = [0.0, 0.3].map(|half_width| SmallRates { half_width, ..zone() });
     let [near, far] = [(0.4e-3, -0.3e-3), (1.2e-3, -0.8e-3)].map(|tilt| TwoAxes { tilt, ..tilted() });
+    let [steady, sensitive] = gravity::files();
     vec![
+        steady,
+        sensitive,
         ("samples/scale-factor-pass.csv", pass().record().csv(COUNT, 0.1)),
         ("samples/scale-factor-fail.csv", fail().record().csv(COUNT, 0.1)),
         ("samples/threshold-pass.csv", small_rates_csv(&small)),
         ("samples/threshold-fail.csv", small_rates_csv(&wide)),
         ("samples/misalignment-pass.csv", two_axes_csv(&near)),
         ("samples/misalignment-fail.csv", two_axes_csv(&far)),
+        ("samples/maximum-rate-pass.csv", overload::csv(&overload::unit(-345.0, 340.0, 0.3, 51))),
+        ("samples/maximum-rate-fail.csv", overload::csv(&overload::unit(-265.0, 340.0, 2.5, 53))),
         ("samples/multi-position-pass.csv", positions_csv(12.467, 0.12)),
         ("samples/multi-position-software.csv", positions_csv(0.0, 12.9)),
     ]

@@ -204,6 +204,7 @@ fn twice_the_earth_rate_with_the_opposite_sign_is_no_bias() {
         let channel = ChannelFact {
             channel: "z".into(),
             asked: true,
+            polarity_judged: false,
             unit: "deg/h".into(),
             factor: Some(1.0),
             standard: 1e-6,
@@ -256,6 +257,7 @@ fn swapped_axes_are_told_from_an_axis_that_does_not_turn() {
     let channel = |name: &str, factor: f64| ChannelFact {
         channel: name.into(),
         asked: name != "unasked",
+        polarity_judged: false,
         unit: "deg/s".into(),
         factor: Some(factor),
         standard: 1e-5,

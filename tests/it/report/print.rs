@@ -20,12 +20,15 @@ const RUNS: &[(&str, &str, &[&str])] = &[
     ("warm-up", "warm-up-fail.csv", &["--limits", "sample-warm-up", "--serial", "SN-0107"]),
     ("scale-factor", "scale-factor-fail.csv", &["--serial", "SN-1"]),
     ("threshold", "threshold-fail.csv", &["--serial", "SN-1"]),
+    ("maximum-rate", "maximum-rate-fail.csv", &["--serial", "SN-1"]),
+    ("acceleration", "acceleration-fail.csv", &["--serial", "SN-1"]),
     ("misalignment", "misalignment-fail.csv", &["--serial", "SN-1"]),
     ("multi-position", "multi-position-software.csv", &["--serial", "SN-1"]),
     ("bias-repeatability", "bias-repeatability-fail.csv", &["--serial", "SN-0112"]),
     ("magnetic-sensitivity", "magnetic-sensitivity-fail.csv", &["--serial", "SN-0114"]),
     ("supply-sensitivity", "supply-sensitivity-fail.csv", &["--serial", "SN-0116"]),
     ("vibration", "vibration-fail.csv", &["--serial", "SN-0118"]),
+    ("output-noise", "output-noise-fail.csv", &["--serial", "SN-0120"]),
     ("acceptance", "acceptance-fail.toml", &[]),
 ];
 

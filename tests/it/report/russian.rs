@@ -12,10 +12,13 @@ use std::path::Path;
 /// The shipped procedures, each with its shortest sample that says most.
 const CASES: &[(&str, &str)] = &[
     ("acceptance", "acceptance-fail"),
+    ("acceleration", "acceleration-fail"),
     ("bias-repeatability", "bias-repeatability-fail"),
     ("magnetic-sensitivity", "magnetic-sensitivity-fail"),
+    ("maximum-rate", "maximum-rate-fail"),
     ("misalignment", "misalignment-fail"),
     ("multi-position", "multi-position-software"),
+    ("output-noise", "output-noise-fail"),
     ("scale-factor", "scale-factor-fail"),
     ("static-bias", "unit-faults"),
     ("supply-sensitivity", "supply-sensitivity-fail"),

@@ -8,6 +8,7 @@ use std::path::{Path, PathBuf};
 /// Files whose literals are English by design: file, why.
 const ENGLISH: &[(&str, &str)] = &[
     ("src/config/procedure/model.rs", "meanings of words of keys for the schema and the guide"),
+    ("src/config/procedure/tables/acceleration.rs", "meanings of words of keys for the schema and the guide"),
     ("src/config/procedure/tables/mod.rs", "meanings of words of keys for the schema and the guide"),
     ("src/config/procedure/tables/influence.rs", "meanings of words of keys for the schema and the guide"),
     ("src/config/procedure/tables/limits.rs", "meanings of words of keys for the schema and the guide"),

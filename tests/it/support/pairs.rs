@@ -60,7 +60,7 @@ const VOLTS: Option<&str> = Some("supply_V");
 const TEMP: Option<&str> = Some("temp_degC");
 
 /// Every pair.
-pub const PAIRS: [Pair; 27] = [
+pub const PAIRS: [Pair; 33] = [
     pair("unit-pass", "static-bias", UNIT, "SN-0001", 0, None),
     pair("unit-fail", "static-bias", UNIT, "SN-0001", 1, None),
     pair("unit-indeterminate", "static-bias", UNIT, "SN-0001", 3, None),
@@ -69,10 +69,16 @@ pub const PAIRS: [Pair; 27] = [
     pair("scale-factor-fail", "scale-factor", None, "SN-1", 1, RATE),
     pair("threshold-pass", "threshold", None, "SN-1", 0, RATE),
     pair("threshold-fail", "threshold", None, "SN-1", 1, RATE),
+    pair("maximum-rate-pass", "maximum-rate", None, "SN-1", 0, RATE),
+    pair("maximum-rate-fail", "maximum-rate", None, "SN-1", 1, RATE),
     pair("misalignment-pass", "misalignment", None, "SN-1", 0, OUTER),
     pair("misalignment-fail", "misalignment", None, "SN-1", 1, OUTER),
     scheduled(pair("multi-position-pass", "multi-position", None, "SN-1", 0, None), 60.0),
     scheduled(pair("multi-position-software", "multi-position", None, "SN-1", 3, None), 60.0),
+    pair("output-noise-pass", "output-noise", None, "SN-0119", 0, None),
+    pair("output-noise-fail", "output-noise", None, "SN-0120", 1, None),
+    scheduled(pair("acceleration-pass", "acceleration", None, "SN-1", 0, None), 60.0),
+    scheduled(pair("acceleration-fail", "acceleration", None, "SN-1", 1, None), 60.0),
     pair("temperature-pass", "temperature-ramp", OVEN, "SN-0101", 0, TEMP),
     pair("temperature-fail", "temperature-ramp", OVEN, "SN-0102", 1, TEMP),
     pair("temperature-aborted", "temperature-ramp", OVEN, "SN-0103", 3, TEMP),

@@ -105,8 +105,8 @@ pub struct Judgement {
 
 /// Compares an estimate with a limit under the decision rule of the limit.
 ///
-/// A quantity that the record cannot show passes when its upper bound is inside the limit, fails when its lower bound is
-/// beyond an upper limit, and is otherwise indeterminate; a lower limit cannot be shown by it.
+/// A quantity that the record cannot show passes when its bounds are inside the limit, fails when one of them is beyond it, and
+/// is otherwise indeterminate. Whether one that can be negative may pass by bounds is for the caller to know.
 pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
     let Some(value) = estimate.value else { return judge_bounds(estimate, limit) };
     let margin = [limit.max.map(|max| max - value), limit.min.map(|min| value - min)]
@@ -131,27 +131,27 @@ pub fn judge(estimate: &Estimate, limit: &Limit) -> Judgement {
     Judgement { verdict, acceptance_max, acceptance_min, specific_risk, margin }
 }
 
-/// Decides on a quantity without a value by its bounds.
+/// Decides on a quantity without a value by its bounds; one that is not bounded from below is taken to be at least 0.
 fn judge_bounds(estimate: &Estimate, limit: &Limit) -> Judgement {
-    let inside = limit.min.is_none_or(|m| m <= 0.0)
-        && match (limit.max, estimate.upper_limit) {
-            (Some(max), Some(bound)) => bound.value <= max && bound.coverage >= 1.0 - limit.risk - 1e-9,
-            (Some(_), None) => false,
-            (None, _) => limit.min.is_some(),
-        };
-    let beyond = limit
-        .max
-        .zip(estimate.lower_limit)
-        .filter(|(max, bound)| bound.value > *max && bound.coverage >= 1.0 - limit.risk - 1e-9);
-    let margin = match beyond {
-        Some((max, bound)) => Some(max - bound.value),
-        None => limit.max.zip(estimate.upper_limit).map(|(max, bound)| max - bound.value),
+    let sure = |coverage: f64| coverage >= 1.0 - limit.risk - 1e-9;
+    let upper = estimate.upper_limit.filter(|bound| sure(bound.coverage)).map(|bound| bound.value);
+    let lower = estimate.lower_limit.filter(|bound| sure(bound.coverage)).map(|bound| bound.value);
+    let inside = limit.max.is_none_or(|max| upper.is_some_and(|bound| bound <= max))
+        && limit.min.is_none_or(|min| min <= lower.unwrap_or(0.0).max(0.0))
+        && (limit.max.is_some() || limit.min.is_some());
+    let above = limit.max.zip(lower).filter(|(max, bound)| bound > max).map(|(max, bound)| max - bound);
+    let below = limit.min.zip(upper).filter(|(min, bound)| bound < min).map(|(min, bound)| bound - min);
+    let beyond = above.or(below);
+    let shown = || match limit.max {
+        Some(max) => estimate.upper_limit.map(|bound| max - bound.value),
+        None => limit.min.zip(estimate.lower_limit).map(|(min, bound)| bound.value - min),
     };
     let verdict = match beyond {
         Some(_) => Verdict::Fail,
         None if inside => Verdict::Pass,
         None => Verdict::Indeterminate,
     };
+    let margin = beyond.or_else(shown);
     Judgement { verdict, acceptance_max: None, acceptance_min: None, specific_risk: None, margin }
 }
 

@@ -138,3 +138,31 @@ fn a_component_adds_in_quadrature_on_each_side() {
     }
     assert_eq!(Spread::Unknown.with_component(1.0, 0.1), Spread::Unknown);
 }
+
+#[test]
+fn a_quantity_between_two_bounds_is_judged_by_both() {
+    let between = |low: Option<(f64, f64)>, high: Option<(f64, f64)>| {
+        let upper = high.map(|(value, coverage)| UpperLimit { value, coverage });
+        Estimate::not_identifiable("maximum_rate", "rate", upper, "deg/s", "levels")
+            .at_least(low.map(|(value, coverage)| LowerLimit { value, coverage }))
+    };
+    let from = Limit { max: None, min: Some(300.0), ..limit(0.0, Rule::GuardBand) };
+    for (low, high, verdict, margin) in [
+        (Some((325.0, 0.95)), Some((350.0, 0.95)), Verdict::Pass, Some(25.0)),
+        (Some((300.0, 0.95)), None, Verdict::Pass, Some(0.0)),
+        (Some((275.0, 0.95)), Some((325.0, 0.95)), Verdict::Indeterminate, Some(-25.0)),
+        (Some((325.0, 0.5)), None, Verdict::Indeterminate, Some(25.0)),
+        (Some((250.0, 0.95)), Some((275.0, 0.95)), Verdict::Fail, Some(-25.0)),
+        (None, Some((275.0, 0.5)), Verdict::Indeterminate, None),
+        (None, None, Verdict::Indeterminate, None),
+    ] {
+        let found = judge(&between(low, high), &from);
+        assert_eq!((found.verdict, found.margin), (verdict, margin), "{low:?} {high:?}");
+    }
+    // Inside both limits, or within one of them only.
+    let both = Limit { max: Some(400.0), ..from };
+    assert_eq!(judge(&between(Some((325.0, 0.95)), Some((350.0, 0.95))), &both).verdict, Verdict::Pass);
+    assert_eq!(judge(&between(Some((325.0, 0.95)), None), &both).verdict, Verdict::Indeterminate);
+    assert_eq!(judge(&between(None, Some((350.0, 0.95))), &both).verdict, Verdict::Indeterminate);
+    assert_eq!(judge(&between(Some((410.0, 0.95)), None), &both).verdict, Verdict::Fail);
+}

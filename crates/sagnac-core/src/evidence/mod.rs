@@ -16,6 +16,7 @@ use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::digest::RateDigest;
 use crate::noise::family::Estimator;
 use crate::noise::identification::Identification;
+use crate::noise::in_band::NoiseTest;
 use crate::noise::intervals::{BoundedPoint, bounded};
 use crate::noise::lines::SpectralLine;
 use crate::noise::motion::Motion;
@@ -27,6 +28,7 @@ use crate::rate_table::Setup;
 use crate::rate_table::alignment::Alignment;
 use crate::rate_table::dead_zone::DeadZone;
 use crate::rate_table::known::Positions;
+use crate::rate_table::overload::Overload;
 use crate::rate_table::scale_factor::ScaleFactor;
 use crate::rate_table::sine::Sine;
 use crate::rate_table::steps::Steps;
@@ -73,6 +75,8 @@ pub struct GyroEvidence {
     pub motion: Motion,
     /// Earth rate along the axis, where the site is known.
     pub earth: Option<Earth>,
+    /// Bands and mask in which the procedure asks for the noise.
+    pub noise_test: Option<NoiseTest>,
     /// What a test over temperature showed, where the procedure asks for one.
     pub over_temperature: Option<Findings>,
     /// What a test of the warm-up showed, where the procedure asks for one.
@@ -151,6 +155,7 @@ impl GyroEvidence {
             withheld_line,
             motion: Motion::Unknown,
             earth: None,
+            noise_test: None,
             over_temperature: None,
             warm_up: None,
             course: None,
@@ -228,6 +233,8 @@ pub struct TableEvidence<'a> {
     pub earth: Option<Earth>,
     /// The straight line through all rates; `None` where the steps give none.
     pub line: Option<ScaleFactor>,
+    /// What rates beyond the range show; `None` where it was not asked for, or too few rates give a line.
+    pub overload: Option<Overload>,
     /// The sine of an open-loop unit; `None` where it was not asked for, or the response does not bend.
     pub sine: Option<Sine>,
     /// The response to rates near zero; `None` where it was not asked for, or there are too few rates.
@@ -247,6 +254,7 @@ impl<'a> TableEvidence<'a> {
             as_recorded: ("1", 1.0),
             earth: None,
             line: None,
+            overload: None,
             sine: None,
             dead_zone: None,
             alignment: None,

@@ -6,6 +6,8 @@ use crate::estimate::{Estimate, Spread, UpperLimit};
 use crate::influence::Influence;
 use crate::influence::repeatability::Repeatability;
 use crate::noise::data::NoiseType;
+use crate::noise::in_band::NoiseTest;
+use crate::rate_table::acceleration::Acceleration;
 use crate::rate_table::design::Extra;
 use crate::temperature::findings::Findings;
 use crate::temperature::warm_up::WarmUpFindings;
@@ -26,12 +28,16 @@ pub struct Options {
 pub enum Test {
     /// Rate at rest at constant temperature.
     Static,
+    /// Rate at rest, by frequency, where the procedure states bands.
+    NoiseInBands,
     /// Rate at rest over temperature.
     Temperature,
     /// Rate at rest from switching on.
     WarmUp,
     /// Rate about the input axis given by a table, by known turns or by positions against the Earth rate.
     RateTable,
+    /// Rate at rest in positions in the field of gravity.
+    Acceleration,
     /// Rate at rest over switching off and on.
     Repeatability,
     /// Rate at rest without and with an influence other than temperature.
@@ -46,6 +52,8 @@ pub enum Test {
 pub enum Evaluation {
     /// From a gyro at rest.
     Static(fn(&Measurand, &GyroEvidence, &Options) -> Vec<Estimate>),
+    /// From a gyro at rest and what a test of its noise asks for.
+    NoiseInBands(fn(&Measurand, &GyroEvidence, &NoiseTest) -> Vec<Estimate>),
     /// From what a test over temperature showed of a channel.
     Temperature(fn(&Measurand, &str, &Findings) -> Vec<Estimate>),
     /// From what the warm-up of a channel showed.
@@ -57,6 +65,8 @@ pub enum Evaluation {
         /// From inputs that are known without a table; `None`: they do not show it.
         known: Option<OfKnownInput>,
     },
+    /// From positions in the field of gravity.
+    Acceleration(fn(&Measurand, &Acceleration) -> Vec<Estimate>),
     /// From a series of switchings-on.
     Repeatability(fn(&Measurand, &Repeatability) -> Vec<Estimate>),
     /// From a comparison without and with an influence.
@@ -88,6 +98,8 @@ pub enum Stimulus {
     OpenLoopRates,
     /// Rates near zero.
     SmallRates,
+    /// Rates about the input axis up to those that the output no longer follows.
+    Overload,
     /// Turns about the outer axis, which is square to the input axis.
     OuterTurns,
 }
@@ -172,6 +184,13 @@ impl fmt::Debug for Measurand {
     }
 }
 
+impl Test {
+    /// True where a gyro at rest at constant conditions shows it.
+    pub fn is_at_rest(self) -> bool {
+        matches!(self, Test::Static | Test::NoiseInBands)
+    }
+}
+
 impl Measurand {
     const fn new(
         id: &'static str,
@@ -204,6 +223,16 @@ impl Measurand {
         evaluate: fn(&Measurand, &GyroEvidence, &Options) -> Vec<Estimate>,
     ) -> Measurand {
         Measurand::new(id, unit, doc, Evaluation::Static(evaluate))
+    }
+
+    /// A measurand of a test of the noise in bands of frequency.
+    pub const fn of_noise_test(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &GyroEvidence, &NoiseTest) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::NoiseInBands(evaluate))
     }
 
     /// A measurand of a test over temperature.
@@ -246,6 +275,16 @@ impl Measurand {
         known: OfKnownInput,
     ) -> Measurand {
         Measurand::new(id, unit, doc, Evaluation::RateTable { steps: None, known: Some(known) })
+    }
+
+    /// A measurand of positions in the field of gravity.
+    pub const fn of_acceleration(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &Acceleration) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::Acceleration(evaluate))
     }
 
     /// A measurand of a series of switchings-on.
@@ -348,9 +387,11 @@ impl Measurand {
     pub fn test(&self) -> Test {
         match self.evaluation {
             Evaluation::Static(_) => Test::Static,
+            Evaluation::NoiseInBands(_) => Test::NoiseInBands,
             Evaluation::Temperature(_) => Test::Temperature,
             Evaluation::WarmUp(_) => Test::WarmUp,
             Evaluation::RateTable { .. } => Test::RateTable,
+            Evaluation::Acceleration(_) => Test::Acceleration,
             Evaluation::Repeatability(_) => Test::Repeatability,
             Evaluation::Comparison { .. } => Test::Comparison,
         }
@@ -381,6 +422,9 @@ impl Measurand {
     pub fn evaluate_gyro(&self, gyro: &GyroEvidence, options: &Options) -> Vec<Estimate> {
         let estimates = match self.evaluation {
             Evaluation::Static(evaluate) => evaluate(self, gyro, options),
+            Evaluation::NoiseInBands(evaluate) => {
+                gyro.noise_test.as_ref().map_or_else(Vec::new, |test| evaluate(self, gyro, test))
+            }
             Evaluation::Temperature(_) => {
                 let found = gyro.over_temperature.as_ref();
                 found.map_or_else(Vec::new, |found| self.evaluate_temperature(&gyro.channel, found))
@@ -418,6 +462,14 @@ impl Measurand {
     /// Its rows on all gyro channels from turns by known angles and positions; none where they do not show it.
     pub fn evaluate_known_input(&self, known: &KnownInputEvidence<'_>) -> Vec<Estimate> {
         self.by_known_input().map_or_else(Vec::new, |input| (input.evaluate)(self, known))
+    }
+
+    /// Its rows on a gyro channel from positions in the field of gravity; none for a measurand of other tests.
+    pub fn evaluate_acceleration(&self, found: &Acceleration) -> Vec<Estimate> {
+        match self.evaluation {
+            Evaluation::Acceleration(evaluate) => evaluate(self, found),
+            _ => vec![],
+        }
     }
 
     /// Its rows on a gyro channel from a series of switchings-on; none for a measurand of other tests.

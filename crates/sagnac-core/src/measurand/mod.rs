@@ -3,6 +3,7 @@
 //! A [`Measurand`] says what it is and has its evaluation: a pure function of what its kind of test leaves behind
 //! ([`crate::evidence`]). Whoever singles one out names its constant.
 
+mod acceleration;
 pub mod allan_minimum;
 mod angle_random_walk_shift;
 mod bias_repeatability;
@@ -12,8 +13,11 @@ mod dead_zone;
 mod descriptor;
 mod earth_rate;
 mod influence;
+mod maximum_rate;
 mod misalignment;
+mod noise_in_band;
 mod noise_terms;
+mod polarity;
 pub mod russian;
 pub mod russian_prediction;
 mod scale_factor;
@@ -67,6 +71,9 @@ registry! {
     russian::RUSSIAN_ARW_10S,
     spectral_line::LINE_FREQUENCY,
     spectral_line::LINE_AMPLITUDE,
+    noise_in_band::OUTPUT_NOISE_RMS,
+    noise_in_band::RATE_NOISE_DENSITY,
+    noise_in_band::SPECTRAL_MASK,
     correlated_noise::MARKOV_SIGMA,
     correlated_noise::MARKOV_CORRELATION_TIME,
     correlated_noise::QUASI_PERIODIC_AMPLITUDE,
@@ -102,6 +109,10 @@ registry! {
     scale_factor_changes::SCALE_FACTOR_HYSTERESIS,
     scale_factor_changes::SCALE_FACTOR_TEMPERATURE_SENSITIVITY,
     sine_response::SINE_RESPONSE,
+    polarity::POLARITY,
+    maximum_rate::MAXIMUM_RATE,
+    maximum_rate::SATURATION_LEVEL,
+    maximum_rate::OVERLOAD_RECOVERY,
     misalignment::MISALIGNMENT_X,
     misalignment::MISALIGNMENT_Y,
     cross_axis::CROSS_AXIS,
@@ -111,6 +122,14 @@ registry! {
     dead_zone::RESOLUTION,
     table_harmonics::TABLE_HARMONIC_1,
     table_harmonics::TABLE_HARMONIC_2,
+    acceleration::G_SENSITIVITY_I,
+    acceleration::G_SENSITIVITY_O,
+    acceleration::G_SENSITIVITY_S,
+    acceleration::G2_SENSITIVITY_II,
+    acceleration::G2_SENSITIVITY_OO,
+    acceleration::G2_SENSITIVITY_IO,
+    acceleration::G2_SENSITIVITY_IS,
+    acceleration::G2_SENSITIVITY_OS,
     influence::MAGNETIC_SENSITIVITY,
     influence::SUPPLY_SENSITIVITY,
     influence::VIBRATION_SENSITIVITY,

@@ -55,7 +55,8 @@ pub fn stretches(blocks: &Blocks, known: &[ReferenceInput], phases: &[(String, u
 pub(super) struct Cut {
     pub(super) y: DVector<f64>,
     pub(super) rows: Rows,
-    of: Vec<usize>,
+    /// Stretch of each row.
+    pub(super) of: Vec<usize>,
 }
 
 pub(super) fn cut(blocks: &Blocks, stretches: &[&Stretch], channel: usize) -> Option<Cut> {

@@ -4,6 +4,7 @@
 //!
 //! Sources: IEEE Std 952-2020, 12.9 (scale factor), 12.10 (input rate), 12.12 (alignment); GUM (JCGM 100).
 
+pub mod acceleration;
 pub mod alignment;
 pub mod blocks;
 pub mod combine;
@@ -14,6 +15,7 @@ pub mod known;
 pub mod largest;
 pub mod model;
 pub mod noise;
+pub mod overload;
 pub mod scale_factor;
 pub mod settling;
 pub mod setup;

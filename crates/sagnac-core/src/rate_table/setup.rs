@@ -21,6 +21,8 @@ pub struct Setup {
     pub of_rate_from_deg_h: Option<f64>,
     /// Relative difference from the highest rate at which it counts as reached.
     pub rate_tolerance: f64,
+    /// Largest deviation from the line of a rate that the output follows, relative to the rate.
+    pub maximum_rate_error: f64,
     /// Calibration of the rate of the table, relative.
     pub rate_uncertainty: f64,
     /// Relative difference of the scale factor outside a dead zone from the nominal one, where it is known.
@@ -62,6 +64,7 @@ impl Default for Setup {
             full_scale_deg_h: None,
             of_rate_from_deg_h: None,
             rate_tolerance: 0.01,
+            maximum_rate_error: 0.01,
             rate_uncertainty: 0.0,
             scale_factor_uncertainty: None,
             angle_uncertainty_arcsec: 0.0,

@@ -87,11 +87,16 @@ impl Steps {
 }
 
 /// The rate by which steps are found, a value a block: that of the rate channel, or the derivative of the angle.
-fn guide(blocks: &Blocks) -> Vec<f64> {
-    let list = &blocks.list;
+pub(super) fn guide(blocks: &Blocks) -> Vec<f64> {
     if blocks.has_rate {
-        return list.iter().map(|b| b.table_rate).collect();
+        return blocks.list.iter().map(|b| b.table_rate).collect();
     }
+    of_angle(blocks)
+}
+
+/// The rate that the angle of the table shows, a value a block; NaN without an angle.
+pub(super) fn of_angle(blocks: &Blocks) -> Vec<f64> {
+    let list = &blocks.list;
     (0..list.len())
         .map(|i| {
             let b = &list[i];

@@ -3,7 +3,7 @@
 use super::part::{Head, MergeError};
 
 /// Samples in a block whose mean is taken off.
-const BLOCK_SAMPLES: usize = 1024;
+pub(super) const BLOCK_SAMPLES: usize = 1024;
 /// A shorter rest of a stretch than this is left out.
 const MIN_BLOCK: usize = 64;
 /// Bins from −8 to +8 scale units.

@@ -25,7 +25,7 @@ const FIRST_FLOOR_BIN: usize = 2;
 /// where the neighbours span most of an octave, and above.
 const FLOOR_ERROR: [f64; 2] = [0.05, 0.02];
 /// Half width, in bins, of what a pure line fills under a Hann window.
-const HALF_LOBE_BINS: usize = 2;
+pub(super) const HALF_LOBE_BINS: usize = 2;
 /// Bins on each side that a line must stand out from.
 const NEAR_HALF_WIDTH_BINS: usize = 12;
 /// Variance of a median against a mean (π/2) times the correlation of neighbouring bins under a Hann window

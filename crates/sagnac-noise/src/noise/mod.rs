@@ -16,7 +16,7 @@
 //!
 //! Models and their closed forms: [`model`] (N, B, K, R, Q), [`composite`] (every term), [`data`] (kinds of noise, points
 //! and series). Uncertainty of deviations: [`edf`], [`intervals`], [`ruling`], [`stretches`]. What a record can show before it is made:
-//! [`expected`], [`identifiable`], [`null_ratio`]. Other quantities: [`russian`], [`prediction`], [`static_bias`],
+//! [`expected`], [`identifiable`], [`null_ratio`]. Other quantities: [`russian`], [`prediction`], [`static_bias`], [`in_band`],
 //! [`autocorrelation`]. Fitness of the record: [`motion`], [`coarse`], [`tails`]. Records with known noise: [`simulate`].
 
 pub mod allan;
@@ -35,6 +35,7 @@ pub mod family;
 pub mod histogram;
 pub mod identifiable;
 pub mod identification;
+pub mod in_band;
 pub mod intervals;
 pub mod lines;
 pub mod model;

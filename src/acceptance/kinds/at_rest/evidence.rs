@@ -62,7 +62,8 @@ pub fn evidence(reading: &Reading<'_>, collected: RateDigests) -> Run<Vec<GyroEv
                 Earth { rate_deg_h: rate.value, uncertainty_deg_h: rate.uncertainty }
             });
             let gyro = GyroEvidence::identify(channel, digest.finish(), reading.tau0_s, alarm, step_deg_h);
-            Some(GyroEvidence { several, earth, course: course(reading, slot), ..gyro })
+            let noise_test = procedure.noise_test.clone();
+            Some(GyroEvidence { several, earth, course: course(reading, slot), noise_test, ..gyro })
         })
         .collect();
     let warming_deg_c = warming_deg_c(reading);

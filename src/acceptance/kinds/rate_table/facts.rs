@@ -97,6 +97,7 @@ fn channel_fact(
     Some(ChannelFact {
         channel: id.to_owned(),
         asked: request.procedure.measurands.iter().any(|m| m.channel.as_deref().is_none_or(|c| c == id)),
+        polarity_judged: request.limits.limit(measurand::POLARITY.id, id).is_some(),
         unit: spec.unit_in_file.clone(),
         factor: factor.map(|f| f.0),
         standard: factor.map_or(0.0, |f| f.1),

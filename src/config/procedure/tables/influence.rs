@@ -8,7 +8,7 @@ use crate::config::spec::{Range, Word};
 use crate::config::table::Table;
 use crate::i18n::note;
 use crate::influence::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};
-use crate::measurand::{Evaluation, Measurand, Test};
+use crate::measurand::{Evaluation, Measurand};
 use crate::recording::Role;
 
 /// A stretch of the recording.
@@ -260,7 +260,7 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
                 let message = note!("influence_check.no_table", id = measurand.id, table = *likeliest);
                 reader.error(&at, message, None);
             }
-        } else if own.is_some() && measurand.test() == Test::Static && !measurand.from_site {
+        } else if own.is_some() && measurand.test().is_at_rest() && !measurand.from_site {
             let message = note!("influence_check.static", id = measurand.id);
             reader.error(&at, message, None);
         }

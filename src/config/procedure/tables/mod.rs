@@ -1,9 +1,11 @@
 //! The tables of a procedure file.
 
+pub(crate) mod acceleration;
 pub(crate) mod conditions;
 pub(crate) mod derived;
 pub(crate) mod influence;
 pub mod limits;
+pub(crate) mod noise;
 pub mod phases;
 pub(crate) mod rate_table;
 pub mod temperature;
@@ -18,10 +20,12 @@ use crate::i18n::LocalText;
 use crate::record::ClauseRecord;
 use crate::recording::{ColumnRef, Role};
 use crate::units::Unit;
+use acceleration::AccelerationKeys;
 use conditions::{Conditions, Exclusion};
 use derived::{DerivedKeys, DerivedLimitKeys};
 use influence::{MagneticKeys, RepeatabilityKeys, SupplyKeys, VibrationKeys};
 use limits::{LimitKeys, ReferenceKeys, TypicalValues};
+use noise::NoiseKeys;
 use rate_table::RateTableKeys;
 use sagnac_ingest::StampWriting;
 use temperature::{TemperatureKeys, WarmUpKeys};
@@ -82,10 +86,14 @@ pub(in crate::config::procedure) struct ProcedureFile {
     pub analysis: Analysis,
     /// Comparison of the recording with the model of the unit's family.
     pub explain: Option<ExplainSpec>,
+    /// A test of the noise by frequency.
+    pub noise_test: Option<NoiseKeys>,
     /// A test over temperature.
     pub temperature_test: Option<TemperatureKeys>,
     /// A test of the warm-up.
     pub warm_up_test: Option<WarmUpKeys>,
+    /// A test in positions in the field of gravity.
+    pub acceleration_test: Option<AccelerationKeys>,
     /// A series of turn-ons.
     pub repeatability_test: Option<RepeatabilityKeys>,
     /// A comparison in a magnetic field.

@@ -37,6 +37,10 @@ pub(crate) struct RateTableKeys {
     /// rate.
     #[key(quantity = "1", above = 0, max = 0.5, default = "1 %", example = "0.1 %")]
     rate_tolerance: f64,
+    /// Largest deviation from the line of a rate that counts as followed, relative to the rate: what `maximum_rate` is
+    /// the limit of. The line goes through the rates up to half of full scale.
+    #[key(quantity = "1", above = 0, max = 0.5, default = "1 %", example = "0.5 %")]
+    maximum_rate_error: f64,
     /// Lowest rate at which residuals are given in ppm of the rate. Default: a tenth of full scale.
     #[key(quantity = "deg/h", above = 0, example = "1 deg/s")]
     of_rate_from_deg_h: Option<f64>,
@@ -153,6 +157,7 @@ impl RateTableKeys {
             by_angle,
             full_scale_deg_h: self.full_scale_deg_h,
             of_rate_from_deg_h: self.of_rate_from_deg_h,
+            maximum_rate_error: self.maximum_rate_error,
             rate_tolerance: self.rate_tolerance,
             rate_uncertainty: self.rate_uncertainty_ppm * 1e-6,
             scale_factor_uncertainty: self.scale_factor_uncertainty_ppm.map(|u| u * 1e-6),
@@ -197,7 +202,7 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
                 let message = note!("rate_table_check.no_table", id = measurand.id);
                 reader.error(&at, message, Some("rate_table_check.help.no_table".into()));
             }
-            (Some(_), Test::Static) => {
+            (Some(_), test) if test.is_at_rest() => {
                 let message = note!("rate_table_check.static_measurand", id = measurand.id);
                 reader.error(&at, message, Some("rate_table_check.help.static_measurand".into()));
             }
