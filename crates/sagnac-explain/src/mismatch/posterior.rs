@@ -13,10 +13,11 @@ pub struct Probable {
 }
 
 /// Physics differs from the formulas that are fitted, by more where it is better seen: log-likelihoods that differ by less than this
-/// share of the gain do not tell names apart. Chosen, not fitted: reliability has not been measured yet.
-const MODEL_ERROR: f64 = 0.04;
+/// share of the gain do not tell names apart. With half of it, names of .99 were right in .81 of 36 cases of a generator that shares no
+/// formula with the engine.
+const MODEL_ERROR: f64 = 0.08;
 /// Least gain that names share, nats.
-const MIN_SHARED_GAIN: f64 = 1.0;
+const MIN_SHARED_GAIN: f64 = 2.0;
 /// Probability below which a name is not listed.
 const MIN_LISTED_PROBABILITY: f64 = 0.01;
 
@@ -60,14 +61,14 @@ mod tests {
 
     #[test]
     fn names_share_by_what_they_are_worth() {
-        // Twenty nats: a scale of one. e⁰ : e⁻¹ : e⁻⁶, of which the last is below a hundredth.
-        let named = probabilities([("line", 19.0), ("comb", 20.0), ("bias_step", 14.0), ("comb", 3.0)]);
+        // Twenty nats: a scale of two. e⁰ : e⁻¹ : e⁻⁶, of which the last is below a hundredth.
+        let named = probabilities([("line", 18.0), ("comb", 20.0), ("bias_step", 8.0), ("comb", 3.0)]);
         let sum = 1.0 + (-1f64).exp() + (-6f64).exp();
         assert_eq!(named.iter().map(|p| p.kind).collect::<Vec<_>>(), ["comb", "line"]);
         assert!((named[0].probability - 1.0 / sum).abs() < 1e-12, "{named:?}");
         assert!((named[1].probability - (-1f64).exp() / sum).abs() < 1e-12);
-        // Of 500 nats, 20 are the model's own error.
-        let clear = probabilities([("line", 500.0), ("comb", 480.0)]);
+        // Of 500 nats, 40 are the model's own error.
+        let clear = probabilities([("line", 500.0), ("comb", 460.0)]);
         assert!((clear[1].probability / clear[0].probability - (-1f64).exp()).abs() < 1e-9, "{clear:?}");
         assert!(probabilities([("line", f64::NAN)]).is_empty());
     }
