@@ -150,12 +150,13 @@ impl MeanModel for HeadingChange {
         nonlinear_parameters.first().map(|at| around(*at, drivers)).into_iter().collect()
     }
 
-    /// For it where the table's angle changes then and seldom else, or where the claim speaks of the heading; against it
-    /// where neither is so.
+    /// For it where the table's angle changes then and seldom else. Of a gyro at rest nothing tells it from a step of the output,
+    /// which is the plainer name: it is nearly as probable where the claim states the Earth rate, and less so where it does not.
     fn odds(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
         let Some(at) = nonlinear_parameters.first() else { return 0.0 };
         match turned(*at, drivers) {
             Some((here, usual)) if here > 0.01 && here > 5.0 * usual => 6.0,
+            _ if turning(drivers).is_none() && drivers.claim.earth.is_some() => -0.1,
             _ if drivers.claim.earth.is_some() => 1.0,
             _ => -3.0,
         }
@@ -174,6 +175,11 @@ mod tests {
         drivers.table_angle = Some(angle(500));
         assert!(HeadingChange.odds(&[500.0], &drivers) > 0.0);
         assert!(HeadingChange.odds(&[200.0], &drivers) < 0.0);
+        // At rest a step is the plainer name, whatever the claim states.
+        let mut at_rest = Drivers { dt_s: 1.0, samples: 1000, ..Drivers::default() };
+        at_rest.claim.earth = Some(Earth { latitude_deg: 60.0, azimuth_deg: 40.0 });
+        let odds = HeadingChange.odds(&[500.0], &at_rest);
+        assert!(odds < 0.0 && odds > -0.5, "{odds}");
     }
 
     #[test]
