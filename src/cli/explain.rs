@@ -1,6 +1,6 @@
 //! `sagnac explain`: where, and because of what, a recording differs from its simulation.
 
-use super::explain_args::{ExplainArgs, inputs, options, read, shown};
+use super::explain_args::{ExplainArgs, inputs, options, read, read_part, shown};
 use super::job::{Frame, Job, Made, execute};
 use super::place::{self, OutputPlace};
 use super::{explain_jointly, next_step};
@@ -66,7 +66,7 @@ impl Job for Explaining<'_> {
 
     fn run(&self, _: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
         let (args, lang) = (self.args, frame.lang);
-        let recording = read(args, &args.recording, frame)?;
+        let recording = read_part(args, &args.recording, frame)?;
         let hidden = &self.options.hide;
         if let Some(given) = hidden.iter().find(|c| c.is_other() && !recording.columns.contains_key(c)) {
             let others = recording.columns.keys().copied().filter(|c| c.is_other());

@@ -4,6 +4,8 @@ use super::inputs::Inputs;
 use super::job::Frame;
 use super::join::JoinArgs;
 use super::options::OutputArgs;
+use super::part::PartArgs;
+use super::place;
 use super::read::ReadArgs;
 use crate::effect::{Column, EFFECTS, find};
 use crate::i18n::{Note, note};
@@ -21,6 +23,8 @@ pub struct ExplainArgs {
     pub(super) recording: Vec<PathBuf>,
     #[command(flatten)]
     pub(super) join: JoinArgs,
+    #[command(flatten)]
+    pub(super) part: PartArgs,
     /// The claimed simulation (TOML)
     #[arg(long, value_name = "FILE", required_unless_present = "simulation", conflicts_with = "simulation")]
     pub(super) model: Option<PathBuf>,
@@ -106,11 +110,26 @@ pub(super) fn read(args: &ExplainArgs, paths: &[PathBuf], frame: &mut Frame<'_>)
     frame.series(paths, &options)
 }
 
+/// Reads the part of a recording that is explained.
+pub(super) fn read_part(
+    args: &ExplainArgs,
+    paths: &[PathBuf],
+    frame: &mut Frame<'_>,
+) -> Result<Series, String> {
+    let lang = frame.lang;
+    let mut series = args.part.of(read(args, paths, frame)?).map_err(|note| place::error(&note, lang))?;
+    series.notes.extend(args.part.remark());
+    Ok(series)
+}
+
 /// The inputs of an explanation: its recordings, the model and the options.
 pub(super) fn inputs(args: &ExplainArgs, recordings: &[PathBuf], frame: &Frame<'_>) -> Inputs {
     let inputs = frame.inputs().recording(recordings, &args.read.options());
-    inputs.file("model", args.model.as_deref()).options(&(
+    let inputs = inputs.file("model", args.model.as_deref());
+    let decided = (
         (&args.rate, &args.unit, args.sample_rate, &args.read),
         (&args.hide, &args.without, args.alpha, args.max_effects),
-    ))
+    );
+    // That of the whole is the same as before a part could be chosen.
+    if args.part.is_whole() { inputs.options(&decided) } else { inputs.options(&(decided, args.part)) }
 }

@@ -1,6 +1,6 @@
 //! `sagnac explain A B ...`: what several recordings of one unit share, and what each shows besides.
 
-use super::explain_args::{ExplainArgs, inputs, options, read, shown};
+use super::explain_args::{ExplainArgs, inputs, options, read_part, shown};
 use super::job::{Frame, Job, Made, execute};
 use super::next_step;
 use super::place::{self, OutputPlace};
@@ -63,7 +63,7 @@ impl Job for ExplainingJointly<'_> {
         let lang = frame.lang;
         let mut recordings = vec![];
         for (i, file) in self.files.iter().enumerate() {
-            let series = read(self.args, std::slice::from_ref(file), frame)?;
+            let series = read_part(self.args, std::slice::from_ref(file), frame)?;
             let folder = format!("recordings/{:02}-{}", i + 1, folder_name(file));
             recordings.push(Recording { name: shown(file), folder, series });
         }

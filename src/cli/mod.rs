@@ -28,6 +28,7 @@ mod length;
 mod model;
 mod next_step;
 mod options;
+mod part;
 mod phased_test;
 mod place;
 mod plan;

@@ -1,6 +1,6 @@
 //! `sagnac model`: what a recording, or its result, shows, as a claim that others are held against.
 
-use super::length::{self, Length};
+use super::part::PartArgs;
 use super::progress::{Display, Progress};
 use super::read::ReadArgs;
 use super::{exit, next_step, place};
@@ -26,12 +26,8 @@ pub struct ModelArgs {
     /// Replace an existing file with different content
     #[arg(long)]
     force: bool,
-    /// Beginning of the part of the recording that is used, such as 2h [default: its start]
-    #[arg(long, value_name = "LENGTH", value_parser = length::from_zero)]
-    from: Option<Length>,
-    /// End of that part [default: that of the recording]
-    #[arg(long, value_name = "LENGTH", value_parser = length::above_zero)]
-    to: Option<Length>,
+    #[command(flatten)]
+    part: PartArgs,
     /// Name of the case in the model
     #[arg(long, value_name = "NAME")]
     case: Option<String>,
@@ -82,7 +78,7 @@ fn result_of(path: &Path) -> Option<PathBuf> {
 
 fn of_result(args: &ModelArgs, file: &Path, lang: Lang) -> Result<(Claim, Vec<Note>), String> {
     let say = |note: Note| place::error(&note, lang);
-    if args.from.is_some() || args.to.is_some() {
+    if !args.part.is_whole() {
         return Err(say("model_verb.part_of_result".into()));
     }
     let record: RunRecord = record::read::open(file).map_err(|e| say(e.note(file)))?;
@@ -91,8 +87,6 @@ fn of_result(args: &ModelArgs, file: &Path, lang: Lang) -> Result<(Claim, Vec<No
 
 fn of_recording(args: &ModelArgs, lang: Lang) -> Result<Claim, String> {
     let say = |note: Note| place::error(&note, lang);
-    let from_s = args.from.map_or(0.0, |l| l.seconds);
-    let to_s = args.to.map_or(f64::INFINITY, |l| l.seconds);
     let mut progress = Progress::new(Display::unless(args.quiet), lang);
     let options = SeriesOptions {
         read: args.read.options(),
@@ -106,7 +100,7 @@ fn of_recording(args: &ModelArgs, lang: Lang) -> Result<Claim, String> {
     let series = load_series(std::slice::from_ref(&args.from_what), &options, &mut |done, total| {
         progress.reading(&reading, done, total);
     });
-    let series = series.map_err(|e| e.say(lang))?.between(from_s, to_s);
+    let series = args.part.of(series.map_err(|e| e.say(lang))?).map_err(say)?;
     let claim = mismatch::identify(&series, &mut |p| progress.explaining(p));
     let claim = claim.and_then(|claim| {
         let found = mismatch::explain(series, &claim, &Options::default(), &mut |p| progress.explaining(p));

@@ -310,6 +310,26 @@ fn a_simulated_recording_stands_for_its_claim() {
 }
 
 #[test]
+fn a_part_of_a_recording_is_explained_alone() {
+    let dir = tempdir().unwrap();
+    case(dir.path(), "r.csv", 71, 0.2);
+    let begin = ["explain", "r.csv", "--model", "model.toml", "--out", "e"];
+    let explained = |part: &[&str]| sagnac(dir.path(), &[&begin, part].concat());
+    assert_eq!(explained(&[]).code, 1);
+    // The part before the step shows none. A result of another part is replaced only where that is asked for.
+    let before = format!("{AT}s");
+    let part = ["--from", "100s", "--to", before.as_str()];
+    let refused = crate::support::sagnac_as_typed(dir.path(), &[begin.as_slice(), &part].concat(), &[]);
+    assert_eq!(refused.code, 2, "{refused:?}");
+    let said = explained(&[part.as_slice(), &["--force"]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    let page = std::fs::read_to_string(dir.path().join("e/report.md")).unwrap();
+    assert!(page.contains(&format!("Only the part from 100 s to {AT} s was used.")), "{page}");
+    let said = explained(&["--from", "2h", "--force"]);
+    assert!(said.code == 2 && said.err.contains("empty"), "{said:?}");
+}
+
+#[test]
 fn what_cannot_be_run_says_why() {
     let dir = tempdir().unwrap();
     case(dir.path(), "r.csv", 61, 0.0);
