@@ -22,6 +22,7 @@ use super::outcome::Outcome;
 use super::problem::Problem;
 use super::samples;
 use super::select::{self, Chosen, MOST_EQUIVALENTS, Selection, Slot};
+use super::several::least_of;
 use super::single_cause;
 use super::unnamed;
 use crate::claim::{Claim, Stated};
@@ -352,8 +353,8 @@ fn by_law(
 }
 
 fn smallest_p(first: &[FittedCandidate], before: &[Departure]) -> f64 {
-    let named = first.iter().map(|c| c.p_value).fold(1.0, f64::min) * select::family(first);
-    named.min(2.0 * departures::family(before)).min(1.0)
+    let named = first.iter().map(|c| c.p_value).fold(1.0, f64::min);
+    least_of(named, select::family(first)).min(least_of(departures::family(before), 2.0))
 }
 
 /// Figures of a fit; `local_gain` is what effects on single samples gained beside it.

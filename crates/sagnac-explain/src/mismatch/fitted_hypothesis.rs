@@ -1,6 +1,7 @@
 //! Hypotheses that were fitted, and the score of an addition to one.
 
 use super::hypothesis::{Fit, Hypothesis, PartModes, part_modes, part_modes_of_averages, residual};
+use super::several::least_of;
 use super::spectral_data::SpectralData;
 use super::terms::MeanTerm;
 use crate::effect::{Effect, Resolution};
@@ -124,7 +125,7 @@ pub(super) fn score_candidate(
     let gain = tried.fit.log_likelihood - before.fit.log_likelihood;
     let parameters = tried.parameters - before.parameters;
     let chance = chi_square_tail(2.0 * gain.max(0.0), effort.numbers as f64);
-    let p_value = (effort.trials.max(1.0) * chance).min(1.0);
+    let p_value = least_of(chance, effort.trials);
     let delta_bic = before.bic(rows) - tried.bic(rows);
     Candidate { effect, tried, gain, parameters, delta_bic, p_value }
 }

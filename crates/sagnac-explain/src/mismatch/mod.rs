@@ -60,6 +60,7 @@ pub mod quantization_grid;
 pub mod regular;
 pub mod samples;
 pub mod select;
+mod several;
 mod simulation_check;
 mod simulation_claim;
 mod single_cause;

@@ -16,6 +16,7 @@ use super::options::Options;
 use super::posterior::{Probable, name_of, probabilities};
 use super::prediction;
 use super::problem::Problem;
+use super::several::least_of;
 use super::terms::MeanTerm;
 use super::terms::SpectralTerm;
 use crate::effect::{Effect, Model, SpectrumAct};
@@ -84,7 +85,7 @@ pub struct Selection {
 /// True for a candidate that may be added: without it, as large a gain anywhere in the family has a probability below α. This is the
 /// rule that decides; BIC only orders what passes.
 pub fn passes(candidate: &Candidate, family: f64, alpha: f64) -> bool {
-    candidate.p_value * family < alpha
+    least_of(candidate.p_value, family) < alpha
 }
 
 /// The slots that a hypothesis has beyond its claim.
@@ -451,7 +452,7 @@ fn chosen(
             let without = if single { base.clone() } else { without(best, slot, spectra) };
             let rivals = if single { first.to_vec() } else { search.candidates(&without).to_vec() };
             let own = rivals.iter().find(|c| c.effect.kind() == effect.kind());
-            let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
+            let p_value = own.map_or(1.0, |c| least_of(c.p_value, family));
             let modes = modes_of_process(slot, best, spectra);
             let near = |c: &Candidate| {
                 bic_of_rival(c, spectra) - bic_excess(c, best, modes, rows) < best.bic(rows) + MIN_DELTA_BIC

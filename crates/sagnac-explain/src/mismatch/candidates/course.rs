@@ -9,6 +9,7 @@ use crate::mismatch::fitted_hypothesis::{
 use crate::mismatch::hypothesis::{self, Fit, Hypothesis, PartModes, columns, kept, less_fixed};
 use crate::mismatch::noise_fit::{self, Noise};
 use crate::mismatch::nonlinear_search::LocalSearch;
+use crate::mismatch::several::least_of;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::MeanTerm;
 use crate::numeric::cosine::inverse_dct2;
@@ -195,7 +196,7 @@ fn score_gain(course: &dyn MeanModel, baseline: &Baseline<'_>) -> Option<f64> {
 /// Probability of a gain that a search or a score test brought, whichever is less: two tests.
 fn with_score_test(by_search: f64, score_gain: Option<f64>) -> f64 {
     let Some(gain) = score_gain else { return by_search };
-    (2.0 * by_search.min(chi_square_tail(2.0 * gain.max(0.0), 1.0))).min(1.0)
+    least_of(by_search.min(chi_square_tail(2.0 * gain.max(0.0), 1.0)), 2.0)
 }
 
 /// Information of each mode on a fitted course: its square over the variance of the mode.
@@ -329,8 +330,9 @@ mod tests {
         let p = with_score_test(1e-2, Some(13.6));
         assert!((p / 2.0 / 1.836e-7 - 1.0).abs() < 0.01, "{p}");
         // A lag that is far from zero shows in the search, which then has one look more to pay for.
-        assert_eq!(with_score_test(1e-9, Some(0.3)), 2e-9);
+        assert!((with_score_test(1e-9, Some(0.3)) / 2e-9 - 1.0).abs() < 1e-6);
         assert_eq!(with_score_test(1e-9, None), 1e-9);
-        assert_eq!(with_score_test(0.8, Some(0.0)), 1.0);
+        // 1 − 0.2².
+        assert!((with_score_test(0.8, Some(0.0)) - 0.96).abs() < 1e-12);
     }
 }
