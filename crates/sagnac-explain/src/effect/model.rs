@@ -437,6 +437,12 @@ pub trait MeanModel: Effect {
         0.0
     }
 
+    /// The kind with the same course that is the plainer name where nothing in the recording tells the two apart. Its odds are those of
+    /// both names.
+    fn plainer_name(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Option<&'static str> {
+        None
+    }
+
     /// Samples within which the course is curved, so that the means of the columns do not determine it: they are left out of
     /// the fit. `parameters` in the order of [`Effect::params`](super::Effect::params).
     fn curvature_within_average(&self, _parameters: &[f64], _drivers: &Drivers) -> Vec<usize> {

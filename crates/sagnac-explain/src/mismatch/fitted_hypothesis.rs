@@ -137,26 +137,11 @@ pub(super) fn own_odds(effect: &dyn Effect) -> f64 {
 }
 
 /// Excess of the charge of BIC for parameters, nats: a parameter costs half the logarithm of the modes that inform on it, and not
-/// of all rows. Those that a search found cost the logarithm of the independent places that it looked at, where that is more: a step
-/// fits some instant of many.
-pub(super) fn bic_overcharge(charged: &Charged, modes: f64, rows: usize) -> f64 {
+/// of all rows.
+pub(super) fn bic_overcharge(parameters: usize, modes: f64, rows: usize) -> f64 {
     /// Modes below which a parameter is no cheaper.
     const MIN_CHARGED_MODES: f64 = 55.0;
-    let modes = modes.max(MIN_CHARGED_MODES);
-    let of_modes = charged.parameters as f64 * 0.5 * (rows as f64 / modes).ln().max(0.0);
-    let of_search = charged.trials.max(1.0).ln() - charged.searched as f64 * 0.5 * modes.ln();
-    of_modes - of_search.max(0.0)
-}
-
-/// The parameters of an addition, for their charge.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Charged {
-    /// All of them.
-    pub parameters: usize,
-    /// Those that a search found.
-    pub searched: usize,
-    /// Independent places that it looked at.
-    pub trials: f64,
+    parameters as f64 * 0.5 * (rows as f64 / modes.max(MIN_CHARGED_MODES)).ln().max(0.0)
 }
 
 /// Effective number of modes, from the information of each: their number where all inform alike.
@@ -199,15 +184,10 @@ mod tests {
     #[test]
     fn a_parameter_that_few_modes_tell_of_is_charged_for_those() {
         // A hundred equal modes of 10 000 rows: ½ ln 100 less for each of three.
-        let charged = |trials: f64| Charged { parameters: 3, searched: 1, trials };
-        let of = |modes: f64| bic_overcharge(&charged(1.0), modes, 10_000);
+        let of = |modes: f64| bic_overcharge(3, modes, 10_000);
         assert!((of(100.0) - 1.5 * 100f64.ln()).abs() < 1e-9, "{}", of(100.0));
         assert_eq!(of(10_000.0), 0.0);
         assert_eq!((of(1.0), of(0.0)), (of(55.0), of(55.0)));
-        // A search of 5000 places costs ln 5000, of which ½ ln 100 is charged for the parameter that it found.
-        let searched = bic_overcharge(&charged(5000.0), 100.0, 10_000);
-        assert!((of(100.0) - searched - 5000f64.ln() + 0.5 * 100f64.ln()).abs() < 1e-9, "{searched}");
-        assert_eq!(bic_overcharge(&charged(9.0), 100.0, 10_000), of(100.0));
         let modes = |count: usize| effective_modes((0..1000).map(|k| if k < count { 2.0 } else { 0.0 }));
         assert_eq!((modes(100), modes(0)), (100.0, 0.0));
         // One that tells ten times as much as ninety others: (10 + 90)²/(100 + 90).

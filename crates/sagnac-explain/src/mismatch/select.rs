@@ -13,7 +13,7 @@ use super::hypothesis::{Hypothesis, fit};
 use super::noise_fit::{Noise, base_index};
 use super::nonlinear_search::LocalSearch;
 use super::options::Options;
-use super::posterior::{Probable, name_of, probabilities};
+use super::posterior::{Probable, ScoredName, name_of, probabilities};
 use super::prediction;
 use super::problem::Problem;
 use super::several::least_of;
@@ -417,11 +417,12 @@ fn names(
     rivals: &[Candidate],
     laws: &[&Candidate],
     rank_without: f64,
-    rows: usize,
+    spectra: &SpectralDataSet,
 ) -> Vec<Probable> {
     if !laws.is_empty() {
-        return probabilities(laws.iter().map(|c| (c.effect.reported_kind(), law_score(c))));
+        return probabilities(laws.iter().map(|c| (c.effect.reported_kind(), law_score(c)).into()));
     }
+    let rows = spectra.rows;
     let own = 0.5 * (rank_without - best.rank(rows));
     let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind());
     // A free form must explain more than a plain law by a share, to be the better name.
@@ -430,9 +431,16 @@ fn names(
     };
     let others = others.map(|c| {
         let (kind, score) = name_of(c, self::laws(c.effect, rivals).first().copied(), rows, rank_without);
-        (kind, score - bends(c) * score.abs())
+        ScoredName { kind, score: score - bends(c) * score.abs(), within: plainer_name(c, spectra) }
     });
-    probabilities([(effect.reported_kind(), own)].into_iter().chain(others))
+    probabilities([(effect.reported_kind(), own).into()].into_iter().chain(others))
+}
+
+/// The kind with the same course as a candidate that is the plainer name.
+fn plainer_name(candidate: &Candidate, spectra: &SpectralDataSet) -> Option<&'static str> {
+    let Model::Mean(course) = candidate.effect.model() else { return None };
+    let fitted = candidate.tried.hypothesis.courses.last()?;
+    course.plainer_name(&fitted.nonlinear_parameters, &spectra.of(course.resolution()).drivers)
 }
 
 fn chosen(
@@ -470,7 +478,7 @@ fn chosen(
             } else {
                 laws.iter().skip(1).take(MOST_EQUIVALENTS).map(|c| (*c).clone()).collect()
             };
-            let names = names(effect, best, &rivals, &laws, without.rank(rows), rows);
+            let names = names(effect, best, &rivals, &laws, without.rank(rows), spectra);
             equivalents.retain(|c| is_rival(c.effect.reported_kind(), &names));
             let law = laws.first().map(|c| (*c).clone());
             let better = rivals

@@ -1,5 +1,6 @@
 //! One jump of the bias.
 
+use super::heading_change::odds_of_same_step;
 use crate::effect::shared::step::{around, instant_bounds, instants, sizing, step};
 use crate::effect::{
     ClaimedMean, Drivers, Later, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values,
@@ -56,6 +57,12 @@ impl MeanModel for BiasStep {
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let (size, at) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)? - drivers.start_s);
         Some(step(drivers, at).into_iter().map(|s| size * s).collect())
+    }
+
+    /// Those of a change of heading added where it is the same step.
+    fn odds(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
+        let same = nonlinear_parameters.first().and_then(|at| odds_of_same_step(*at, drivers));
+        same.map_or(0.0, |odds| odds.exp().ln_1p())
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

@@ -1,11 +1,12 @@
 //! The gyro moved: another projection of the Earth rate from some time on.
 
+use super::bias_step::BiasStep;
 use super::earth_rate_projection::EarthRateProjection;
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::step::{around, instant_bounds, instants, sizing, step};
 use crate::effect::{
-    ClaimedMean, Drivers, Earth, Later, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts,
-    Values, number,
+    ClaimedMean, Drivers, Earth, Effect as _, Later, MeanModel, Param, Place, Regressors, SearchContext,
+    Sizing, Starts, Values, number,
 };
 use crate::numeric::order::{SortByNumber, SortNumbers};
 use crate::numeric::range::Bounds;
@@ -73,6 +74,17 @@ fn turned(at_s: f64, drivers: &Drivers) -> Option<(f64, f64)> {
         angle.windows(2 * wide + 1).step_by(wide).map(|w| apart(w[0], w[2 * wide])).collect();
     usual.sort_ascending();
     Some((apart(*a, *b), usual.get(usual.len() / 2).copied().unwrap_or(0.0)))
+}
+
+/// True where the table's angle changes at that instant and seldom else.
+fn table_turned(at_s: f64, drivers: &Drivers) -> bool {
+    turned(at_s, drivers).is_some_and(|(here, usual)| here > 0.01 && here > 5.0 * usual)
+}
+
+/// Logarithm of the odds of a change of heading against a step of the output, where nothing tells one from the other.
+pub(super) fn odds_of_same_step(at_s: f64, drivers: &Drivers) -> Option<f64> {
+    let same = turning(drivers).is_none() && !table_turned(at_s, drivers);
+    same.then_some(if drivers.claim.earth.is_some() { -0.1 } else { -2.0 })
 }
 
 /// Number of instants at which the search looks for a change of heading.
@@ -152,14 +164,15 @@ impl MeanModel for HeadingChange {
 
     /// For it where the table's angle changes then and seldom else. Of a gyro at rest nothing tells it from a step of the output,
     /// which is the plainer name: it is nearly as probable where the claim states the Earth rate, and less so where it does not.
+    /// Of a table that turns, the claim decides.
     fn odds(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
         let Some(at) = nonlinear_parameters.first() else { return 0.0 };
-        match turned(*at, drivers) {
-            Some((here, usual)) if here > 0.01 && here > 5.0 * usual => 6.0,
-            _ if turning(drivers).is_none() && drivers.claim.earth.is_some() => -0.1,
-            _ if drivers.claim.earth.is_some() => 1.0,
-            _ => -3.0,
-        }
+        let of_claim = if drivers.claim.earth.is_some() { 1.0 } else { -3.0 };
+        if table_turned(*at, drivers) { 6.0 } else { odds_of_same_step(*at, drivers).unwrap_or(of_claim) }
+    }
+
+    fn plainer_name(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<&'static str> {
+        odds_of_same_step(*nonlinear_parameters.first()?, drivers).map(|_| BiasStep.kind())
     }
 }
 
@@ -180,6 +193,11 @@ mod tests {
         at_rest.claim.earth = Some(Earth { latitude_deg: 60.0, azimuth_deg: 40.0 });
         let odds = HeadingChange.odds(&[500.0], &at_rest);
         assert!(odds < 0.0 && odds > -0.5, "{odds}");
+        assert_eq!(HeadingChange.plainer_name(&[500.0], &at_rest), Some("bias_step"));
+        // A step there is as probable as both names together.
+        assert!((BiasStep.odds(&[500.0], &at_rest).exp() - 1.0 - odds.exp()).abs() < 1e-12);
+        assert_eq!(HeadingChange.plainer_name(&[500.0], &drivers), None);
+        assert_eq!(BiasStep.odds(&[500.0], &drivers), 0.0);
     }
 
     #[test]

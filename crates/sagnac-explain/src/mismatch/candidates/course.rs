@@ -3,8 +3,8 @@
 use crate::effect::{Effect, MeanModel, Resolution, SearchContext, plausible};
 use crate::estimate::chi_square_tail;
 use crate::mismatch::fitted_hypothesis::{
-    Candidate, Charged, FittedHypothesis, SearchEffort, SpectralDataSet, bic_overcharge, effective_modes,
-    own_odds, score_candidate,
+    Candidate, FittedHypothesis, SearchEffort, SpectralDataSet, bic_overcharge, effective_modes, own_odds,
+    score_candidate,
 };
 use crate::mismatch::hypothesis::{self, Fit, Hypothesis, PartModes, columns, kept, less_fixed};
 use crate::mismatch::noise_fit::{self, Noise};
@@ -244,13 +244,9 @@ pub(super) fn try_course(
         let parameters = || course.parameters(&inside.nonlinear_parameters, &inside.coefficients, drivers);
         inside.coefficients.len() != columns || plausible(effect, &parameters())
     });
-    // What its score test tells was not searched for.
-    let searched_for = if course.score_step(drivers).is_some() { 1.0 } else { trials };
-    let searched = LocalSearch::of(course, drivers).free();
-    let charged = Charged { parameters: added, searched, trials: searched_for };
     let relief = hypothesis.courses.last().map_or(0.0, |inside| {
         let modes = effective_modes(informations(course, inside, baseline).into_iter());
-        bic_overcharge(&charged, modes, spectra.rows)
+        bic_overcharge(added, modes, spectra.rows)
     });
     let tried = FittedHypothesis {
         hypothesis,

@@ -2,8 +2,7 @@
 
 use crate::effect::{Effect, SpectralContext, Spectrum, SpectrumAct};
 use crate::mismatch::fitted_hypothesis::{
-    Candidate, Charged, FittedHypothesis, SearchEffort, SpectralDataSet, bic_overcharge, own_odds,
-    score_candidate,
+    Candidate, FittedHypothesis, SearchEffort, SpectralDataSet, bic_overcharge, own_odds, score_candidate,
 };
 use crate::mismatch::hypothesis::fit;
 use crate::mismatch::noise_fit::{self, Noise, base_index};
@@ -119,8 +118,7 @@ fn finish_spectrum(
     let shares = densities
         .zip(&spectra.full.bins)
         .map(|((s, old), bin)| ((s - old) / s.max(*old)).powi(2) * spectra.full.weight(bin));
-    let charged = Charged { parameters: numbers, searched: numbers.saturating_sub(1), trials };
-    let relief = bic_overcharge(&charged, shares.sum(), spectra.rows);
+    let relief = bic_overcharge(numbers, shares.sum(), spectra.rows);
     let odds = before.odds_with(effect, own_odds(effect) + relief);
     let effort = SearchEffort { numbers, trials };
     let candidate = score_candidate(
