@@ -159,8 +159,8 @@ mod tests {
         let share = learned.hypothesis.noise.discrepancy.as_ref().map(|d| d.share);
         assert!(share.is_some_and(|s| s >= 0.01), "{share:?}");
         assert!(learned.fit.log_likelihood > bent.fit.log_likelihood + 100.0);
-        // The interval of the coefficient holds the slopes that a bent law has.
-        assert!(deviation(&learned) > 5.0 * deviation(&bent), "{} {}", deviation(&learned), deviation(&bent));
+        // The interval of the coefficient is wider for it.
+        assert!(deviation(&learned) > 3.0 * deviation(&bent), "{} {}", deviation(&learned), deviation(&bent));
         // A law of a few nats has no error to be seen.
         let (small, spectra) = fitted(3.0, 0.1);
         assert!(super::learned(small, &spectra).hypothesis.noise.discrepancy.is_none());

@@ -208,8 +208,9 @@ mod tests {
         assert_eq!((one.gain, one.parameters), (20.0, 2));
         // 2 · 20 − 2 ln 1000.
         assert!((one.delta_bic - (40.0 - 2.0 * 1000f64.ln())).abs() < 1e-9);
-        // χ² of 40 with two degrees of freedom is e⁻²⁰, for each of 50 looks.
-        assert!((one.p_value / (50.0 * (-20f64).exp()) - 1.0).abs() < 1e-9, "{}", one.p_value);
+        // χ² of 40 with two degrees of freedom is e⁻²⁰, for each of 50 looks: 1 − (1 − e⁻²⁰)⁵⁰.
+        let of_fifty = -(50.0 * (-(-20f64).exp()).ln_1p()).exp_m1();
+        assert!((one.p_value / of_fifty - 1.0).abs() < 1e-9, "{}", one.p_value);
         // Odds of e⁻³ cost 6 of the rank.
         assert!((one.tried.rank(1000) - one.tried.bic(1000) - 6.0).abs() < 1e-9);
         assert_eq!((own_odds(find("line").unwrap()), own_odds(find("drifting_line").unwrap())), (0.0, -3.0));
