@@ -123,6 +123,25 @@ fn a_step_is_found_and_the_loop_closes() {
 }
 
 #[test]
+fn a_step_of_a_gyro_at_rest_is_no_change_of_heading() {
+    let dir = tempdir().unwrap();
+    case(dir.path(), "r.csv", 15, 0.2);
+    let earth =
+        MODEL.replace("[uncertainty]", "[earth]\nlatitude_deg = 55.0\nazimuth_deg = 30.0\n[uncertainty]");
+    std::fs::write(dir.path().join("model.toml"), earth).unwrap();
+    let said = sagnac(dir.path(), &["explain", "r.csv", "--model", "model.toml", "--out", "e"]);
+    assert_eq!((said.code, said.err.as_str()), (1, ""), "{said:?}");
+    let all = json(&dir.path().join("e/explain.json"));
+    let first = &all["effects"][0];
+    assert_eq!(first["kind"], "bias_step", "{first}");
+    let probability = |kind: &str| first["probabilities"][kind].as_f64().unwrap_or(0.0);
+    // The record says nothing between the two, and both are said.
+    assert!(probability("bias_step") >= probability("heading_change"), "{first}");
+    assert!(probability("heading_change") > 0.2, "{first}");
+    assert!(first["equivalents"].as_array().unwrap().iter().any(|e| e == "heading_change"), "{first}");
+}
+
+#[test]
 fn candidates_stand_by_what_they_are_worth_and_columns_under_their_own_names() {
     let run = step();
     let all = json(&run.out.join("explain.json"));

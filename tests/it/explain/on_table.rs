@@ -12,6 +12,9 @@ use tempfile::tempdir;
 /// N of the recordings, deg/√h.
 const N: f64 = 0.003;
 const RATE_HZ: f64 = 5.0;
+/// A delay of 5.5 standard deviations behind a swing of 10 deg/s in 80 s: the derivative has an rms of 1999 deg/h/s, so that 8000 samples
+/// of 0.402 deg/h tell it to 2.25 µs.
+const LAG_S: f64 = 12.4e-6;
 
 /// A sweep of the table from slow to fast, deg/s; its phase is cubic in time.
 fn sweep(t: f64) -> f64 {
@@ -66,6 +69,42 @@ fn a_limit_that_a_slow_sine_exceeds() {
     let all = recorded(dir.path(), 8000, table, |t| 1.02 + 3600.0 * table(t).clamp(-11.7, 11.7));
     assert_eq!(kinds(&all), ["saturation"], "{all}");
     near(&all, 0, "limit_deg_s", 11.7);
+}
+
+#[test]
+fn a_limit_whose_corner_is_round_is_one_cause() {
+    let dir = tempdir().unwrap();
+    // A corner of 0.02 deg/s, a thousand times the noise.
+    let limited = |rate: f64| {
+        let (limit, width) = (11.7, 0.02);
+        rate.signum() * (limit - width * ((limit - rate.abs()) / width).exp().ln_1p())
+    };
+    let table = |t: f64| 12.0 * (TAU * t / 900.0).sin();
+    let all = recorded(dir.path(), 8000, table, |t| 1.02 + 3600.0 * limited(table(t)));
+    assert_eq!(kinds(&all), ["saturation"], "{all}");
+}
+
+#[test]
+fn a_scale_factor_that_bends_has_no_comb_of_the_table_beside_it() {
+    let dir = tempdir().unwrap();
+    let table = |t: f64| 10.0 * (TAU * t / 80.0).sin();
+    let gyro = |t: f64| {
+        let rate = table(t);
+        1.02 + 3600.0 * (rate + 2e-4 * (rate + 0.05 * rate.powi(3) / 100.0))
+    };
+    let all = recorded(dir.path(), 8000, table, gyro);
+    assert_eq!(kinds(&all).len(), 1, "{all}");
+    assert!(["sf_error", "sf_nonlinearity"].contains(&kinds(&all)[0]), "{all}");
+}
+
+#[test]
+fn a_delay_of_a_few_nats_is_named_without_the_price_of_a_search() {
+    let dir = tempdir().unwrap();
+    let table = |t: f64| 10.0 * (TAU * t / 80.0).sin();
+    // 5.5 deviations: 15 nats of one parameter.
+    let all = recorded(dir.path(), 8000, table, |t| 1.02 + 3600.0 * table(t - LAG_S));
+    assert_eq!(kinds(&all), ["time_offset"], "{all}");
+    near(&all, 0, "lag_s", LAG_S);
 }
 
 #[test]

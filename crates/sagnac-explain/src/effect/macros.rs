@@ -88,6 +88,11 @@ macro_rules! describe {
             true
         }
     };
+    (@ free_form) => {
+        fn is_free_form(&self) -> bool {
+            true
+        }
+    };
     (@ follows_any_column) => {
         fn follows_any_column(&self) -> bool {
             true

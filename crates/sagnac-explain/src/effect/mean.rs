@@ -36,6 +36,17 @@ pub struct Regressors {
     pub columns: Vec<Vec<f64>>,
     /// Columns that are fitted beside the effect and are no part of it, such as an unknown initial state.
     pub nuisance: Vec<Vec<f64>>,
+    /// Prior of each of these columns that is a state before the record, in their order; empty where none is.
+    pub states: Vec<StatePrior>,
+}
+
+/// Prior of a state before the record: what the effect makes of the column's whole range is one standard deviation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StatePrior {
+    /// Column whose coefficient the state is proportional to; `None` for the fixed part.
+    pub column: Option<usize>,
+    /// Standard deviation for a coefficient of 1.
+    pub deviation: f64,
 }
 
 impl Regressors {

@@ -37,7 +37,7 @@ pub use detection::{
 pub use domain::{Domain, Place};
 pub use drivers::{ClaimedMean, Drivers, Earth, OtherDriver, StatedLine, Temperature, averages};
 pub use kinds::{EFFECTS, any_column_driver, find, parameter};
-pub use mean::{Nuisance, Regressors, Resolution, SearchContext, Starts, Unmodelled};
+pub use mean::{Nuisance, Regressors, Resolution, SearchContext, Starts, StatePrior, Unmodelled};
 pub use model::{ClaimedByCourse, Effect, Family, Later, Model, UNKNOWN, plausible, stateable};
 pub use model::{Detector, JumpDetector, Level, LevelDetector, MeanModel, Samples, Spectrum};
 pub use param::{Param, Value, Values, list, number, text};

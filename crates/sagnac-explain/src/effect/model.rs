@@ -7,7 +7,7 @@
 use super::detection::{
     Background, Detection, FlatResidual, Jumps, Law, LevelLaw, OutlierDetector, Rounding, RowDetector,
 };
-use super::mean::{Nuisance, Regressors, Resolution, SearchContext, Starts, Unmodelled, first};
+use super::mean::{Nuisance, Regressors, Resolution, SearchContext, Starts, StatePrior, Unmodelled, first};
 use super::shared::power_law::power_law_places;
 use super::shared::reach::{places_of, varies};
 use super::{
@@ -70,6 +70,11 @@ pub trait Effect: Sync {
     /// has a name of its own.
     fn named_by_law(&self) -> &'static [&'static dyn Effect] {
         &[]
+    }
+    /// True for an effect whose course or spectrum no mechanism fixes, so that it bends to what another law leaves: it is named
+    /// only where the plain laws of the others do not explain the record.
+    fn is_free_form(&self) -> bool {
+        false
     }
     /// True for the effect by which the bias follows any column without a role of its own, whatever the law.
     fn follows_any_column(&self) -> bool {
@@ -299,6 +304,11 @@ pub trait MeanModel: Effect {
         vec![]
     }
 
+    /// Standard deviation of that state for a coefficient of 1; `None` where there is none.
+    fn state_deviation(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Option<f64> {
+        None
+    }
+
     /// The sampling at which it must be fitted.
     fn resolution(&self) -> Resolution {
         if self.is_slow() { Resolution::Averaged } else { Resolution::FullRate }
@@ -325,6 +335,12 @@ pub trait MeanModel: Effect {
         vec![]
     }
 
+    /// For an effect of one nonlinear parameter that is nothing at zero: a value so small that the course is proportional to it
+    /// there, which is what its score test takes for a column. `None` for any other effect.
+    fn score_step(&self, _drivers: &Drivers) -> Option<f64> {
+        None
+    }
+
     /// Positions of nonlinear parameters that are whole numbers: tried by [`MeanModel::starts`] and not refined.
     fn whole(&self) -> &'static [usize] {
         &[]
@@ -336,6 +352,9 @@ pub trait MeanModel: Effect {
             offset: None,
             columns: self.column(nonlinear_parameters, drivers).into_iter().collect(),
             nuisance: self.initial_state(nonlinear_parameters, drivers),
+            states: self
+                .state_deviation(nonlinear_parameters, drivers)
+                .map_or_else(Vec::new, |deviation| vec![StatePrior { column: Some(0), deviation }]),
         }
     }
 
@@ -416,6 +435,12 @@ pub trait MeanModel: Effect {
     /// Natural logarithm of the odds of this effect against others with the same course, from other evidence of the columns.
     fn odds(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> f64 {
         0.0
+    }
+
+    /// The kind with the same course that is the plainer name where nothing in the recording tells the two apart. Its odds are those of
+    /// both names.
+    fn plainer_name(&self, _nonlinear_parameters: &[f64], _drivers: &Drivers) -> Option<&'static str> {
+        None
     }
 
     /// Samples within which the course is curved, so that the means of the columns do not determine it: they are left out of

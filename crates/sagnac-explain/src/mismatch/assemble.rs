@@ -21,7 +21,8 @@ use super::options::Options;
 use super::outcome::Outcome;
 use super::problem::Problem;
 use super::samples;
-use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
+use super::select::{self, Chosen, MOST_EQUIVALENTS, Selection, Slot};
+use super::several::least_of;
 use super::single_cause;
 use super::unnamed;
 use crate::claim::{Claim, Stated};
@@ -91,6 +92,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let principal = principal_places(&found.named, after);
     let gained = best.fit.log_likelihood - base.fit.log_likelihood + local_gain;
     let (mut findings, rest) = causes(&found.named, gained, problem, after, options);
+    let rest = rest.or_else(|| bend_of_law(best, gained, problem, found.level.as_deref()));
     let family = smallest_p(&selection.first, before);
     if findings.is_empty() && family < options.alpha {
         findings.extend(unnamed::of_all_together(before, family, problem, options));
@@ -210,6 +212,24 @@ fn causes(
     }
     out.extend(missing(problem, options));
     (out, rest)
+}
+
+/// What a law that bends leaves of the misfit beside its own formula: the hypothesis holds it as a discrepancy. `gained` is the gain of
+/// log-likelihood of everything that was named.
+fn bend_of_law(
+    best: &FittedHypothesis,
+    gained: f64,
+    problem: &Problem,
+    level: Option<&[f64]>,
+) -> Option<Rest> {
+    let mut straight = best.clone();
+    straight.hypothesis.noise.discrepancy.take()?;
+    let straight = problem.refitted(&straight);
+    let departures = problem.departures(&straight, level.or(problem.level.as_deref()));
+    let clearest = departures.iter().min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))?;
+    let share = (best.fit.log_likelihood - straight.fit.log_likelihood) / gained.max(1e-300);
+    let places = vec![PlaceRecord::of(&clearest.place)];
+    Some(Rest { p_value: departures::family(&departures), share: share.clamp(0.0, 1.0), places })
 }
 
 fn verdict(causes: &[Finding]) -> MismatchVerdict {
@@ -333,8 +353,8 @@ fn by_law(
 }
 
 fn smallest_p(first: &[FittedCandidate], before: &[Departure]) -> f64 {
-    let named = first.iter().map(|c| c.p_value).fold(1.0, f64::min) * first.len().max(1) as f64;
-    (2.0 * named.min(departures::family(before))).min(1.0)
+    let named = first.iter().map(|c| c.p_value).fold(1.0, f64::min);
+    least_of(named, select::family(first)).min(least_of(departures::family(before), 2.0))
 }
 
 /// Figures of a fit; `local_gain` is what effects on single samples gained beside it.

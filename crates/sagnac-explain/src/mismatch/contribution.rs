@@ -48,7 +48,9 @@ fn of(slot: Slot, best: &FittedHypothesis, spectra: &SpectralDataSet) -> Option<
             let inside = &best.hypothesis.courses[i];
             let parts = inside.course()?.regressors(&inside.nonlinear_parameters, &spectra.full.drivers);
             let samples = spectra.full.drivers.samples;
-            Some(summed(&parts.columns, &inside.coefficients, parts.offset.as_ref(), samples))
+            let law = summed(&parts.columns, &inside.coefficients, parts.offset.as_ref(), samples);
+            // A state before the record is a part of what the law does in it.
+            Some(summed(&parts.nuisance, &inside.states, Some(&law), samples))
         }
         Slot::Spectrum(i) => course_of_process(i, best, spectra),
     }
@@ -200,6 +202,7 @@ mod tests {
                 unconstrained: [false, false, true],
                 quantization_arcsec: 0.0,
                 spectra: vec![SpectralTerm { effect, fitted: vec![k], stated: false }],
+                discrepancy: None,
             };
             let added = added_rms(&noise, 0, &[k], &spectral, &dct2(&series));
             let mean = walk.iter().sum::<f64>() / n as f64;

@@ -3,7 +3,6 @@
 use super::assemble::{Evidence, Recorded, assemble};
 use super::candidates;
 use super::coarse;
-use super::departures::{self, Departure};
 use super::filtered;
 use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use super::heldout::Halves;
@@ -46,7 +45,7 @@ pub fn explain(
     // The grid and what is left of the claim are all that is needed from here on, and a long record is large.
     drop(regular);
     let mut base = with_stated_jumps(&mut problem, options.alpha);
-    let mut before = tests(&problem, &base, problem.level.as_deref());
+    let mut before = problem.departures(&base, problem.level.as_deref());
     before.extend(invalid);
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
     // What the table does at low frequencies looks like a filter of the noise while no course says so.
@@ -88,7 +87,7 @@ pub fn explain(
     take_jumps(&mut problem, &start, &mut selection, &mut found, options);
     progress(Progress { doing: "explain.progress.judging", done: 2, total: 3 });
     let level = found.level.clone().or_else(|| problem.level.clone());
-    let after = tests(&problem, &selection.best, level.as_deref());
+    let after = problem.departures(&selection.best, level.as_deref());
     Ok(assemble(Evidence {
         problem: &problem,
         claim,
@@ -112,11 +111,6 @@ pub(super) fn on_grid(series: Series, claim: &Claim, options: &Options) -> Resul
         .map(|(c, v)| (*c, v.as_slice()))
         .collect();
     Regular::new(&series.time_s, &series.rate_deg_h, &columns, claim.sample_rate_hz).map_err(note)
-}
-
-/// Departures from a hypothesis.
-fn tests(problem: &Problem, tried: &FittedHypothesis, level: Option<&[f64]>) -> Vec<Departure> {
-    departures::all(&problem.spectra, tried, level, &problem.usable, problem.claim.uncertainty.skewness)
 }
 
 /// The problem in averages where its output is rounded too coarsely for single samples. Rounding that the claim does
@@ -219,7 +213,7 @@ fn with_table_courses(
     let mut out = base.clone();
     for _ in 0..MAX_COURSES {
         let candidates = candidates::among(&out, spectra, applies);
-        let family = EFFECTS.len() as f64;
+        let family = 2.0 * EFFECTS.len() as f64;
         match candidates.into_iter().next() {
             Some(leader) if select::passes(&leader, family, options.alpha) => out = leader.tried,
             _ => break,

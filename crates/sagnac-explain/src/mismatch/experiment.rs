@@ -192,6 +192,7 @@ mod tests {
             unconstrained: [false; 3],
             quantization_arcsec: 0.0,
             spectra: vec![],
+            discrepancy: None,
         }
     }
 
@@ -266,6 +267,7 @@ mod tests {
             effect: find(kind).unwrap(),
             nonlinear_parameters,
             coefficients,
+            states: vec![],
         };
         let warm = course("warmup_exponential", vec![1500.0], vec![0.05]);
         let ramp = course("rate_ramp", vec![], vec![-0.05]);

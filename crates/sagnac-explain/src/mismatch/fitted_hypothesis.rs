@@ -1,6 +1,7 @@
 //! Hypotheses that were fitted, and the score of an addition to one.
 
 use super::hypothesis::{Fit, Hypothesis, PartModes, part_modes, part_modes_of_averages, residual};
+use super::several::least_of;
 use super::spectral_data::SpectralData;
 use super::terms::MeanTerm;
 use crate::effect::{Effect, Resolution};
@@ -124,7 +125,7 @@ pub(super) fn score_candidate(
     let gain = tried.fit.log_likelihood - before.fit.log_likelihood;
     let parameters = tried.parameters - before.parameters;
     let chance = chi_square_tail(2.0 * gain.max(0.0), effort.numbers as f64);
-    let p_value = (effort.trials.max(1.0) * chance).min(1.0);
+    let p_value = least_of(chance, effort.trials);
     let delta_bic = before.bic(rows) - tried.bic(rows);
     Candidate { effect, tried, gain, parameters, delta_bic, p_value }
 }
@@ -171,6 +172,7 @@ mod tests {
             unconstrained: [false; 3],
             quantization_arcsec: 0.0,
             spectra: vec![],
+            discrepancy: None,
         };
         let mut hypothesis = Hypothesis { noise, courses: vec![] };
         let mut fit = fit(&mut hypothesis, &spectral);
@@ -206,8 +208,9 @@ mod tests {
         assert_eq!((one.gain, one.parameters), (20.0, 2));
         // 2 · 20 − 2 ln 1000.
         assert!((one.delta_bic - (40.0 - 2.0 * 1000f64.ln())).abs() < 1e-9);
-        // χ² of 40 with two degrees of freedom is e⁻²⁰, for each of 50 looks.
-        assert!((one.p_value / (50.0 * (-20f64).exp()) - 1.0).abs() < 1e-9, "{}", one.p_value);
+        // χ² of 40 with two degrees of freedom is e⁻²⁰, for each of 50 looks: 1 − (1 − e⁻²⁰)⁵⁰.
+        let of_fifty = -(50.0 * (-(-20f64).exp()).ln_1p()).exp_m1();
+        assert!((one.p_value / of_fifty - 1.0).abs() < 1e-9, "{}", one.p_value);
         // Odds of e⁻³ cost 6 of the rank.
         assert!((one.tried.rank(1000) - one.tried.bic(1000) - 6.0).abs() < 1e-9);
         assert_eq!((own_odds(find("line").unwrap()), own_odds(find("drifting_line").unwrap())), (0.0, -3.0));

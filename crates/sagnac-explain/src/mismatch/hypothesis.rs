@@ -4,7 +4,7 @@
 use super::noise_fit::{self, Noise, NoiseFit};
 use super::spectral_data::{NuisanceColumn, SpectralData};
 use super::terms::MeanTerm;
-use crate::effect::{MeanModel, Regressors, Resolution, averages};
+use crate::effect::{MeanModel, Regressors, Resolution, StatePrior, averages};
 use crate::numeric::least_squares::{Normal, subtract};
 use crate::numeric::parallel;
 use nalgebra::DMatrix;
@@ -28,6 +28,8 @@ pub struct PartModes {
     pub columns: Vec<Vec<f64>>,
     /// Modes of the columns beside.
     pub nuisance: Vec<Vec<f64>>,
+    /// Priors of those that are states before the record.
+    pub states: Vec<StatePrior>,
 }
 
 impl PartModes {
@@ -55,6 +57,7 @@ impl PartModes {
             offset: parts.offset.as_ref().map(modes),
             columns: parallel::map_items(&parts.columns, modes),
             nuisance: parallel::map_items(&parts.nuisance, modes),
+            states: parts.states,
         }
     }
 }
@@ -123,6 +126,24 @@ pub fn less_fixed<'a, 'b>(
     data
 }
 
+/// Rounds in which the states before the record follow the coefficients of their laws.
+const STATE_ROUNDS: usize = 2;
+
+/// Sets the prior deviations of states before the record to what their laws with these coefficients make of the whole range of their
+/// columns. The columns of the parts begin at `at`.
+fn set_states(columns: &mut [(&[f64], f64)], mut at: usize, parts: &[PartModes], coefficients: &[f64]) {
+    for part in parts {
+        for (state, i) in part.states.iter().zip(at + part.columns.len()..) {
+            let coefficient = state.column.map_or(Some(1.0), |c| coefficients.get(at + c).copied());
+            let deviation = coefficient.unwrap_or(0.0).abs() * state.deviation;
+            if let Some((_, prior)) = columns.get_mut(i) {
+                *prior = deviation.max(f64::MIN_POSITIVE.sqrt());
+            }
+        }
+        at += part.columns.len() + part.nuisance.len();
+    }
+}
+
 /// Generalised least squares of everything in `regressors` (one entry a course) and the kept nuisances, and the modes of what
 /// it leaves.
 fn least_squares<'a>(
@@ -133,13 +154,17 @@ fn least_squares<'a>(
 ) -> (LeastSquares, Cow<'a, [f64]>) {
     let mut data = less_fixed(spectral, parts);
     let nuisances = kept(spectral, &hypothesis.courses);
-    let columns = columns(&nuisances, parts);
-    let (coefficients, covariance, _) = Normal::new(&columns, &data, powers).solve();
+    let mut columns = columns(&nuisances, parts);
+    let (mut coefficients, mut covariance, _) = Normal::new(&columns, &data, powers).solve();
+    // A state before the record is as large as the law makes it, which the first solution says.
+    for _ in 0..if parts.iter().any(|p| !p.states.is_empty()) { STATE_ROUNDS } else { 0 } {
+        set_states(&mut columns, nuisances.len(), parts, &coefficients);
+        (coefficients, covariance, _) = Normal::new(&columns, &data, powers).solve();
+    }
     for ((column, _), c) in columns.iter().zip(&coefficients) {
         subtract(data.to_mut(), column, *c);
     }
-    let priors = nuisances.iter().zip(&coefficients);
-    let prior = -0.5 * priors.map(|(n, c)| (c / n.deviation).powi(2)).sum::<f64>();
+    let prior = -0.5 * columns.iter().zip(&coefficients).map(|((_, d), c)| (c / d).powi(2)).sum::<f64>();
     (LeastSquares { coefficients, covariance, prior }, data)
 }
 
@@ -187,6 +212,7 @@ pub fn part_modes_of_averages(
                     offset: parts.offset.map(averaged),
                     columns: all(parts.columns),
                     nuisance: all(parts.nuisance),
+                    states: parts.states,
                 }
             }
         };
@@ -216,8 +242,11 @@ pub fn fit_with(hypothesis: &mut Hypothesis, spectral: &SpectralData, parts: &[P
     }
     let mut at = kept(spectral, &hypothesis.courses).len();
     for (course, part) in hypothesis.courses.iter_mut().zip(parts) {
-        course.coefficients =
-            fit.mean.coefficients.get(at..at + part.columns.len()).unwrap_or_default().to_vec();
+        let of = |from: usize, count: usize| {
+            fit.mean.coefficients.get(from..from + count).unwrap_or_default().to_vec()
+        };
+        course.coefficients = of(at, part.columns.len());
+        course.states = of(at + part.columns.len(), part.states.len());
         at += part.columns.len() + part.nuisance.len();
     }
     fit
@@ -257,11 +286,13 @@ mod tests {
             unconstrained: [false; 3],
             quantization_arcsec: 0.0,
             spectra: vec![],
+            discrepancy: None,
         };
         let ramp = MeanTerm {
             effect: find("rate_ramp").unwrap(),
             nonlinear_parameters: vec![],
             coefficients: vec![],
+            states: vec![],
         };
         let mut hypothesis = Hypothesis { noise, courses: vec![ramp] };
         let fitted = fit(&mut hypothesis, &spectral);

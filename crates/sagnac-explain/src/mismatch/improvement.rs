@@ -74,6 +74,7 @@ mod tests {
                 unconstrained: [false; 3],
                 quantization_arcsec: 0.0,
                 spectra: vec![],
+                discrepancy: None,
             };
             let fitted = fit(&mut Hypothesis { noise, courses: vec![] }, &spectral);
             sum += misfit(&spectral, &fitted);

@@ -7,7 +7,7 @@
 //! |---|---|
 //! | rows on the grid of the claim, rounding, averages | `regular`, `quantization_grid`, `coarse` |
 //! | residual in cosine modes, missing samples imputed | `spectral_data`, `impute` |
-//! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `fitted_hypothesis`, `problem` |
+//! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `fitted_hypothesis`, `problem`, `discrepancy` |
 //! | tests that name no physics | `departures` |
 //! | every effect tried as an addition | `nonlinear_search`, `candidates`, `filtered` |
 //! | prediction of blocks that are held out | `heldout`, `prediction` |
@@ -29,6 +29,7 @@ pub mod coarse;
 mod columns;
 mod contribution;
 pub mod departures;
+pub mod discrepancy;
 pub mod draw;
 pub mod engine;
 pub mod estimates;
@@ -59,6 +60,7 @@ pub mod quantization_grid;
 pub mod regular;
 pub mod samples;
 pub mod select;
+mod several;
 mod simulation_check;
 mod simulation_claim;
 mod single_cause;

@@ -13,6 +13,7 @@
 //! residual from which a mean was fitted, with no more than their own bins in common. A common optimiser would need both
 //! bounded steps of variances and damped steps of logarithms, and be neither.
 
+use super::discrepancy::Discrepancy;
 use super::spectral_data::SpectralData;
 use super::terms::SpectralTerm;
 use crate::claim::Claim;
@@ -20,6 +21,7 @@ use crate::effect::{ModeBin, Model, SpectralContext, SpectrumAct};
 use crate::noise::data::NoiseType;
 use crate::numeric::range::Bounds;
 use nalgebra::{DMatrix, DVector};
+use std::sync::Arc;
 
 /// Index of a base coefficient in arrays.
 pub fn base_index(term: NoiseType) -> Option<usize> {
@@ -44,6 +46,8 @@ pub struct Noise {
     pub quantization_arcsec: f64,
     /// Spectral effects, stated and found.
     pub spectra: Vec<SpectralTerm>,
+    /// Error of the largest law of the mean, where the record shows one.
+    pub discrepancy: Option<Arc<Discrepancy>>,
 }
 
 /// Which parameter.
@@ -88,6 +92,7 @@ impl Noise {
             unconstrained: [false; 3],
             quantization_arcsec: claim.quantization_lsb_arcsec / 12f64.sqrt(),
             spectra: vec![],
+            discrepancy: None,
         };
         for stated in spectra {
             let act = stated.spectrum().map(|s| s.act());
@@ -149,6 +154,9 @@ impl Noise {
         for (part, spectrum) in parts().filter(|(_, s)| s.act() == SpectrumAct::Filters) {
             let factors = spectrum.densities(&part.fitted, &spectral.bins);
             out.iter_mut().zip(factors).for_each(|(s, f)| *s *= f);
+        }
+        if let Some(discrepancy) = &self.discrepancy {
+            discrepancy.add_to(&mut out, spectral);
         }
         out.iter_mut().for_each(|s| *s = s.max(f64::MIN_POSITIVE * 1e60));
         out
@@ -437,6 +445,7 @@ mod tests {
             unconstrained: [false; 3],
             quantization_arcsec: 0.0,
             spectra: vec![],
+            discrepancy: None,
         }
     }
 

@@ -27,8 +27,9 @@ fn follows_column(effect: &dyn Effect) -> bool {
     recorded && matches!(effect.model(), Model::Mean(_))
 }
 
-/// Raises the odds of courses of recorded columns over a leading process, and puts the candidates in order again. `passes` says
-/// which additions may be made.
+/// Lowers the odds of processes by what a course of a recorded column predicts more than the leading one, and puts the candidates in
+/// order again. The courses keep their order among one another: which of them is the law, their likelihoods say. `passes` says which
+/// additions may be made.
 pub(super) fn weigh(
     found: &mut [Candidate],
     halves: &Halves,
@@ -43,12 +44,14 @@ pub(super) fn weigh(
         return;
     }
     let of_process = halves.judge(&leader.tried).log_likelihood;
-    for i in courses {
-        let more = halves.judge(&found[i].tried).log_likelihood - of_process;
-        if more >= MIN_PREDICTION_GAIN
-            && let Some((_, odds)) = found[i].tried.odds.last_mut()
-        {
-            *odds += more;
+    let predicted = courses.into_iter().map(|i| halves.judge(&found[i].tried).log_likelihood - of_process);
+    let more = predicted.fold(0.0, f64::max);
+    if more < MIN_PREDICTION_GAIN {
+        return;
+    }
+    for process in found.iter_mut().filter(|c| is_process(c.effect)) {
+        if let Some((_, odds)) = process.tried.odds.last_mut() {
+            *odds -= more;
         }
     }
     found.sort_ascending_by(|a| a.tried.rank(rows));

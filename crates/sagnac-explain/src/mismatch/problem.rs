@@ -1,5 +1,6 @@
 //! Recording and claim brought together: residual, spectral data, and the claim's own fit.
 
+use super::departures::{self, Departure};
 use super::finding::UnusableColumn;
 use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use super::hypothesis::{Hypothesis, fit};
@@ -124,6 +125,16 @@ impl Problem {
         let (detector, stated) = self.claim.effects.iter().find_map(|e| Some((of(e)?, e)))?;
         let known = stated.effect.claimed_course(&stated.values, &self.drivers).is_some();
         (!known).then_some((detector, &stated.values))
+    }
+
+    /// Departures of the recording from a hypothesis; `level` is that of the noise in each sample, where it changes.
+    pub fn departures(&self, tried: &FittedHypothesis, level: Option<&[f64]>) -> Vec<Departure> {
+        departures::all(&self.spectra, tried, level, &self.usable, self.claim.uncertainty.skewness)
+    }
+
+    /// Probability of as large a departure from a hypothesis by any test of its residual.
+    pub fn departure_probability(&self, tried: &FittedHypothesis) -> f64 {
+        departures::family(&self.departures(tried, self.level.as_deref()))
     }
 
     /// A hypothesis fitted to what the problem has become.

@@ -1,23 +1,35 @@
-//! The fewest effects that make the recording an ordinary draw: a beam of hypotheses grown by ΔBIC behind gates, then
-//! pruned, then asked what else would have served as well.
+//! The fewest and plainest effects that make the recording an ordinary draw: a beam of hypotheses, each grown by what is improbable
+//! without it and ordered by BIC, then pruned, then asked what else would have served as well.
+//!
+//! The ladder has two steps. Laws of recorded columns, of the table, of events and of the noise come first. A free form (something
+//! that was not recorded, a comb, a curve, a power law) is taken only where what they leave is no ordinary noise, or where it explains or
+//! predicts clearly more: see [`Search::plainest`].
 
 use super::candidates;
+use super::discrepancy;
 use super::fitted_hypothesis::{Candidate, FittedHypothesis, SpectralDataSet};
 use super::heldout::Halves;
 use super::hypothesis::{Hypothesis, fit};
 use super::noise_fit::{Noise, base_index};
 use super::nonlinear_search::LocalSearch;
 use super::options::Options;
-use super::posterior::{Probable, name_of, probabilities};
+use super::posterior::{Probable, ScoredName, name_of, probabilities};
 use super::prediction;
 use super::problem::Problem;
+use super::several::least_of;
 use super::terms::MeanTerm;
 use super::terms::SpectralTerm;
 use crate::effect::{Effect, Model, SpectrumAct};
 use crate::numeric::order::SortByNumber;
+use std::cell::RefCell;
+use std::rc::Rc;
 
-/// ΔBIC that an effect must bring, and within which two are equivalent.
+/// ΔBIC within which two hypotheses are equivalent.
 pub const MIN_DELTA_BIC: f64 = 6.0;
+/// Share of what is explained that a free form must explain beyond the plain laws.
+const MIN_FREE_FORM_SHARE: f64 = 0.05;
+/// What a free form must predict of the blocks held out beyond the plain laws, nats.
+const MIN_FREE_FORM_PREDICTION: f64 = 4.0;
 /// Equivalents that are named at most.
 pub const MOST_EQUIVALENTS: usize = 3;
 /// Times that one effect of the chosen is exchanged for another at most: what was best alone need not be the best beside
@@ -70,9 +82,10 @@ pub struct Selection {
     pub first: Vec<Candidate>,
 }
 
-/// True for a candidate that may be added.
+/// True for a candidate that may be added: without it, as large a gain anywhere in the family has a probability below α. This is the
+/// rule that decides; BIC only orders what passes.
 pub fn passes(candidate: &Candidate, family: f64, alpha: f64) -> bool {
-    candidate.delta_bic >= MIN_DELTA_BIC && candidate.p_value * family < alpha
+    least_of(candidate.p_value, family) < alpha
 }
 
 /// The slots that a hypothesis has beyond its claim.
@@ -92,6 +105,8 @@ fn without(tried: &FittedHypothesis, slot: Slot, spectra: &SpectralDataSet) -> F
     let removed = match slot {
         Slot::Mean(i) => {
             let course = hypothesis.courses.remove(i);
+            // The error of a law goes with it.
+            hypothesis.noise.discrepancy.take_if(|d| d.kind == course.effect.kind());
             course_parameters(&course, spectra)
         }
         Slot::Spectrum(i) => {
@@ -165,74 +180,153 @@ fn set(tried: &FittedHypothesis) -> Vec<&'static str> {
     kinds
 }
 
-/// Data and options of a search.
+/// True for a hypothesis with a free form.
+fn has_free_form(tried: &FittedHypothesis) -> bool {
+    slots(&tried.hypothesis).iter().any(|(_, e)| e.is_free_form())
+}
+
+/// Every addition to one hypothesis.
+struct Tried {
+    set: Vec<&'static str>,
+    log_likelihood: f64,
+    candidates: Rc<Vec<Candidate>>,
+}
+
+/// Data and options of a search, and what it tried.
 struct Search<'a> {
+    problem: &'a Problem,
     spectra: &'a SpectralDataSet,
     halves: Halves,
     options: &'a Options,
+    tried: RefCell<Vec<Tried>>,
+    /// Effects that were looked for at first, those in single samples included.
+    family: f64,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    fn new(problem: &'a Problem, options: &'a Options) -> Search<'a> {
+        let (spectra, halves) = (&problem.spectra, Halves::new(problem));
+        Search { problem, spectra, halves, options, tried: RefCell::new(vec![]), family: 1.0 }
+    }
+
     /// Every addition to a hypothesis, the best first.
-    fn candidates(&self, before: &FittedHypothesis) -> Vec<Candidate> {
+    fn candidates(&self, before: &FittedHypothesis) -> Rc<Vec<Candidate>> {
+        let (set, log_likelihood) = (set(before), before.fit.log_likelihood);
+        let same = |t: &&Tried| t.set == set && t.log_likelihood.total_cmp(&log_likelihood).is_eq();
+        if let Some(known) = self.tried.borrow().iter().find(same) {
+            return known.candidates.clone();
+        }
         let mut found = candidates::all(before, self.spectra, self.options);
         let (rows, family) = (self.spectra.rows, family(&found));
         prediction::weigh(&mut found, &self.halves, rows, |c| passes(c, family, self.options.alpha));
-        found
+        let candidates = Rc::new(found);
+        self.tried.borrow_mut().push(Tried { set, log_likelihood, candidates: candidates.clone() });
+        candidates
+    }
+
+    fn passes(&self, candidate: &Candidate) -> bool {
+        passes(candidate, self.family, self.options.alpha)
+    }
+
+    /// Grows a hypothesis by the wanted effects, and drops what became needless.
+    fn grown(&self, base: &FittedHypothesis, wanted: impl Fn(&dyn Effect) -> bool) -> FittedHypothesis {
+        let (rows, most) = (self.spectra.rows, self.options.max_effects);
+        let mut best = base.clone();
+        let mut beam = vec![base.clone()];
+        for depth in 0..most {
+            let mut next: Vec<FittedHypothesis> = vec![];
+            for before in &beam {
+                let candidates = self.candidates(before);
+                let passing: Vec<&Candidate> =
+                    candidates.iter().filter(|c| self.passes(c) && wanted(c.effect)).collect();
+                for candidate in beam_survivors(&passing) {
+                    let set = set(&candidate.tried);
+                    match next.iter_mut().find(|t| self::set(t) == set) {
+                        // The same effects, found in another order.
+                        Some(same) if candidate.tried.rank(rows) < same.rank(rows) => {
+                            *same = candidate.tried.clone();
+                        }
+                        Some(_) => {}
+                        None => next.push(candidate.tried.clone()),
+                    }
+                }
+            }
+            next.sort_ascending_by(|a| a.rank(rows));
+            let only_jump =
+                |t: &&FittedHypothesis| matches!(slots(&t.hypothesis)[..], [(_, e)] if is_jump(e));
+            let jump = next.iter().skip(BEAM_WIDTH).find(only_jump).cloned();
+            next.truncate(BEAM_WIDTH);
+            next.extend(jump);
+            next = next.into_iter().map(|t| discrepancy::learned(t, self.spectra)).collect();
+            next.sort_ascending_by(|a| a.rank(rows));
+            let Some(leader) = next.first() else { break };
+            // The first is there where it is improbable that nothing is; each further one must also pay.
+            if depth == 0 || leader.rank(rows) < best.rank(rows) - MIN_DELTA_BIC {
+                best = leader.clone();
+            } else {
+                break;
+            }
+            beam = next;
+        }
+        pruned(best, self.spectra, rows)
+    }
+
+    /// The plain hypothesis, unless a free one explains or predicts clearly more, or leaves ordinary noise where the plain one does not.
+    fn plainest(
+        &self,
+        plain: FittedHypothesis,
+        free: FittedHypothesis,
+        base: &FittedHypothesis,
+    ) -> FittedHypothesis {
+        let rows = self.spectra.rows;
+        let explained = |t: &FittedHypothesis| 0.5 * (base.rank(rows) - t.rank(rows));
+        let more = explained(&free) - explained(&plain);
+        if slots(&plain.hypothesis).is_empty() || more >= MIN_FREE_FORM_SHARE * explained(&free) {
+            return free;
+        }
+        let predicted = |t: &FittedHypothesis| self.halves.judge(t).log_likelihood;
+        if more > 0.0 && predicted(&free) - predicted(&plain) >= MIN_FREE_FORM_PREDICTION {
+            return free;
+        }
+        let ordinary = |t: &FittedHypothesis| self.problem.departure_probability(t) >= self.options.alpha;
+        if more > 0.0 && !ordinary(&plain) && ordinary(&free) { free } else { plain }
+    }
+
+    /// A hypothesis of fewer effects that was fitted on the way and has at least the likelihood of this one; else this one.
+    fn smallest(&self, best: FittedHypothesis) -> FittedHypothesis {
+        let effects = slots(&best.hypothesis).len();
+        let tried = self.tried.borrow();
+        let passing = tried.iter().flat_map(|t| t.candidates.iter()).filter(|c| self.passes(c));
+        let smaller = passing.map(|c| &c.tried).filter(|t| {
+            let fewer = slots(&t.hypothesis).len() < effects && (has_free_form(&best) || !has_free_form(t));
+            fewer && t.fit.log_likelihood >= best.fit.log_likelihood
+        });
+        let rows = self.spectra.rows;
+        let least = smaller.min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows))).cloned();
+        least.unwrap_or(best)
     }
 }
 
 /// Grows a hypothesis on `base`, which is the claim with what was found in single samples before.
 pub fn select(base: &FittedHypothesis, problem: &Problem, options: &Options) -> Selection {
-    let (alpha, most) = (options.alpha, options.max_effects);
-    let spectra = &problem.spectra;
-    let search = Search { spectra, halves: Halves::new(problem), options };
-    let rows = spectra.rows;
+    let mut search = Search::new(problem, options);
+    let rows = search.spectra.rows;
     let first = search.candidates(base);
-    let family = family(&first);
-    let mut best = base.clone();
-    let mut beam: Vec<(FittedHypothesis, Vec<Candidate>)> = vec![(base.clone(), first.clone())];
-    for depth in 0..most {
-        let mut next: Vec<FittedHypothesis> = vec![];
-        for (_, candidates) in &beam {
-            let passing: Vec<&Candidate> = candidates.iter().filter(|c| passes(c, family, alpha)).collect();
-            for candidate in beam_survivors(&passing) {
-                if !next.iter().any(|t| set(t) == set(&candidate.tried)) {
-                    next.push(candidate.tried.clone());
-                }
-            }
-        }
-        next.sort_ascending_by(|a| a.rank(rows));
-        let only_jump = |t: &&FittedHypothesis| matches!(slots(&t.hypothesis)[..], [(_, e)] if is_jump(e));
-        let jump = next.iter().skip(BEAM_WIDTH).find(only_jump).cloned();
-        next.truncate(BEAM_WIDTH);
-        next.extend(jump);
-        let Some(leader) = next.first() else { break };
-        if leader.bic(rows) < best.bic(rows) - MIN_DELTA_BIC {
-            best = leader.clone();
-        } else if depth > 0 {
-            // One more effect did not pay on any path.
-            break;
-        }
-        if depth + 1 == most {
-            break;
-        }
-        beam = next
-            .into_iter()
-            .map(|t| {
-                let candidates = search.candidates(&t);
-                (t, candidates)
-            })
-            .collect();
+    search.family = family(&first);
+    let mut best = search.grown(base, |_| true);
+    if has_free_form(&best) {
+        let plain = search.grown(base, |e| !e.is_free_form());
+        best = search.plainest(plain, best, base);
     }
-    best = pruned(best, spectra, rows);
+    best = search.smallest(best);
     let mut chosen = self::chosen(&best, base, &first, &search);
     for _ in 0..MAX_EXCHANGES {
         let better = chosen.iter().filter_map(|c| c.better.as_ref());
         let Some(better) = better.min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows))) else { break };
-        best = pruned(better.clone(), spectra, rows);
+        best = search.smallest(pruned(better.clone(), search.spectra, rows));
         chosen = self::chosen(&best, base, &first, &search);
     }
+    let first = first.to_vec();
     Selection { best, chosen, first }
 }
 
@@ -261,9 +355,10 @@ fn is_jump(effect: &dyn Effect) -> bool {
     effect.reversed_pair().is_some()
 }
 
-/// Number of effects that were tried, those in single samples included.
+/// Number of tests that were made: of the effects that were tried, those in single samples included, and as many for the tests of the
+/// residual that name no effect.
 pub fn family(first: &[Candidate]) -> f64 {
-    first.len().max(1) as f64 + 8.0
+    2.0 * (first.len().max(1) as f64 + 8.0)
 }
 
 /// Drops effects that became needless, by what hypotheses are ordered by: of a pair of which each explains the record alone, the
@@ -274,8 +369,10 @@ fn pruned(mut best: FittedHypothesis, spectra: &SpectralDataSet, rows: usize) ->
             .into_iter()
             .map(|(slot, _)| without(&best, slot, spectra))
             .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)));
+        // One effect alone is there because it is improbable that nothing is.
+        let several = slots(&best.hypothesis).len() > 1;
         match weakest {
-            Some(less) if less.rank(rows) < best.rank(rows) + MIN_DELTA_BIC => best = less,
+            Some(less) if several && less.rank(rows) < best.rank(rows) + MIN_DELTA_BIC => best = less,
             _ => return best,
         }
     }
@@ -306,6 +403,13 @@ fn named<'a>(candidate: &'a Candidate, rivals: &'a [Candidate]) -> Option<&'a Ca
     law.or_else(|| candidate.effect.in_format().then_some(candidate))
 }
 
+/// True for a name that is probable enough to be said beside the chosen one.
+fn is_rival(kind: &str, names: &[Probable]) -> bool {
+    /// Probability of a name below which the record tells it from the chosen one.
+    const MIN_RIVAL_PROBABILITY: f64 = 0.05;
+    names.iter().any(|n| n.kind == kind && n.probability >= MIN_RIVAL_PROBABILITY)
+}
+
 /// Probabilities of the names of a chosen effect: its own and those of its rivals in its place, or of the laws of a response.
 fn names(
     effect: &'static dyn Effect,
@@ -313,16 +417,30 @@ fn names(
     rivals: &[Candidate],
     laws: &[&Candidate],
     rank_without: f64,
-    rows: usize,
+    spectra: &SpectralDataSet,
 ) -> Vec<Probable> {
     if !laws.is_empty() {
-        return probabilities(laws.iter().map(|c| (c.effect.reported_kind(), law_score(c))));
+        return probabilities(laws.iter().map(|c| (c.effect.reported_kind(), law_score(c)).into()));
     }
+    let rows = spectra.rows;
     let own = 0.5 * (rank_without - best.rank(rows));
     let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind());
-    let others =
-        others.map(|c| name_of(c, self::laws(c.effect, rivals).first().copied(), rows, rank_without));
-    probabilities([(effect.reported_kind(), own)].into_iter().chain(others))
+    // A free form must explain more than a plain law by a share, to be the better name.
+    let bends = |c: &Candidate| {
+        if c.effect.is_free_form() && !effect.is_free_form() { MIN_FREE_FORM_SHARE } else { 0.0 }
+    };
+    let others = others.map(|c| {
+        let (kind, score) = name_of(c, self::laws(c.effect, rivals).first().copied(), rows, rank_without);
+        ScoredName { kind, score: score - bends(c) * score.abs(), within: plainer_name(c, spectra) }
+    });
+    probabilities([(effect.reported_kind(), own).into()].into_iter().chain(others))
+}
+
+/// The kind with the same course as a candidate that is the plainer name.
+fn plainer_name(candidate: &Candidate, spectra: &SpectralDataSet) -> Option<&'static str> {
+    let Model::Mean(course) = candidate.effect.model() else { return None };
+    let fitted = candidate.tried.hypothesis.courses.last()?;
+    course.plainer_name(&fitted.nonlinear_parameters, &spectra.of(course.resolution()).drivers)
 }
 
 fn chosen(
@@ -331,24 +449,24 @@ fn chosen(
     first: &[Candidate],
     search: &Search<'_>,
 ) -> Vec<Chosen> {
-    let (spectra, options) = (search.spectra, search.options);
-    let family = family(first);
+    let (spectra, family) = (search.spectra, search.family);
     let rows = spectra.rows;
     let all_slots = slots(&best.hypothesis);
     let single = all_slots.len() == 1;
+    let free = has_free_form(best);
     let mut out: Vec<Chosen> = all_slots
         .into_iter()
         .map(|(slot, effect)| {
             let without = if single { base.clone() } else { without(best, slot, spectra) };
-            let rivals = if single { first.to_vec() } else { search.candidates(&without) };
+            let rivals = if single { first.to_vec() } else { search.candidates(&without).to_vec() };
             let own = rivals.iter().find(|c| c.effect.kind() == effect.kind());
-            let p_value = own.map_or(1.0, |c| (c.p_value * family).min(1.0));
+            let p_value = own.map_or(1.0, |c| least_of(c.p_value, family));
             let modes = modes_of_process(slot, best, spectra);
             let near = |c: &Candidate| {
                 bic_of_rival(c, spectra) - bic_excess(c, best, modes, rows) < best.bic(rows) + MIN_DELTA_BIC
             };
             let laws = laws(effect, &rivals);
-            let equivalents = if laws.is_empty() {
+            let mut equivalents: Vec<Candidate> = if laws.is_empty() {
                 let others = rivals.iter().filter(|c| near(c)).filter_map(|c| named(c, &rivals));
                 let mut kinds = vec![effect.kind()];
                 let new = |c: &&Candidate| {
@@ -360,12 +478,14 @@ fn chosen(
             } else {
                 laws.iter().skip(1).take(MOST_EQUIVALENTS).map(|c| (*c).clone()).collect()
             };
-            let names = names(effect, best, &rivals, &laws, without.rank(rows), rows);
+            let names = names(effect, best, &rivals, &laws, without.rank(rows), spectra);
+            equivalents.retain(|c| is_rival(c.effect.reported_kind(), &names));
             let law = laws.first().map(|c| (*c).clone());
             let better = rivals
                 .iter()
-                .filter(|c| !single && passes(c, family, options.alpha))
+                .filter(|c| !single && search.passes(c))
                 .map(|c| &c.tried)
+                .filter(|t| free || !has_free_form(t))
                 .filter(|t| t.rank(rows) < best.rank(rows) - MIN_DELTA_BIC)
                 .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)))
                 .cloned();

@@ -11,6 +11,8 @@ pub struct MeanTerm {
     pub nonlinear_parameters: Vec<f64>,
     /// Coefficients of its free columns, from the last fit.
     pub coefficients: Vec<f64>,
+    /// Coefficients of its states before the record, from the last fit.
+    pub states: Vec<f64>,
 }
 
 impl MeanTerm {

@@ -138,7 +138,12 @@ fn left_by(rival: &Shown, modes: &[f64], powers: &[f64], trial: &Trial) -> (Vec<
         let context = SearchContext { score: &score, modes, powers };
         let starts = course.starts(&spectral.drivers, &context).points;
         let from = |start: &Vec<f64>| {
-            let rival = MeanTerm { effect, nonlinear_parameters: start.clone(), coefficients: vec![] };
+            let rival = MeanTerm {
+                effect,
+                nonlinear_parameters: start.clone(),
+                coefficients: vec![],
+                states: vec![],
+            };
             (nearest(modes, &rival, course, spectral, powers), rival)
         };
         let best = starts.iter().take(STARTS).map(from).min_by(|a, b| a.0.squared.total_cmp(&b.0.squared));
@@ -201,7 +206,7 @@ impl Decision {
     }
 }
 
-/// Whether a truth is found at all: its gain over the claim passes the gates of an explanation. A truth without an
+/// Whether a truth is found at all: its gain over the claim passes the gate of an explanation. A truth without an
 /// effect is found if nothing is named.
 pub(super) fn found(truth: &Shown, claim: &Claim, trial: &Trial, asked: f64) -> Decision {
     if truth.effect.is_none() {
@@ -211,8 +216,8 @@ pub(super) fn found(truth: &Shown, claim: &Claim, trial: &Trial, asked: f64) -> 
         return Decision::certain(0.0);
     }
     let squared = squared_distance(truth, &Shown::nothing(claim, trial), trial);
-    let chance = ALPHA / (EFFECTS.len() as f64 + FAMILY_BESIDE) / truth.trials(trial);
-    let threshold = (MIN_DELTA_BIC + truth.dof * trial.rows.ln()).max(quantile(chance, truth.dof));
+    let chance = 0.5 * ALPHA / (EFFECTS.len() as f64 + FAMILY_BESIDE) / truth.trials(trial);
+    let threshold = quantile(chance, truth.dof);
     Decision::by_gain(squared, threshold, truth.dof, asked)
 }
 

@@ -1,5 +1,6 @@
 //! One jump of the bias.
 
+use super::heading_change::odds_of_same_step;
 use crate::effect::shared::step::{around, instant_bounds, instants, sizing, step};
 use crate::effect::{
     ClaimedMean, Drivers, Later, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values,
@@ -58,7 +59,30 @@ impl MeanModel for BiasStep {
         Some(step(drivers, at).into_iter().map(|s| size * s).collect())
     }
 
+    /// Those of a change of heading added where it is the same step.
+    fn odds(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
+        let same = nonlinear_parameters.first().and_then(|at| odds_of_same_step(*at, drivers));
+        same.map_or(0.0, |odds| odds.exp().ln_1p())
+    }
+
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
         nonlinear_parameters.first().map(|at| around(*at, drivers)).into_iter().collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::effect::Earth;
+
+    #[test]
+    fn a_step_at_rest_has_the_odds_of_a_change_of_heading_too() {
+        let mut drivers = Drivers { dt_s: 1.0, samples: 1000, ..Drivers::default() };
+        assert!((BiasStep.odds(&[500.0], &drivers).exp() - 1.0 - (-2f64).exp()).abs() < 1e-12);
+        drivers.claim.earth = Some(Earth { latitude_deg: 60.0, azimuth_deg: 40.0 });
+        assert!((BiasStep.odds(&[500.0], &drivers).exp() - 1.0 - (-0.1f64).exp()).abs() < 1e-12);
+        // A table that turns then tells the two apart.
+        drivers.table_angle = Some((0..1000).map(|i| if i < 500 { 10.0 } else { 25.0 }).collect());
+        assert_eq!(BiasStep.odds(&[500.0], &drivers), 0.0);
     }
 }

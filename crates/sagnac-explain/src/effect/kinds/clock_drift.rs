@@ -129,6 +129,12 @@ impl MeanModel for ClockDrift {
         vec![Sizing::searched(&PARAMS[0], vec![Values::new()], 1 + beside, trials).from(begin)]
     }
 
+    /// The phases of stated lines are no small change.
+    fn score_step(&self, drivers: &Drivers) -> Option<f64> {
+        let small = 0.05 / per_ppm(drivers.samples.max(2) - 1, drivers).max(1e-12);
+        (!stated_lines::any(drivers)).then_some(small)
+    }
+
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let drift = number(values, PARAMS[0].name)?;
         let mut course = shifted(&drivers.claimed_mean(), |i| drift * per_ppm(i, drivers)).0;

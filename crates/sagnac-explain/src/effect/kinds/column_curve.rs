@@ -25,7 +25,7 @@ describe! {
     lists [
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
-    properties [carried_over, outside_format]
+    properties [carried_over, outside_format, free_form]
 }
 
 /// Quantities that the curve may follow: supply, rate of the other axis, rate of change of temperature, rate of the table.

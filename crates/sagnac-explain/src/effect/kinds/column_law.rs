@@ -30,7 +30,7 @@ describe! {
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
     texts [TERMS_TEXT],
-    properties [slow, carried_over, outside_format]
+    properties [slow, carried_over, outside_format, free_form]
 }
 
 /// Terms of nonlinear parameters: positions among the terms of the columns, −1 for none.
@@ -134,6 +134,7 @@ impl MeanModel for ColumnLaw {
             offset: None,
             columns: terms.iter().filter_map(|t| t.course(&columns, drivers)).collect(),
             nuisance: terms.iter().flat_map(|t| t.initial(&columns, drivers)).collect(),
+            ..Regressors::default()
         }
     }
 

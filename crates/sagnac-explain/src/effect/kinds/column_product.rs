@@ -27,7 +27,7 @@ describe! {
     lists [
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
-    properties [outside_format]
+    properties [outside_format, free_form]
 }
 
 /// A factor of a product.

@@ -33,7 +33,7 @@ describe! {
         Param::inner(COEFFICIENTS_LIST, "deg/h", -1e6, 1e6)
     ],
     texts [COLUMN_TEXT],
-    properties [carried_over]
+    properties [carried_over, free_form]
 }
 
 /// Highest harmonic.

@@ -21,7 +21,7 @@ static PARAMS: [Param; 5] = [
 describe! {
     DriftingLine, "drifting_line", Mean in Frequency, needs [],
     confusers [Line, QuasiPeriodic, ExcessArw],
-    properties [outside_format]
+    properties [outside_format, free_form]
 }
 
 /// Samples times sweeps that a search may take: a tenth of a second.

@@ -75,6 +75,20 @@ fn turned(at_s: f64, drivers: &Drivers) -> Option<(f64, f64)> {
     Some((apart(*a, *b), usual.get(usual.len() / 2).copied().unwrap_or(0.0)))
 }
 
+/// True where the table's angle changes at that instant and seldom else.
+fn table_turned(at_s: f64, drivers: &Drivers) -> bool {
+    turned(at_s, drivers).is_some_and(|(here, usual)| here > 0.01 && here > 5.0 * usual)
+}
+
+/// Kind of a step of the output.
+const PLAINER_NAME: &str = "bias_step";
+
+/// Logarithm of the odds of a change of heading against a step of the output, where nothing tells one from the other.
+pub(super) fn odds_of_same_step(at_s: f64, drivers: &Drivers) -> Option<f64> {
+    let same = turning(drivers).is_none() && !table_turned(at_s, drivers);
+    same.then_some(if drivers.claim.earth.is_some() { -0.1 } else { -2.0 })
+}
+
 /// Number of instants at which the search looks for a change of heading.
 const HEADING_INSTANTS: usize = 128;
 
@@ -150,15 +164,17 @@ impl MeanModel for HeadingChange {
         nonlinear_parameters.first().map(|at| around(*at, drivers)).into_iter().collect()
     }
 
-    /// For it where the table's angle changes then and seldom else, or where the claim speaks of the heading; against it
-    /// where neither is so.
+    /// For it where the table's angle changes then and seldom else. Of a gyro at rest nothing tells it from a step of the output,
+    /// which is the plainer name: it is nearly as probable where the claim states the Earth rate, and less so where it does not.
+    /// Of a table that turns, the claim decides.
     fn odds(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> f64 {
         let Some(at) = nonlinear_parameters.first() else { return 0.0 };
-        match turned(*at, drivers) {
-            Some((here, usual)) if here > 0.01 && here > 5.0 * usual => 6.0,
-            _ if drivers.claim.earth.is_some() => 1.0,
-            _ => -3.0,
-        }
+        let of_claim = if drivers.claim.earth.is_some() { 1.0 } else { -3.0 };
+        if table_turned(*at, drivers) { 6.0 } else { odds_of_same_step(*at, drivers).unwrap_or(of_claim) }
+    }
+
+    fn plainer_name(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<&'static str> {
+        odds_of_same_step(*nonlinear_parameters.first()?, drivers).map(|_| PLAINER_NAME)
     }
 }
 
@@ -174,6 +190,13 @@ mod tests {
         drivers.table_angle = Some(angle(500));
         assert!(HeadingChange.odds(&[500.0], &drivers) > 0.0);
         assert!(HeadingChange.odds(&[200.0], &drivers) < 0.0);
+        // At rest a step is the plainer name, whatever the claim states.
+        let mut at_rest = Drivers { dt_s: 1.0, samples: 1000, ..Drivers::default() };
+        at_rest.claim.earth = Some(Earth { latitude_deg: 60.0, azimuth_deg: 40.0 });
+        let odds = HeadingChange.odds(&[500.0], &at_rest);
+        assert!(odds < 0.0 && odds > -0.5, "{odds}");
+        assert_eq!(HeadingChange.plainer_name(&[500.0], &at_rest), Some("bias_step"));
+        assert_eq!(HeadingChange.plainer_name(&[500.0], &drivers), None);
     }
 
     #[test]

@@ -16,7 +16,7 @@ static PARAMS: [Param; 3] = [
 describe! {
     PowerLawNoise, "power_law_noise", Spectrum in Frequency, needs [],
     confusers [ExcessFlicker, MarkovShort, MarkovLong, ExcessArw],
-    properties [carried_over, outside_format]
+    properties [carried_over, outside_format, free_form]
 }
 
 /// S₀, α, f₀.

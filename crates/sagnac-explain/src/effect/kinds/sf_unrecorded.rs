@@ -25,7 +25,7 @@ describe! {
     SfUnrecorded, "sf_unrecorded", Mean in InputRate, needs [TableRate],
     confusers [SfDriver, SfTemperature, SfError],
     lists [Param::inner(COEFFICIENTS_LIST, "ppm", -1e9, 1e9)],
-    properties [reported_as SfDriver]
+    properties [reported_as SfDriver, free_form]
 }
 
 /// Rate of the table times cosines over a time, deg/h for 1 ppm.

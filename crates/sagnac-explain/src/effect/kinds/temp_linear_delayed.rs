@@ -3,6 +3,7 @@
 
 use super::temp_linear::{LINEAR_COEFFICIENT, claimed, reference};
 use crate::effect::shared::first_order::{self, late};
+use crate::effect::shared::thermal;
 use crate::effect::{Drivers, MeanModel, Param, SearchContext, Starts};
 use crate::numeric::range::Bounds;
 
@@ -42,6 +43,10 @@ impl MeanModel for TempLinearDelayed {
 
     fn initial_state(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<Vec<f64>> {
         first_order::initial_state(nonlinear_parameters, drivers)
+    }
+
+    fn state_deviation(&self, _nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<f64> {
+        thermal::range(drivers)
     }
 }
 

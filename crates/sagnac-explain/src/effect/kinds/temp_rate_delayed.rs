@@ -4,7 +4,7 @@
 use super::temp_rate::RATE_COEFFICIENT;
 use crate::effect::shared::first_order::{self, late};
 use crate::effect::shared::reach::reach;
-use crate::effect::shared::thermal::smooth;
+use crate::effect::shared::thermal::{range, smooth};
 use crate::effect::{Domain, Drivers, MeanModel, Param, Place, SearchContext, Starts};
 use crate::numeric::range::Bounds;
 
@@ -40,6 +40,10 @@ impl MeanModel for TempRateDelayed {
 
     fn initial_state(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Vec<Vec<f64>> {
         first_order::initial_state(nonlinear_parameters, drivers)
+    }
+
+    fn state_deviation(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<f64> {
+        Some(60.0 * range(drivers)? / nonlinear_parameters.first()?)
     }
 
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {

@@ -4,9 +4,10 @@ use crate::effect::mean::first;
 use crate::effect::shared::first_order::{delayed, initial_state};
 use crate::effect::shared::reach::{reach, varies};
 use crate::effect::shared::search::{best_of, log_grid};
-use crate::effect::shared::thermal::{rate, smooth};
+use crate::effect::shared::thermal::{range, rate, smooth};
 use crate::effect::{
-    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values, number,
+    Domain, Drivers, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, StatePrior, Values,
+    number,
 };
 use crate::numeric::range::Bounds;
 
@@ -29,6 +30,12 @@ fn difference(time_constant_s: f64, drivers: &Drivers) -> Option<Vec<f64>> {
     }
     let late = delayed(t, time_constant_s, drivers.dt_s);
     Some(late.iter().zip(t).map(|(d, t)| coefficient * (d - t)).collect())
+}
+
+/// The state before the record: the claimed coefficient times the range of the temperature.
+fn state(drivers: &Drivers) -> Option<StatePrior> {
+    let coefficient = drivers.claim.temperature?.coefficient_deg_h_per_degc;
+    Some(StatePrior { column: None, deviation: coefficient.abs() * range(drivers)? })
 }
 
 impl MeanModel for ThermalLag {
@@ -58,6 +65,7 @@ impl MeanModel for ThermalLag {
             offset: difference(*time, drivers),
             columns: vec![],
             nuisance: initial_state(nonlinear_parameters, drivers),
+            states: state(drivers).into_iter().collect(),
         }
     }
 
@@ -68,6 +76,10 @@ impl MeanModel for ThermalLag {
         _drivers: &Drivers,
     ) -> Vec<f64> {
         vec![first(nonlinear_parameters)]
+    }
+
+    fn score_step(&self, drivers: &Drivers) -> Option<f64> {
+        Some(drivers.dt_s)
     }
 
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {

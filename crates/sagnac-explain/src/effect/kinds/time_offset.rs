@@ -149,6 +149,10 @@ impl MeanModel for TimeOffset {
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {
         vec![0.05 * drivers.dt_s]
     }
+
+    fn score_step(&self, drivers: &Drivers) -> Option<f64> {
+        Some(0.05 * drivers.dt_s)
+    }
 }
 
 #[cfg(test)]

@@ -24,6 +24,7 @@ describe! {
     UnobservedDriver, "unobserved_driver", Spectrum in Time, needs [],
     confusers [ExcessRrw, MarkovLong, RateRamp, WarmupExponential],
     lists [Param::inner(KNOT_TIMES, "s", f64::MIN, f64::MAX), Param::inner(KNOT_VALUES, "deg/h", -1e6, 1e6)],
+    properties [free_form],
     with {
         /// Straight lines between knots, the first and last values held outside.
         fn claimed_course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {

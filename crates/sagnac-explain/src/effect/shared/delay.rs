@@ -174,7 +174,7 @@ fn ends_out(lost: &[bool]) -> Vec<Vec<f64>> {
 /// Parts of a delayed claimed mean.
 pub(in crate::effect) fn regressors(mean: &[f64], lag: impl Fn(usize) -> f64) -> Regressors {
     let (fixed, lost) = shifted(mean, lag);
-    Regressors { offset: Some(fixed), columns: vec![], nuisance: ends_out(&lost) }
+    Regressors { offset: Some(fixed), nuisance: ends_out(&lost), ..Regressors::default() }
 }
 
 /// Improves a number that delays the claimed mean, by Gauss-Newton on white noise over the samples before `until`. Bias

@@ -8,7 +8,9 @@
 use super::first_order::{decay, delayed};
 use super::polynomial::Scale;
 use super::pursuit::{choices, matching_pursuit, remove, unit};
-use crate::effect::{Drivers, Regressors, ResponseLaw, SearchContext, Unmodelled, Values, list, number};
+use crate::effect::{
+    Drivers, Regressors, ResponseLaw, SearchContext, StatePrior, Unmodelled, Values, list, number,
+};
 use crate::numeric::cosine::dct2;
 use crate::numeric::special;
 
@@ -120,6 +122,12 @@ impl Term {
         }
     }
 
+    /// Prior of that state, for the term of some position.
+    fn state(self, position: usize) -> Option<StatePrior> {
+        let delays = matches!(self, Term::Delay { .. });
+        delays.then_some(StatePrior { column: Some(position), deviation: SCALED_RANGE })
+    }
+
     /// Course of its unknown state at the beginning of the record.
     fn initial(self, drivers: &Drivers) -> Option<Vec<f64>> {
         match self {
@@ -128,6 +136,9 @@ impl Term {
         }
     }
 }
+
+/// Range of a column in the unit of terms.
+const SCALED_RANGE: f64 = 2.0;
 
 /// A response that was found.
 #[derive(Debug, Clone, PartialEq)]
@@ -240,13 +251,19 @@ fn leading_law(dictionary: &Dictionary) -> ResponseLaw {
 /// The response of one term, the curve of first order.
 pub(in crate::effect) const FIRST_ORDER: u32 = 1;
 
-/// Factor that makes the coefficient of a response of a single term that of a linear law or of a rate, per hour, of
+/// Factor that makes the first coefficient of a response that of a linear law, of a rate, per hour, or of a lag in its static state, of
 /// the scaled column; `None` for a response of another form.
 pub(in crate::effect) fn per_unit(mask: u32, law: ResponseLaw) -> Option<f64> {
     match (law, &terms(mask)[..]) {
         (ResponseLaw::Linear, [Term::Curve { order: 1 }]) | (ResponseLaw::Rate, [Term::Rate]) => Some(1.0),
         // The delayed column trails behind by the time constant times its rate.
         (ResponseLaw::Rate, [Term::Delay { time_constant_s }]) => Some(-time_constant_s / 3600.0),
+        // At rest no delay is behind.
+        (ResponseLaw::Lag, [Term::Curve { order: 1 }, rest @ ..])
+            if rest.iter().all(|t| matches!(t, Term::Delay { .. })) =>
+        {
+            Some(1.0)
+        }
         _ => None,
     }
 }
@@ -290,6 +307,7 @@ pub(in crate::effect) fn regressors(mask: u32, values: &[f64], drivers: &Drivers
         offset: None,
         columns: terms.iter().map(|t| t.course(&scaled, drivers)).collect(),
         nuisance: terms.iter().filter_map(|t| t.initial(drivers)).collect(),
+        states: terms.iter().enumerate().filter_map(|(i, t)| t.state(i)).collect(),
     }
 }
 

@@ -7,6 +7,13 @@ pub(in crate::effect) fn smooth(drivers: &Drivers) -> Option<&[f64]> {
     drivers.smooth_temperature.as_deref().or(drivers.temperature.as_deref())
 }
 
+/// Range of the temperature in the record, °C.
+pub(in crate::effect) fn range(drivers: &Drivers) -> Option<f64> {
+    let ends = |(low, high): (f64, f64), t: &f64| (low.min(*t), high.max(*t));
+    let (low, high) = smooth(drivers)?.iter().fold((f64::INFINITY, f64::NEG_INFINITY), ends);
+    (high >= low).then_some(high - low)
+}
+
 /// Rate of change of the temperature, °C/min; differences over two samples, over one at the ends.
 pub(in crate::effect) fn rate(drivers: &Drivers) -> Option<Vec<f64>> {
     let t = smooth(drivers)?;

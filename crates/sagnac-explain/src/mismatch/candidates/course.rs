@@ -1,6 +1,7 @@
 //! A course as an addition: the best of its shapes with the noise held, then everything fitted together.
 
 use crate::effect::{Effect, MeanModel, Resolution, SearchContext, plausible};
+use crate::estimate::chi_square_tail;
 use crate::mismatch::fitted_hypothesis::{
     Candidate, FittedHypothesis, SearchEffort, SpectralDataSet, bic_overcharge, effective_modes, own_odds,
     score_candidate,
@@ -8,6 +9,7 @@ use crate::mismatch::fitted_hypothesis::{
 use crate::mismatch::hypothesis::{self, Fit, Hypothesis, PartModes, columns, kept, less_fixed};
 use crate::mismatch::noise_fit::{self, Noise};
 use crate::mismatch::nonlinear_search::LocalSearch;
+use crate::mismatch::several::least_of;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::MeanTerm;
 use crate::numeric::cosine::inverse_dct2;
@@ -176,8 +178,25 @@ fn with_course(
 ) -> Hypothesis {
     let mut hypothesis = Hypothesis { noise: noise.clone(), ..before.clone() };
     let nonlinear_parameters = nonlinear_parameters.to_vec();
-    hypothesis.courses.push(MeanTerm { effect, nonlinear_parameters, coefficients: vec![] });
+    hypothesis.courses.push(MeanTerm { effect, nonlinear_parameters, coefficients: vec![], states: vec![] });
     hypothesis
+}
+
+/// Gain of the course of a parameter that is nothing at zero, taken for a column there: it needs no search, and is χ² of one degree of
+/// freedom where the effect is not there. `None` for another effect.
+fn score_gain(course: &dyn MeanModel, baseline: &Baseline<'_>) -> Option<f64> {
+    let drivers = &baseline.spectral.drivers;
+    let modes =
+        baseline.spectral.transform(&course.regressors(&[course.score_step(drivers)?], drivers).offset?);
+    let search = ShapeSearch::new(course, baseline);
+    let normal = search.normal.with(&search.columns, &[&modes], &baseline.data, false, &baseline.powers);
+    Some(0.5 * (baseline.left - normal.solve().2))
+}
+
+/// Probability of a gain that a search or a score test brought, whichever is less: two tests.
+fn with_score_test(by_search: f64, score_gain: Option<f64>) -> f64 {
+    let Some(gain) = score_gain else { return by_search };
+    least_of(by_search.min(chi_square_tail(2.0 * gain.max(0.0), 1.0)), 2.0)
 }
 
 /// Information of each mode on a fitted course: its square over the variance of the mode.
@@ -226,11 +245,8 @@ pub(super) fn try_course(
         inside.coefficients.len() != columns || plausible(effect, &parameters())
     });
     let relief = hypothesis.courses.last().map_or(0.0, |inside| {
-        bic_overcharge(
-            added,
-            effective_modes(informations(course, inside, baseline).into_iter()),
-            spectra.rows,
-        )
+        let modes = effective_modes(informations(course, inside, baseline).into_iter());
+        bic_overcharge(added, modes, spectra.rows)
     });
     let tried = FittedHypothesis {
         hypothesis,
@@ -239,7 +255,10 @@ pub(super) fn try_course(
         odds: before.odds_with(effect, course.odds(&shape, drivers) + own_odds(effect) + relief),
     };
     let effort = SearchEffort { numbers: columns + beside, trials };
-    allowed.then(|| score_candidate(effect, tried, before, effort, spectra.rows))
+    allowed.then(|| {
+        let scored = score_candidate(effect, tried, before, effort, spectra.rows);
+        Candidate { p_value: with_score_test(scored.p_value, score_gain(course, baseline)), ..scored }
+    })
 }
 
 /// The best addition of a course whose shape is sought on one baseline, fitted from the noise of that baseline.
@@ -295,4 +314,21 @@ fn fitted<'a>(
         }
     }
     Some(FittedCourse { baseline, trials: starts.trials, shape, columns, beside, hypothesis, fit })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn one_parameter_that_is_nothing_at_zero_pays_for_no_search() {
+        // 13.6 nats of one number: χ²₁ beyond 27.2 has 1.8e-7, whatever the search for a lag looked at.
+        let p = with_score_test(1e-2, Some(13.6));
+        assert!((p / 2.0 / 1.836e-7 - 1.0).abs() < 0.01, "{p}");
+        // A lag that is far from zero shows in the search, which then has one look more to pay for.
+        assert!((with_score_test(1e-9, Some(0.3)) / 2e-9 - 1.0).abs() < 1e-6);
+        assert_eq!(with_score_test(1e-9, None), 1e-9);
+        // 1 − 0.2².
+        assert!((with_score_test(0.8, Some(0.0)) - 0.96).abs() < 1e-12);
+    }
 }

@@ -4,6 +4,7 @@
 use super::departure::{Departure, White};
 use crate::effect::{Column, Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_normal_two_sided};
+use crate::mismatch::several::ln_least_of;
 use crate::mismatch::spectral_data::{SpectralData, smoothed};
 use crate::numeric::cosine::dct2;
 use crate::numeric::order::SortByNumber;
@@ -196,7 +197,7 @@ fn size_over(white: &White, domain: Domain, values: &[f64]) -> Option<Departure>
         }
     }
     let place = Place { domain, from: best.1, to: best.2 };
-    Some(Departure { test: "size", place, beside: None, ln_p: (best.0 + trials.ln()).min(0.0), shape: None })
+    Some(Departure { test: "size", place, beside: None, ln_p: ln_least_of(best.0, trials), shape: None })
 }
 
 #[cfg(test)]

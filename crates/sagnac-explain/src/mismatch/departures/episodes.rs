@@ -8,6 +8,7 @@
 use super::departure::{Departure, Shape, White, ln_at_least, windows};
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_tail, normal_two_sided};
+use crate::mismatch::several::ln_least_of;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::numeric::cosine::{fast_length, inverse_dct2};
 use crate::numeric::parallel;
@@ -166,7 +167,7 @@ pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
         test: "episodes",
         place: Place { domain: Domain::Frequency, from: frequency(first), to: frequency(first + m) },
         beside: Some(time),
-        ln_p: (best.ln_p + best.trials.ln()).min(0.0),
+        ln_p: ln_least_of(best.ln_p, best.trials),
         shape: shape(white, &best, window_s),
     })
 }

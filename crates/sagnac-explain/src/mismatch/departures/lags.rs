@@ -3,6 +3,7 @@
 use super::departure::{Departure, White};
 use crate::effect::{Domain, Place};
 use crate::estimate::ln_normal_two_sided;
+use crate::mismatch::several::ln_least_of;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::noise::autocorrelation::lagged_products;
 
@@ -28,7 +29,7 @@ pub fn all(spectral: &SpectralData, white: &White) -> Option<Departure> {
     let z = z(lag);
     let dt = spectral.drivers.dt_s;
     let place = Place { domain: Domain::Lag, from: (lag as f64 - 0.5) * dt, to: (lag as f64 + 0.5) * dt };
-    let ln_p = (ln_normal_two_sided(z) + (longest as f64).ln()).min(0.0);
+    let ln_p = ln_least_of(ln_normal_two_sided(z), longest as f64);
     Some(Departure { test: "lag", place, beside: None, ln_p, shape: None })
 }
 

@@ -14,6 +14,7 @@ mod tracks;
 pub use departure::{Departure, Shape, White};
 
 use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
+use super::several::{least_of, ln_least_of};
 use super::spectral_data::SpectralData;
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided, normal_two_sided};
@@ -50,7 +51,7 @@ impl Scan {
         if self.trials == 0.0 {
             return None;
         }
-        let ln_p = (self.ln_smallest + self.trials.ln()).min(0.0);
+        let ln_p = ln_least_of(self.ln_smallest, self.trials);
         Some(Departure {
             test,
             place: Place { domain, from: self.from, to: self.to },
@@ -145,7 +146,7 @@ fn comb(spectral: &SpectralData, powers: &[f64]) -> Option<Departure> {
     let (p, cell, harmonics) = best?;
     let fundamental = cell / (2.0 * n as f64 * spectral.drivers.dt_s);
     let place = Place { domain: Domain::Frequency, from: fundamental, to: fundamental * harmonics as f64 };
-    Some(Departure { test: "comb", place, beside: None, ln_p: (p + trials.ln()).min(0.0), shape: None })
+    Some(Departure { test: "comb", place, beside: None, ln_p: ln_least_of(p, trials), shape: None })
 }
 
 /// The largest line of the whitened series.
@@ -159,7 +160,7 @@ fn lines(spectral: &SpectralData, powers: &[f64]) -> Option<Departure> {
     }
     let step = 1.0 / (2.0 * n as f64 * spectral.drivers.dt_s);
     // Twice as many looks as independent frequencies cost about a factor of 1.6 (domain: un-padded loses up to 1.57).
-    let ln_p = ((0.8 * n as f64).ln() - best).min(0.0);
+    let ln_p = ln_least_of(-best, 0.8 * n as f64);
     let place =
         Place { domain: Domain::Frequency, from: (at as f64 - 2.0) * step, to: (at as f64 + 2.0) * step };
     Some(Departure { test: "line", place, beside: None, ln_p, shape: None })
@@ -273,7 +274,7 @@ fn skewness(spectral: &SpectralData, white: &White, allowed: f64) -> Option<Depa
 /// Probability of the smallest of several p-values.
 pub fn family(departures: &[Departure]) -> f64 {
     let smallest = departures.iter().map(Departure::p_value).fold(1.0, f64::min);
-    (smallest * departures.len().max(1) as f64).min(1.0)
+    least_of(smallest, departures.len() as f64)
 }
 
 #[cfg(test)]
@@ -359,10 +360,11 @@ mod tests {
     }
 
     #[test]
-    fn the_smallest_of_several_probabilities_is_multiplied_by_their_number() {
+    fn the_smallest_of_several_probabilities_is_judged_by_their_number() {
         let place = Place { domain: Domain::Time, from: 0.0, to: 1.0 };
         let of = |p: f64| Departure { test: "level", place, beside: None, ln_p: p.ln(), shape: None };
-        assert!((family(&[of(0.5), of(0.01), of(0.2)]) - 0.03).abs() < 1e-12);
-        assert_eq!(family(&[of(0.5), of(0.9)]), 1.0);
+        // 1 − 0.99³, 1 − 0.5².
+        assert!((family(&[of(0.5), of(0.01), of(0.2)]) - 0.029_701).abs() < 1e-12);
+        assert!((family(&[of(0.5), of(0.9)]) - 0.75).abs() < 1e-12);
     }
 }

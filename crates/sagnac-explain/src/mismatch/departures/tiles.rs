@@ -7,6 +7,7 @@
 use super::departure::{Departure, windows};
 use crate::effect::{Domain, Place};
 use crate::estimate::{ln_chi_square_two_sided, ln_normal_two_sided};
+use crate::mismatch::several::ln_least_of;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::parallel;
@@ -123,7 +124,7 @@ pub fn all(spectral: &SpectralData, modes: &[f64]) -> Vec<Departure> {
         test: "local_power",
         place: time,
         beside: Some(frequency),
-        ln_p: (ln_normal_two_sided(relative.z) + found.trials.ln()).min(0.0),
+        ln_p: ln_least_of(ln_normal_two_sided(relative.z), found.trials),
         shape: None,
     };
     let (time, frequency) = places(&absolute);
@@ -132,7 +133,7 @@ pub fn all(spectral: &SpectralData, modes: &[f64]) -> Vec<Departure> {
         test: "tile",
         place: frequency,
         beside: Some(time),
-        ln_p: (ln_chi_square_two_sided(absolute.power, dof) + found.trials.ln()).min(0.0),
+        ln_p: ln_least_of(ln_chi_square_two_sided(absolute.power, dof), found.trials),
         shape: None,
     };
     vec![local, tile]

@@ -7,6 +7,7 @@
 use super::departure::{Departure, White};
 use crate::effect::{Domain, Place};
 use crate::estimate::ln_chi_square_tail;
+use crate::mismatch::several::ln_least_of;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::numeric::parallel;
 use sagnac_fft::real_forward;
@@ -79,9 +80,9 @@ fn over(series: &[f64], segments: usize) -> Option<(Best, usize, f64)> {
         a.into_iter().zip(b).map(|(a, b)| if b.power > a.power { b } else { a }).collect::<Vec<Best>>()
     };
     let best = best.into_iter().fold(vec![NONE; lengths.len()], larger);
-    let trials = ((bins * (2 * reach).min(bins) * parts.len()) as f64).ln();
+    let trials = (bins * (2 * reach).min(bins) * parts.len()) as f64;
     let rated = lengths.iter().zip(best).map(|(n, best)| {
-        (best, length, (ln_chi_square_tail(2.0 * best.power, 2.0 * *n as f64) + trials).min(0.0))
+        (best, length, ln_least_of(ln_chi_square_tail(2.0 * best.power, 2.0 * *n as f64), trials))
     });
     rated.min_by(|a, b| a.2.total_cmp(&b.2))
 }

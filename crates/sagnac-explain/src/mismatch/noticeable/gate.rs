@@ -27,17 +27,17 @@ impl Gate {
     /// Least value of twice the gain with which an effect of so many parameters, looked for at so many independent
     /// positions, is found.
     pub fn threshold(&self, parameters: usize, trials: f64) -> f64 {
-        self.threshold_of(parameters, parameters, trials)
+        let chance = self.alpha / (self.family.max(1.0) * trials.max(1.0));
+        let free = parameters.max(1) as f64;
+        // A quantile so far out is found on the tail itself.
+        bisect(0.0, 2000.0, 60, |x| chi_square_tail(x, free) > chance).middle()
     }
 
-    /// The same for an effect of which only so many coefficients gain by chance.
-    pub fn threshold_of(&self, parameters: usize, free: usize, trials: f64) -> f64 {
+    /// The same for an effect in single samples, which also pays BIC for its parameters, and of which only so many coefficients gain
+    /// by chance.
+    pub fn threshold_in_samples(&self, parameters: usize, free: usize, trials: f64) -> f64 {
         let worth = parameters as f64 * (self.rows.max(2) as f64).ln() + MIN_DELTA_BIC;
-        let chance = self.alpha / (self.family.max(1.0) * trials.max(1.0));
-        let free = free.max(1) as f64;
-        // A quantile so far out is found on the tail itself.
-        let far = bisect(0.0, 2000.0, 60, |x| chi_square_tail(x, free) > chance);
-        worth.max(far.middle())
+        worth.max(self.threshold(free, trials))
     }
 
     /// Margin of the root of twice a gain of some spread above the gate, to pass it with [`NOTICE_PROBABILITY`].
@@ -79,19 +79,22 @@ mod tests {
     const GATE: Gate = Gate { rows: 10_000, family: 40.0, alpha: 0.01 };
 
     #[test]
-    fn the_gate_is_that_of_the_rows_or_that_of_chance() {
-        // ln 10 000 + 6 = 15.21; χ²₁ beyond 13.41 has a probability of 0.01/40.
-        assert!((GATE.threshold(1, 1.0) - 15.210_340).abs() < 1e-5);
+    fn the_gate_is_that_of_chance_and_of_the_rows_for_single_samples() {
+        // χ²₁ beyond 13.41 has a probability of 0.01/40.
+        assert!((GATE.threshold(1, 1.0) - 13.412).abs() < 1e-2, "{}", GATE.threshold(1, 1.0));
+        // ln 10 000 + 6 = 15.21 is more.
+        assert!((GATE.threshold_in_samples(1, 1, 1.0) - 15.210_340).abs() < 1e-5);
         // Looked for at 10 000 positions: probability 2.5e-8 of χ²₂ is −2 ln 2.5e-8 = 35.01, more than 2·9.21 + 6.
         assert!((GATE.threshold(2, 1e4) - 35.008_86).abs() < 1e-3, "{}", GATE.threshold(2, 1e4));
+        assert_eq!(GATE.threshold_in_samples(2, 2, 1e4), GATE.threshold(2, 1e4));
     }
 
     #[test]
     fn an_effect_beyond_the_gate_passes_it_in_95_of_100() {
         // One degree of freedom in closed form: |x + √λ| > √T.
-        let needed = GATE.needed(1, 1.0, 1.0);
-        assert!((needed.sqrt() - 15.210_340f64.sqrt() - 1.644_854).abs() < 1e-6);
-        assert!((exceeds(15.210_340, 1, needed) - 0.95).abs() < 1e-6);
+        let (needed, threshold) = (GATE.needed(1, 1.0, 1.0), GATE.threshold(1, 1.0));
+        assert!((needed.sqrt() - threshold.sqrt() - 1.644_854).abs() < 1e-6);
+        assert!((exceeds(threshold, 1, needed) - 0.95).abs() < 1e-6);
         assert!(GATE.needed(1, 1.0, 0.2) < needed);
         // Two degrees: Marcum's Q₁(√λ, √T) = 0.95 by its integral over a circle about the effect.
         let needed = GATE.needed(2, 1.0, 1.0);

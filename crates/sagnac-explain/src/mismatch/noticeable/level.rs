@@ -25,7 +25,7 @@ pub(super) fn size(
     let parameter = effect.params().first().ok_or(WhyNot::NoSingleSize)?;
     // What the search counts beside the one coefficient that a gain of nothing comes from.
     let searched = Gate { family: SAMPLE_EFFECTS, ..*gate };
-    let threshold = searched.threshold_of(parameters, 1, COMPETING_LAWS * trials);
+    let threshold = searched.threshold_in_samples(parameters, 1, COMPETING_LAWS * trials);
     let needed = (threshold.sqrt() + searched.margin(BY_DIFFERENCES)).powi(2);
     let gain = |excess: f64| twice_gain(1.0 + excess, samples as f64);
     let excess = solve::size(0.1, MAX_RATIO, needed, gain).ok_or(WhyNot::NeverLargeEnough)?;

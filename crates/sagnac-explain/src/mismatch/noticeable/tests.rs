@@ -44,6 +44,7 @@ fn white(spectra: &SpectralDataSet) -> FittedHypothesis {
         unconstrained: [false; 3],
         quantization_arcsec: 0.0,
         spectra: vec![],
+        discrepancy: None,
     };
     let mut hypothesis = Hypothesis { noise, courses: vec![] };
     let fit = fit(&mut hypothesis, &spectra.full);
