@@ -77,6 +77,7 @@ fn collect<'r, K: TestKind>(
     let start_s = plan.start_s();
     let ((stability, collected), mut window) = windowed.finish();
     reading::name_pauses(&mut window, &report);
+    let (stability, statuses) = stability.finish();
     let mut reading = Reading {
         request,
         channels,
@@ -85,7 +86,8 @@ fn collect<'r, K: TestKind>(
         tau0_s: tidy(report.tau0_measured_s),
         report,
         window,
-        stability: stability.finish(),
+        stability,
+        statuses,
         envelopes: overview.finish(),
         checks: CheckLog::default(),
     };
@@ -113,6 +115,7 @@ fn judge(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<ConditionRecord>
         usable_s: reading.window.usable_s,
         longest_gap_s: longest_gap_s(&reading.window),
         stability: &reading.stability,
+        statuses: &reading.statuses,
         warm_up: &rest.warm_up,
         gyros: &rest.gyros,
         limits: request.limits,

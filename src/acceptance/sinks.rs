@@ -2,6 +2,7 @@
 //! what is drawn over time, samples at declared rails.
 
 use super::condition::stability_track::{Band, StabilityFacts, StabilityKey, StabilityTrack};
+use super::condition::status::StatusTrack;
 use crate::config::procedure::Procedure;
 use crate::i18n::note;
 use crate::noise::envelope::{Envelope, EnvelopeAccumulator};
@@ -9,11 +10,14 @@ use crate::recording::integrity::Fault;
 use crate::recording::{Channel, Role, SampleBlock, Sink};
 use std::collections::BTreeMap;
 
-/// The channels that must stay within a band, inside the evaluated window.
+/// The channels that must stay within a band, and the status words, inside the evaluated window.
 pub(super) struct StabilitySink {
     /// Condition, position among the channels, statistics.
     tracks: Vec<(StabilityKey, usize, StabilityTrack)>,
+    /// Position among the channels where there is one, and what the words say.
+    statuses: Vec<(Option<usize>, StatusTrack)>,
     start_s: f64,
+    interval_s: f64,
 }
 
 impl StabilitySink {
@@ -28,17 +32,27 @@ impl StabilitySink {
             let band = Band::about(c.nominal_v, c.tolerance_v);
             (StabilityKey::supply(i), &c.channel, StabilityTrack::new(0.0, tau0_s, Some(band)))
         });
+        let ranges = conditions.ranges.iter().enumerate().filter_map(|(i, c)| {
+            let bounds = c.bounds(channels.iter().find(|channel| channel.id == c.channel)?).ok()?;
+            let band = Band { low: bounds.low, high: bounds.high };
+            let track = StabilityTrack::new(c.smoothing_s, tau0_s, Some(band));
+            Some((StabilityKey::range(i), &c.channel, track))
+        });
         let slot_of = |id: &str| channels.iter().position(|c| c.id == id);
         let tracks = temperatures
             .chain(supplies)
+            .chain(ranges)
             .filter_map(|(key, channel, track)| Some((key, slot_of(channel)?, track)))
             .collect();
-        StabilitySink { tracks, start_s }
+        let statuses =
+            conditions.statuses.iter().map(|c| (slot_of(&c.channel), StatusTrack::new(c))).collect();
+        StabilitySink { tracks, statuses, start_s, interval_s: tau0_s }
     }
 
-    /// The statistics, by condition.
-    pub fn finish(self) -> BTreeMap<StabilityKey, StabilityFacts> {
-        self.tracks.into_iter().filter_map(|(key, _, track)| Some((key, track.finish()?))).collect()
+    /// The statistics by condition, and what each status word says.
+    pub fn finish(self) -> (BTreeMap<StabilityKey, StabilityFacts>, Vec<StatusTrack>) {
+        let held = self.tracks.into_iter().filter_map(|(key, _, track)| Some((key, track.finish()?)));
+        (held.collect(), self.statuses.into_iter().map(|(_, track)| track).collect())
     }
 }
 
@@ -47,6 +61,11 @@ impl Sink for StabilitySink {
         for (_, slot, track) in &mut self.tracks {
             if let Some(values) = block.values.get(*slot) {
                 track.push(values, block.time_s - self.start_s, block.continues);
+            }
+        }
+        for (slot, track) in &mut self.statuses {
+            if let Some(values) = slot.and_then(|s| block.values.get(s)) {
+                track.push(values, block.time_s - self.start_s, self.interval_s);
             }
         }
     }

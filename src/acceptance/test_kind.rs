@@ -2,6 +2,7 @@
 
 use super::condition::checks::CheckLog;
 use super::condition::stability_track::{StabilityFacts, StabilityKey};
+use super::condition::status::StatusTrack;
 use super::condition::{GyroFact, WarmUpFact};
 use super::request::{Request, RunError, Table};
 use crate::config::procedure::Procedure;
@@ -34,6 +35,8 @@ pub(super) struct Reading<'r> {
     pub window: Window,
     /// Statistics of the channels that must stay within a band.
     pub stability: BTreeMap<StabilityKey, StabilityFacts>,
+    /// Status words, one for each condition of them.
+    pub statuses: Vec<StatusTrack>,
     /// Curves drawn over time, by position of the channel.
     pub envelopes: BTreeMap<usize, Envelope>,
     /// Which checks were made.

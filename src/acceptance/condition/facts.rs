@@ -2,6 +2,7 @@
 
 use super::checks::CheckLog;
 use super::stability_track::{StabilityFacts, StabilityKey};
+use super::status::StatusTrack;
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::i18n::{Lang, Localize, Note};
 use crate::noise::tails::TailShape;
@@ -46,6 +47,8 @@ pub struct Facts<'a> {
     pub longest_gap_s: f64,
     /// Statistics of the channels that must stay within a band, by condition.
     pub stability: &'a BTreeMap<StabilityKey, StabilityFacts>,
+    /// Status words, one for each condition of them.
+    pub statuses: &'a [StatusTrack],
     /// Remainder of a warm-up transient on each gyro channel.
     pub warm_up: &'a [WarmUpFact],
     /// Gyro channels in the evaluated window.

@@ -17,11 +17,13 @@ mod noise_level;
 mod output;
 mod plausibility;
 pub mod positions;
+mod range;
 mod sample_rate;
 mod schedule;
 mod stability;
 pub mod stability_track;
 mod stationarity;
+pub mod status;
 pub mod table;
 mod tails;
 pub mod thermometer;
@@ -44,6 +46,8 @@ pub static ALL_CONDITIONS: &[&dyn Condition] = &[
     &stability::Temperature,
     &schedule::Schedule,
     &stability::Supply,
+    &range::Range,
+    &status::Status,
     &duration::Duration,
     &warm_up::WarmUp,
     &sample_rate::SampleRate,

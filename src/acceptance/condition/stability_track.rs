@@ -35,7 +35,7 @@ pub struct StabilityTrack {
 /// The condition that a channel is watched for: which one, and its position among those of its kind in the procedure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct StabilityKey {
-    /// Id of the condition: `temperature`, `supply`.
+    /// Id of the condition: `temperature`, `supply`, `range`.
     pub condition: &'static str,
     /// Position in the procedure, from 0.
     pub position: usize,
@@ -50,6 +50,11 @@ impl StabilityKey {
     /// The supply condition at a position.
     pub fn supply(position: usize) -> StabilityKey {
         StabilityKey { condition: "supply", position }
+    }
+
+    /// The range condition at a position.
+    pub fn range(position: usize) -> StabilityKey {
+        StabilityKey { condition: "range", position }
     }
 }
 

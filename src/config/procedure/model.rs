@@ -7,7 +7,9 @@ use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
 use super::spec::Word;
-pub use super::tables::conditions::{Conditions, FaultBudget, SupplyCondition, TemperatureCondition};
+pub use super::tables::conditions::{
+    Bounds, Conditions, FaultBudget, RangeCondition, StatusCondition, SupplyCondition, TemperatureCondition,
+};
 use super::unit_facts::UnitFact;
 use crate::config::table::{Table, words};
 use crate::i18n::LocalText;

@@ -1,7 +1,9 @@
 //! What a procedure says as a whole: references between its tables, contradictions, conditions that cannot be met.
 
 use super::diagnostics::{Problem, SourceText};
-use super::model::{ChannelSpec, EarthRate, MeasurandOptions, MeasurandSpec, Procedure, Taus};
+use super::model::{
+    ChannelSpec, EarthRate, MeasurandOptions, MeasurandSpec, Procedure, RangeCondition, Taus,
+};
 use super::reader::{Reader, meant, shorten};
 use super::section::Section;
 use crate::config::table::Table;
@@ -183,6 +185,16 @@ fn conditions(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
             channel_of(held, procedure, root, |r| r == Role::Supply, "check.needs_supply", reader);
             provable(held, "V", reader);
         }
+        for (held, condition) in section.tables("range").iter().zip(&procedure.conditions.ranges) {
+            channel_of(held, procedure, root, |_| true, "check.needs_supply", reader);
+            range(held, condition, procedure, reader);
+        }
+        for (held, condition) in section.tables("status").iter().zip(&procedure.conditions.statuses) {
+            channel_of(held, procedure, root, |r| r == Role::Status, "check.needs_status", reader);
+            if condition.failure_mask == 0.0 && condition.valid_mask == 0.0 {
+                reader.error(&held.span.clone(), "check.no_mask", None);
+            }
+        }
     }
     for section in root.tables("exclude") {
         if let (Some(from), Some(to)) = (section.number("from"), section.number("to"))
@@ -273,6 +285,26 @@ fn temperature_test(procedure: &Procedure, root: &Section, reader: &mut Reader<'
 }
 
 /// A tolerance that the sensor's own uncertainty uses up can never be shown to hold.
+/// Bounds that a channel must keep: they are quantities of its dimension, one is stated at least, and a reading can lie
+/// between them.
+fn range(section: &Section, condition: &RangeCondition, procedure: &Procedure, reader: &mut Reader<'_>) {
+    let Some(channel) = procedure.channel(&condition.channel) else { return };
+    if condition.min.is_none() && condition.max.is_none() {
+        reader.error(&section.span.clone(), "check.no_bound", None);
+        return;
+    }
+    match condition.bounds(&channel.channel) {
+        Err((key, e)) => reader.error(&section.span_of(key), e.message, e.help),
+        Ok(b) if b.low >= b.high => reader.error(&section.span_of("max"), "check.bounds", None),
+        Ok(b) => {
+            let guard = condition.coverage_factor * b.standard_uncertainty;
+            if b.standard_uncertainty < 0.0 || 2.0 * guard >= b.high - b.low {
+                reader.error(&section.span_of("sensor_uncertainty"), "check.bounds_not_provable", None);
+            }
+        }
+    }
+}
+
 fn provable(section: &Section, unit: &str, reader: &mut Reader<'_>) {
     let value = |key| section.number(key);
     let (Some(tolerance), Some(u), Some(k)) =

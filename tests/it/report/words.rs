@@ -4,10 +4,13 @@
 use crate::support::tested::tested;
 use sagnac::acceptance::condition::checks::CheckLog;
 use sagnac::acceptance::condition::stability_track::{Extreme, StabilityFacts, StabilityKey};
+use sagnac::acceptance::condition::status::StatusTrack;
 use sagnac::acceptance::condition::{
     ALL_CONDITIONS, BiasStep, ColumnFact, Facts, GyroFact, NoiseChange, WarmUpFact, judge_all,
 };
-use sagnac::config::procedure::model::{Allowance, EarthRate, FaultBudget, MeasurandSpec, SupplyCondition};
+use sagnac::config::procedure::model::{
+    Allowance, EarthRate, FaultBudget, MeasurandSpec, RangeCondition, StatusCondition, SupplyCondition,
+};
 use sagnac::config::procedure::{EffectiveLimits, effective, load, load_limits};
 use sagnac::i18n::{Lang, Localize, lookup};
 use sagnac::measurand::{MEASURANDS, Test};
@@ -107,6 +110,20 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         sensor_uncertainty_v: 0.01,
         coverage_factor: 2.0,
     }];
+    procedure.conditions.ranges = vec![RangeCondition {
+        channel: "temp".into(),
+        min: Some("19 degC".into()),
+        max: Some("21 degC".into()),
+        sensor_uncertainty: None,
+        coverage_factor: 2.0,
+        smoothing_s: 0.0,
+    }];
+    procedure.conditions.statuses = vec![StatusCondition {
+        channel: "status".into(),
+        failure_mask: 8.0,
+        valid_mask: 1.0,
+        allowed: None,
+    }];
     let integrity = Integrity {
         gaps: 1,
         missing_samples: 1,
@@ -134,8 +151,11 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         steepest_deg_c_per_h: Some(1.0),
         smoothing_s: 60.0,
     };
-    let keys = [StabilityKey::temperature(0), StabilityKey::supply(0)];
+    let keys = [StabilityKey::temperature(0), StabilityKey::supply(0), StabilityKey::range(0)];
     let stability: BTreeMap<StabilityKey, StabilityFacts> = keys.map(|key| (key, track.clone())).into();
+    let mut status = StatusTrack::new(&procedure.conditions.statuses[0]);
+    status.push(&[0.0, 8.0], 0.0, 1.0);
+    let statuses = [status];
     let warm_up = [WarmUpFact {
         channel: "rate".into(),
         residual_deg_h: 10.0,
@@ -202,6 +222,7 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         usable_s: 1.0,
         longest_gap_s: 100.0,
         stability: &stability,
+        statuses: &statuses,
         warm_up: &warm_up,
         gyros: &[gyro],
         limits: &limits,

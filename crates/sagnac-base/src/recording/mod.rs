@@ -39,6 +39,22 @@ pub enum Role {
     MagneticField,
     /// Vibration, rms of the acceleration; inside: g.
     Vibration,
+    /// Acceleration along the x axis of the unit; inside: g.
+    AccelerationX,
+    /// Acceleration along the y axis of the unit; inside: g.
+    AccelerationY,
+    /// Acceleration along the z axis of the unit; inside: g.
+    AccelerationZ,
+    /// Pressure around the unit; inside: kPa.
+    Pressure,
+    /// Relative humidity; inside: %.
+    Humidity,
+    /// Supply current; inside: A.
+    Current,
+    /// Status word, of which each bit tells a state; inside: as recorded.
+    Status,
+    /// Pulse of every second, or a count of them; inside: as recorded.
+    Pps,
     /// Anything else that is kept beside; inside: as recorded.
     Auxiliary,
 }
@@ -59,6 +75,14 @@ impl Role {
             Role::Supply => "supply",
             Role::MagneticField => "magnetic_field",
             Role::Vibration => "vibration",
+            Role::AccelerationX => "acceleration_x",
+            Role::AccelerationY => "acceleration_y",
+            Role::AccelerationZ => "acceleration_z",
+            Role::Pressure => "pressure",
+            Role::Humidity => "humidity",
+            Role::Current => "current",
+            Role::Status => "status",
+            Role::Pps => "pps",
             Role::Auxiliary => "auxiliary",
         }
     }
@@ -77,6 +101,14 @@ impl Role {
         Role::Supply,
         Role::MagneticField,
         Role::Vibration,
+        Role::AccelerationX,
+        Role::AccelerationY,
+        Role::AccelerationZ,
+        Role::Pressure,
+        Role::Humidity,
+        Role::Current,
+        Role::Status,
+        Role::Pps,
         Role::Auxiliary,
     ];
 
@@ -89,8 +121,11 @@ impl Role {
             Role::Temperature => Some("degC"),
             Role::Supply => Some("V"),
             Role::MagneticField => Some("mT"),
-            Role::Vibration => Some("g"),
-            Role::Counter | Role::Auxiliary => None,
+            Role::Vibration | Role::AccelerationX | Role::AccelerationY | Role::AccelerationZ => Some("g"),
+            Role::Pressure => Some("kPa"),
+            Role::Humidity => Some("%"),
+            Role::Current => Some("A"),
+            Role::Counter | Role::Status | Role::Pps | Role::Auxiliary => None,
         }
     }
 

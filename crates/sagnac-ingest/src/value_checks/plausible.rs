@@ -56,7 +56,15 @@ pub fn bound(role: Role) -> Option<Bound> {
         Role::MagneticField => no_more(20_000.0),
         // Rms of an acceleration: no shaker gives 10 000 g. Small negative numbers are the noise of a sensor about zero.
         Role::Vibration => no_more(10_000.0),
-        Role::Time | Role::Counter | Role::Auxiliary => None,
+        // Guns fire units at 20 000 g; a gyro is not tested there.
+        Role::AccelerationX | Role::AccelerationY | Role::AccelerationZ => no_more(20_000.0),
+        // Pressure vessels of laboratories hold some ten megapascals.
+        Role::Pressure => no_more(100_000.0),
+        // Sensors read a little beyond saturation.
+        Role::Humidity => within(-20.0, 120.0),
+        // Units of kilograms draw some ten amperes.
+        Role::Current => no_more(1000.0),
+        Role::Time | Role::Counter | Role::Status | Role::Pps | Role::Auxiliary => None,
     }
 }
 

@@ -184,6 +184,11 @@ fn may_disturb(c: &Channel, test: &ComparisonTest) -> bool {
             | Role::Supply
             | Role::MagneticField
             | Role::Vibration
+            | Role::AccelerationX
+            | Role::AccelerationY
+            | Role::AccelerationZ
+            | Role::Pressure
+            | Role::Humidity
             | Role::TableRate
             | Role::OuterRate
     );

@@ -1,9 +1,14 @@
 //! The tables of a procedure that declare its conditions.
 
+use crate::config::quantity::{self, QuantityError};
 use crate::config::section::Allowance;
 use crate::config::table::Table;
 use crate::i18n::LocalText;
 use crate::record::ExclusionRecord;
+use crate::recording::Channel;
+
+/// Largest status word: integers up to here are exact in the values of a recording.
+const MASK_MAX: f64 = 9_007_199_254_740_991.0;
 
 /// Conditions under which the test is valid. A condition that is not proven to be met makes the verdict
 /// indeterminate, because an invalid test neither passes nor fails a unit.
@@ -26,6 +31,12 @@ pub struct Conditions {
     /// Supply voltage to be held.
     #[key(name = "supply", one_or_several)]
     pub supplies: Vec<SupplyCondition>,
+    /// Bounds of other channels.
+    #[key(name = "range", one_or_several)]
+    pub ranges: Vec<RangeCondition>,
+    /// Bits of status words.
+    #[key(name = "status", one_or_several)]
+    pub statuses: Vec<StatusCondition>,
     /// Maximum number of faults of each kind.
     #[key(optional)]
     pub faults: FaultBudget,
@@ -90,6 +101,82 @@ impl SupplyCondition {
     pub fn provable_v(&self) -> f64 {
         self.tolerance_v - self.coverage_factor * self.sensor_uncertainty_v
     }
+}
+
+/// Bounds that a channel of any role must keep over the whole evaluated window: pressure, humidity, laser power, tilt.
+/// The numbers are those of the recording: a unit of the channel's dimension, or none for a channel without a unit.
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("conditions.range")]
+pub struct RangeCondition {
+    /// Channel.
+    #[key(id, example = "pressure")]
+    pub channel: String,
+    /// Lowest value.
+    #[key(example = "90 kPa")]
+    pub min: Option<String>,
+    /// Highest value.
+    #[key(example = "110 kPa")]
+    pub max: Option<String>,
+    /// Standard uncertainty (k = 1) of the sensor. Default: none.
+    #[key(example = "0.2 kPa")]
+    pub sensor_uncertainty: Option<String>,
+    /// Multiple of the sensor's uncertainty by which the bounds are narrowed.
+    #[key(min = 0, max = 4, default = 2.0, example = 2.0)]
+    pub coverage_factor: f64,
+    /// Length of the moving average applied to the channel.
+    #[key(quantity = "s", min = 0, default = "0 s", example = "60 s")]
+    pub smoothing_s: f64,
+}
+
+/// Bounds of a channel in the unit of its values inside the program.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bounds {
+    /// Lowest value; −∞ where none is stated.
+    pub low: f64,
+    /// Highest value; ∞ where none is stated.
+    pub high: f64,
+    /// Standard uncertainty of the sensor.
+    pub standard_uncertainty: f64,
+    /// The unit.
+    pub unit: String,
+}
+
+impl RangeCondition {
+    /// The bounds for a channel.
+    ///
+    /// # Errors
+    /// The key whose text is no quantity of the dimension of the channel, with the reason.
+    pub fn bounds(&self, channel: &Channel) -> Result<Bounds, (&'static str, QuantityError)> {
+        let unit = channel.role.internal_unit().unwrap_or(channel.unit.text());
+        let read = |key: &'static str, text: &Option<String>, difference: bool| match text {
+            Some(text) => quantity::parse(text, unit, difference, unit == "1").map(Some).map_err(|e| (key, e)),
+            None => Ok(None),
+        };
+        Ok(Bounds {
+            low: read("min", &self.min, false)?.unwrap_or(f64::NEG_INFINITY),
+            high: read("max", &self.max, false)?.unwrap_or(f64::INFINITY),
+            standard_uncertainty: read("sensor_uncertainty", &self.sensor_uncertainty, true)?.unwrap_or(0.0),
+            unit: unit.to_owned(),
+        })
+    }
+}
+
+/// Bits of a status word that must hold over the whole evaluated window: failure bits are 0, valid-data bits are 1.
+#[derive(Debug, Clone, PartialEq, Table)]
+#[table("conditions.status")]
+pub struct StatusCondition {
+    /// Channel with the role `status`.
+    #[key(id, example = "status")]
+    pub channel: String,
+    /// Bits that tell a failure where they are 1.
+    #[key(min = 0, max = MASK_MAX, default = 0.0, example = 240.0)]
+    pub failure_mask: f64,
+    /// Bits that tell valid data where they are 1.
+    #[key(min = 0, max = MASK_MAX, default = 0.0, example = 1.0)]
+    pub valid_mask: f64,
+    /// Maximum number of samples that break this: a count, or a share of the samples. Default: none.
+    #[key(example = "0.01 %")]
+    pub allowed: Option<Allowance>,
 }
 
 /// Maximum number of faults of each kind: a count, or a share of the samples. An omitted kind is counted and
