@@ -70,6 +70,7 @@ pub static SHIPPED_PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
     "temperature-ramp"
     "temperature-soak"
     "threshold"
+    "transfer-function"
     "vibration"
     "warm-up"
 );

@@ -52,6 +52,7 @@ pub static STUDIES: &[&Study] = &[
     &rate_table::zones::ROUNDED,
     &single_samples::false_finds::STUDY,
     &single_samples::DETECTION,
+    &edges::FREQUENCY,
     &edges::GRAVITY,
     &edges::INFLUENCE,
     &edges::NOISE,

@@ -3,6 +3,7 @@
 pub mod allan_family;
 pub mod autocorrelation;
 pub mod bias_of_runs;
+pub mod bode;
 pub mod dead_zone;
 mod draw;
 pub mod gravity;

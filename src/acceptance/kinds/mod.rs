@@ -9,6 +9,7 @@ mod rate_table;
 mod repeatability;
 mod stretch_facts;
 mod temperature;
+mod transfer;
 
 use super::pipeline::Test;
 use super::request::Request;
@@ -20,6 +21,7 @@ type Maker = fn(&Procedure) -> Option<Box<dyn Test>>;
 
 /// Every kind of test. A procedure is of the first kind that finds what it needs in it.
 const TEST_KINDS: &[Maker] = &[
+    kind::<transfer::OverFrequency>,
     kind::<rate_table::RateTable>,
     kind::<positions::InPositions>,
     kind::<acceleration::InGravity>,

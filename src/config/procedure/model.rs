@@ -18,6 +18,7 @@ use crate::measurand::Measurand;
 use crate::noise::in_band::NoiseTest;
 use crate::output::sha256;
 use crate::rate_table::acceleration::AccelerationTest;
+use crate::rate_table::transfer::TransferTest;
 use crate::record::{ClauseRecord, ExclusionRecord, ProcedureRecord, Signatory, WaiverRecord};
 use crate::recording::Channel;
 use crate::signing::Role;
@@ -89,6 +90,8 @@ pub struct Procedure {
     pub warm_up_test: Option<WarmUpTest>,
     /// A test in positions in the field of gravity.
     pub acceleration_test: Option<AccelerationTest>,
+    /// A test of the transfer function.
+    pub transfer_test: Option<TransferTest>,
     /// A series of switching off and on.
     pub repeatability_test: Option<RepeatabilityTest>,
     /// A comparison without and with an influence.
@@ -280,6 +283,7 @@ const REPORT_FIGURES: &[Word] = &[
     ("influence", "bias of every interval without and with an influence, and over its level"),
     ("positions", "output in every position against the Earth rate"),
     ("gravity", "output in every position in the field of gravity"),
+    ("bode", "gain and phase of the response over frequency"),
     ("table_polar", "residual over the angle of the table, as a polar plot"),
 ];
 

@@ -5,6 +5,7 @@
 pub mod chamber;
 pub mod chance;
 mod drift;
+pub mod frequency;
 pub mod gravity;
 pub mod influence;
 pub mod noise_source;

@@ -4,6 +4,7 @@
 //! which imports nothing from the analysis. One line in [`FAMILIES`] and a study name both.
 
 pub mod case;
+mod frequency;
 mod gravity;
 mod influence;
 mod noise;
@@ -26,8 +27,9 @@ use std::sync::LazyLock;
 use table::Bench;
 
 /// Every family.
-pub static FAMILIES: LazyLock<[Family; 9]> = LazyLock::new(|| {
+pub static FAMILIES: LazyLock<[Family; 10]> = LazyLock::new(|| {
     [
+        family::<frequency::OverFrequency>(include_str!("../../cases/edges/frequency.toml")),
         family::<gravity::InGravity>(include_str!("../../cases/edges/gravity.toml")),
         family::<influence::Bench>(include_str!("../../cases/edges/influence.toml")),
         family::<noise::Rest>(include_str!("../../cases/edges/noise.toml")),
@@ -54,6 +56,8 @@ const fn study(id: &'static str, title: &'static str, cases: fn() -> Vec<Case>) 
     Study { id, title, method: METHOD, records: 200, cases }
 }
 
+/// Response over frequency.
+pub static FREQUENCY: Study = study("edges-frequency", "Transfer functions at their edges", || cases("frequency"));
 /// Sensitivity to acceleration.
 pub static GRAVITY: Study = study("edges-gravity", "Acceleration at its edges", || cases("gravity"));
 /// Repeatability, and sensitivities to a field, a supply and vibration.

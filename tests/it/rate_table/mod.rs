@@ -1,6 +1,7 @@
 //! Tests on a rate table against a table made of geometry (`sagnac_studies::bench::rate_table`), which imports nothing of the
 //! program. The studies are `cargo xtask validate scale-factor misalignment`.
 
+mod frequency;
 mod gravity;
 mod motion;
 mod overload;
@@ -47,9 +48,12 @@ fn files() -> Vec<(&'static str, String)> {
     let [small, wide] = [0.0, 0.3].map(|half_width| SmallRates { half_width, ..zone() });
     let [near, far] = [(0.4e-3, -0.3e-3), (1.2e-3, -0.8e-3)].map(|tilt| TwoAxes { tilt, ..tilted() });
     let [steady, sensitive] = gravity::files();
+    let [fast, slow] = frequency::files();
     vec![
         steady,
         sensitive,
+        fast,
+        slow,
         ("samples/scale-factor-pass.csv", pass().record().csv(COUNT, 0.1)),
         ("samples/scale-factor-fail.csv", fail().record().csv(COUNT, 0.1)),
         ("samples/threshold-pass.csv", small_rates_csv(&small)),

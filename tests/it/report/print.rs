@@ -21,6 +21,7 @@ const RUNS: &[(&str, &str, &[&str])] = &[
     ("scale-factor", "scale-factor-fail.csv", &["--serial", "SN-1"]),
     ("threshold", "threshold-fail.csv", &["--serial", "SN-1"]),
     ("maximum-rate", "maximum-rate-fail.csv", &["--serial", "SN-1"]),
+    ("transfer-function", "transfer-function-fail.csv", &["--serial", "SN-1"]),
     ("acceleration", "acceleration-fail.csv", &["--serial", "SN-1"]),
     ("misalignment", "misalignment-fail.csv", &["--serial", "SN-1"]),
     ("multi-position", "multi-position-software.csv", &["--serial", "SN-1"]),

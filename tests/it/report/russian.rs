@@ -16,6 +16,7 @@ const CASES: &[(&str, &str)] = &[
     ("bias-repeatability", "bias-repeatability-fail"),
     ("magnetic-sensitivity", "magnetic-sensitivity-fail"),
     ("maximum-rate", "maximum-rate-fail"),
+    ("transfer-function", "transfer-function-fail"),
     ("misalignment", "misalignment-fail"),
     ("multi-position", "multi-position-software"),
     ("output-noise", "output-noise-fail"),

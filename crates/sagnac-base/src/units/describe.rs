@@ -21,6 +21,7 @@ impl Unit {
             "dimension.base.length",
             "dimension.base.current",
             "dimension.base.count",
+            "dimension.base.level",
         ];
         let powers = BASE_NAMES.into_iter().zip(self.dimension).filter(|(_, halves)| *halves != 0);
         let powers = powers.map(|(name, halves)| {
@@ -54,6 +55,7 @@ const KNOWN_DIMENSIONS: &[(&str, &str)] = &[
     ("dimension.pressure", "hPa"),
     ("dimension.acceleration", "g"),
     ("dimension.rate_per_acceleration_squared", "deg/h/g^2"),
+    ("dimension.level", "dB"),
     ("dimension.count", "count"),
     ("dimension.angle_per_count", "arcsec/count"),
 ];

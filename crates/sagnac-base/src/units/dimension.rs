@@ -1,7 +1,7 @@
 //! Dimensions of units.
 
 /// Number of base dimensions a unit is made of.
-pub(super) const BASE_COUNT: usize = 9;
+pub(super) const BASE_COUNT: usize = 10;
 
 /// A base dimension, in the order in which a [`Dimension`] has them.
 #[derive(Clone, Copy)]
@@ -15,6 +15,7 @@ pub(super) enum Base {
     Length,
     Current,
     Count,
+    Level,
 }
 
 /// Exponents of the base dimensions, in halves, so that `1/sqrt(h)` is exact.

@@ -107,6 +107,8 @@ const UNIT_SYMBOLS: &[(&[&str], f64, Dimension)] = &[
     (&["g", "gn"], 9.80665, per_time(Base::Length, 2)),
     (&["mg"], 9.80665e-3, per_time(Base::Length, 2)),
     (&["A", "А"], 1.0, one(Base::Current)),
+    // Decibels of a ratio of amplitudes: their zero is a ratio of 1, so that they are no pure number.
+    (&["dB", "дБ"], 1.0, one(Base::Level)),
     (&["mA", "мА"], 1e-3, one(Base::Current)),
     (
         &[
@@ -189,5 +191,5 @@ pub(super) fn differ_by_prefix(written: &str, symbol: &str) -> bool {
 pub(super) const SUGGESTED_SYMBOLS: &[&str] = &[
     "deg", "mdeg", "arcmin", "arcsec", "rad", "mrad", "urad", "nrad", "rev", "s", "ms", "us", "ns", "min",
     "h", "day", "Hz", "kHz", "dph", "dps", "rpm", "degC", "K", "degF", "V", "mV", "mT", "uT", "Oe", "Pa",
-    "hPa", "kPa", "m", "mm", "g", "mg", "A", "mA", "count", "LSB", "pulse", "ppm", "ppb", "sqrt",
+    "hPa", "kPa", "m", "mm", "g", "mg", "A", "mA", "dB", "count", "LSB", "pulse", "ppm", "ppb", "sqrt",
 ];

@@ -9,6 +9,7 @@ use crate::noise::data::NoiseType;
 use crate::noise::in_band::NoiseTest;
 use crate::rate_table::acceleration::Acceleration;
 use crate::rate_table::design::Extra;
+use crate::rate_table::transfer::Transfer;
 use crate::temperature::findings::Findings;
 use crate::temperature::warm_up::WarmUpFindings;
 use std::fmt;
@@ -38,6 +39,8 @@ pub enum Test {
     RateTable,
     /// Rate at rest in positions in the field of gravity.
     Acceleration,
+    /// Motion of a table over frequency.
+    Transfer,
     /// Rate at rest over switching off and on.
     Repeatability,
     /// Rate at rest without and with an influence other than temperature.
@@ -67,6 +70,8 @@ pub enum Evaluation {
     },
     /// From positions in the field of gravity.
     Acceleration(fn(&Measurand, &Acceleration) -> Vec<Estimate>),
+    /// From the response to motion over frequency.
+    Transfer(fn(&Measurand, &Transfer) -> Vec<Estimate>),
     /// From a series of switchings-on.
     Repeatability(fn(&Measurand, &Repeatability) -> Vec<Estimate>),
     /// From a comparison without and with an influence.
@@ -287,6 +292,16 @@ impl Measurand {
         Measurand::new(id, unit, doc, Evaluation::Acceleration(evaluate))
     }
 
+    /// A measurand of the response to motion over frequency.
+    pub const fn of_transfer(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &Transfer) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::Transfer(evaluate))
+    }
+
     /// A measurand of a series of switchings-on.
     pub const fn of_runs(
         id: &'static str,
@@ -392,6 +407,7 @@ impl Measurand {
             Evaluation::WarmUp(_) => Test::WarmUp,
             Evaluation::RateTable { .. } => Test::RateTable,
             Evaluation::Acceleration(_) => Test::Acceleration,
+            Evaluation::Transfer(_) => Test::Transfer,
             Evaluation::Repeatability(_) => Test::Repeatability,
             Evaluation::Comparison { .. } => Test::Comparison,
         }
@@ -468,6 +484,14 @@ impl Measurand {
     pub fn evaluate_acceleration(&self, found: &Acceleration) -> Vec<Estimate> {
         match self.evaluation {
             Evaluation::Acceleration(evaluate) => evaluate(self, found),
+            _ => vec![],
+        }
+    }
+
+    /// Its rows on a gyro channel from the response over frequency; none for a measurand of other tests.
+    pub fn evaluate_transfer(&self, found: &Transfer) -> Vec<Estimate> {
+        match self.evaluation {
+            Evaluation::Transfer(evaluate) => evaluate(self, found),
             _ => vec![],
         }
     }

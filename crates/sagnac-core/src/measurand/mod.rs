@@ -29,6 +29,7 @@ mod spectral_line;
 pub mod static_bias;
 mod table_harmonics;
 mod temperature;
+mod transfer;
 mod warm_up;
 
 pub use crate::evidence;
@@ -130,6 +131,12 @@ registry! {
     acceleration::G2_SENSITIVITY_IO,
     acceleration::G2_SENSITIVITY_IS,
     acceleration::G2_SENSITIVITY_OS,
+    transfer::BANDWIDTH_3DB,
+    transfer::BANDWIDTH_3DB_MODEL,
+    transfer::BANDWIDTH_PHASE_90,
+    transfer::LATENCY,
+    transfer::RESONANCE_PEAK,
+    transfer::RESPONSE_FLATNESS,
     influence::MAGNETIC_SENSITIVITY,
     influence::SUPPLY_SENSITIVITY,
     influence::VIBRATION_SENSITIVITY,

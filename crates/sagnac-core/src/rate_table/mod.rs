@@ -8,6 +8,7 @@ pub mod acceleration;
 pub mod alignment;
 pub mod blocks;
 pub mod combine;
+pub mod cross_spectrum;
 pub mod dead_zone;
 pub mod design;
 pub mod inner_axis;
@@ -22,6 +23,8 @@ pub mod setup;
 pub mod sine;
 pub mod stamps;
 pub mod steps;
+pub mod transfer;
+pub mod transfer_model;
 pub mod turns;
 
 pub use setup::Setup;

@@ -9,6 +9,7 @@ pub(crate) mod noise;
 pub mod phases;
 pub(crate) mod rate_table;
 pub mod temperature;
+pub(crate) mod transfer;
 
 use super::model::{Analysis, ExplainSpec, Instrument, MeasurandKeys, ReportSpec, UnitSpec, Waiver};
 use super::section::Section;
@@ -29,6 +30,7 @@ use noise::NoiseKeys;
 use rate_table::RateTableKeys;
 use sagnac_ingest::StampWriting;
 use temperature::{TemperatureKeys, WarmUpKeys};
+use transfer::TransferKeys;
 
 /// Roles a channel may have, with their meaning.
 pub const CHANNEL_ROLES: &[Word] = &[
@@ -102,6 +104,8 @@ pub(in crate::config::procedure) struct ProcedureFile {
     pub warm_up_test: Option<WarmUpKeys>,
     /// A test in positions in the field of gravity.
     pub acceleration_test: Option<AccelerationKeys>,
+    /// A test of the transfer function.
+    pub transfer_test: Option<TransferKeys>,
     /// A series of turn-ons.
     pub repeatability_test: Option<RepeatabilityKeys>,
     /// A comparison in a magnetic field.

@@ -1,0 +1,310 @@
+//! Transfer function of a gyro: response of the output to the motion of a table over frequency, and what follows from it.
+//!
+//! Sources: IEEE Std 952-2020, 12.15 (frequency response); Bendat and Piersol, Random Data, chapters 6 and 9.
+
+use super::cross_spectrum::Bin;
+use super::transfer_model::{FittedModel, Model, Order, fit};
+use crate::estimate::{LowerLimit, Spread, UpperLimit};
+use crate::numeric::optimize::bisect;
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
+
+/// Bands of an octave over which bins are joined.
+const BANDS_PER_OCTAVE: f64 = 12.0;
+
+/// Variance of the mean of bins under a Hann window beside that of as many bins that share nothing.
+const SHARED_BY_BINS: f64 = 1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0);
+
+/// Fewest bands that tell a response.
+const FEWEST_BANDS: usize = 4;
+
+/// A model counts beside the best one where its criterion is larger by no more than this.
+const RIVAL_CRITERION: f64 = 6.0;
+
+/// Misfit of the best model from which on no row rests on it.
+pub const LARGEST_MISFIT: f64 = 4.0;
+
+/// Probability with which a bound holds.
+pub const CLAIM_CONFIDENCE: f64 = 0.95;
+
+/// Standard normal quantiles of intervals with 95 % and of bounds with 95 %.
+const TWO_SIDED: f64 = 1.959_964;
+const ONE_SIDED: f64 = 1.644_854;
+
+/// How far above the highest frequency measured a model is followed, as a factor.
+const FOLLOWED_UP_TO: f64 = 1e3;
+
+/// What a test of the transfer function asks for.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct TransferTest {
+    /// End of the band of which the flatness is stated, Hz.
+    pub flat_to_hz: Option<f64>,
+    /// Least share of the power of the output that the input explains at a frequency that counts.
+    pub least_coherence: f64,
+}
+
+/// The response in a band of frequencies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Band {
+    /// Frequency, Hz.
+    pub frequency_hz: f64,
+    /// Natural logarithm of the gain over that at frequency zero.
+    pub log_gain: f64,
+    /// Phase, rad, without turns left out.
+    pub phase: f64,
+    /// Standard uncertainty of both.
+    pub standard: f64,
+}
+
+/// The transfer function of a channel.
+#[derive(Debug, Clone)]
+pub struct Transfer {
+    /// Channel.
+    pub channel: String,
+    /// Bands, by frequency.
+    pub bands: Vec<Band>,
+    /// Fitted models, the best first.
+    pub fits: Vec<FittedModel>,
+    /// What was asked for.
+    pub test: TransferTest,
+}
+
+/// A quantity of a transfer function, as far as the record shows it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shown {
+    /// A value.
+    Value(f64, Spread),
+    /// A bound below.
+    AtLeast(LowerLimit),
+    /// A bound above.
+    AtMost(UpperLimit),
+    /// Nothing.
+    Nothing,
+}
+
+/// The transfer function in the bins of a channel.
+pub fn evaluate(channel: &str, bins: &[Bin], test: TransferTest) -> Transfer {
+    let used: Vec<Bin> = bins.iter().copied().filter(|b| b.coherence >= test.least_coherence).collect();
+    let fits = fit(&used);
+    let bands = fits.first().map_or_else(Vec::new, |best| bands(&used, &best.model));
+    let (bands, fits) = if bands.len() < FEWEST_BANDS { (vec![], vec![]) } else { (bands, fits) };
+    Transfer { channel: channel.to_owned(), bands, fits, test }
+}
+
+/// Bins joined in narrow bands by their ratio to a model, which hardly changes in a band.
+fn bands(bins: &[Bin], model: &Model) -> Vec<Band> {
+    let band_of = |f: f64| (BANDS_PER_OCTAVE * f.log2()).floor() as i64;
+    let groups = bins.chunk_by(|a, b| band_of(a.frequency_hz) == band_of(b.frequency_hz));
+    let mut found: Vec<Band> = groups
+        .filter_map(|group| {
+            let (mut weights, mut ratio, mut log_f) = (0.0, sagnac_fft::Complex::default(), 0.0);
+            for b in group {
+                let expected = model.shape(b.frequency_hz) * model.gain();
+                let weight = expected.norm_sqr() / b.variance;
+                if !weight.is_finite() || weight <= 0.0 {
+                    continue;
+                }
+                weights += weight;
+                ratio += b.response / expected * weight;
+                log_f += b.frequency_hz.ln() * weight;
+            }
+            if weights <= 0.0 {
+                return None;
+            }
+            let (ratio, frequency_hz) = (ratio / weights, (log_f / weights).exp());
+            Some(Band {
+                frequency_hz,
+                log_gain: ratio.norm().ln() + model.shape(frequency_hz).norm().ln(),
+                phase: ratio.arg() + model.phase(frequency_hz),
+                standard: (SHARED_BY_BINS / weights).sqrt(),
+            })
+        })
+        .collect();
+    found.sort_by(|a, b| a.frequency_hz.total_cmp(&b.frequency_hz));
+    found
+}
+
+impl Transfer {
+    /// The model that describes it best.
+    pub fn best(&self) -> Option<&FittedModel> {
+        self.fits.first()
+    }
+
+    /// Highest frequency measured, Hz.
+    pub fn highest_hz(&self) -> Option<f64> {
+        self.bands.last().map(|b| b.frequency_hz)
+    }
+
+    /// True where the best model leaves more than noise.
+    pub fn misfits(&self) -> bool {
+        self.best().is_some_and(|f| f.misfit > LARGEST_MISFIT)
+    }
+
+    /// Models that the record does not tell from the best one.
+    pub fn rivals(&self) -> impl Iterator<Item = &FittedModel> {
+        let best = self.best().map_or(f64::INFINITY, |f| f.criterion);
+        self.fits.iter().filter(move |f| f.criterion <= best + RIVAL_CRITERION)
+    }
+
+    /// Frequency where the gain falls to 1/√2, between the bands.
+    pub fn bandwidth_3db(&self) -> Shown {
+        let gain = self.best().and_then(|f| Some(f.standard(|m| Some(m.gain()))? / f.model.gain()));
+        let level = FRAC_1_SQRT_2.ln();
+        let of_model = |m: &Model, f: f64| m.shape(f).norm().ln();
+        self.crossing(level, gain.unwrap_or(0.0).abs(), |b| b.log_gain, of_model)
+    }
+
+    /// Frequency where the phase reaches −90°, between the bands.
+    pub fn bandwidth_phase_90(&self) -> Shown {
+        self.crossing(-FRAC_PI_2, 0.0, |b| b.phase, Model::phase)
+    }
+
+    /// Where a quantity of the bands falls through a level: what the model leaves of it is followed from band to band.
+    fn crossing(
+        &self,
+        level: f64,
+        common: f64,
+        of_band: impl Fn(&Band) -> f64,
+        of_model: impl Fn(&Model, f64) -> f64,
+    ) -> Shown {
+        let Some(model) = self.best().map(|f| &f.model) else { return Shown::Nothing };
+        let uncertain = |b: &Band| b.standard.hypot(common);
+        let below = |b: &Band| of_band(b) < level;
+        let stays = self.bands.iter().enumerate().position(|(i, b)| {
+            below(b) && self.bands.get(i + 1).is_none_or(|next| below(next))
+        });
+        let pair = stays.and_then(|i| Some((self.bands.get(i.checked_sub(1)?)?, self.bands.get(i)?)));
+        let Some((a, b)) = pair else {
+            // All bands lie on one side.
+            let last = self.bands.iter().rev().find(|b| of_band(b) - ONE_SIDED * uncertain(b) > level);
+            return match (stays, last) {
+                (None, Some(last)) => Shown::AtLeast(LowerLimit {
+                    value: last.frequency_hz,
+                    coverage: CLAIM_CONFIDENCE,
+                }),
+                _ => Shown::Nothing,
+            };
+        };
+        let left = |band: &Band| of_band(band) - of_model(model, band.frequency_hz);
+        let (from, to) = (a.frequency_hz.ln(), b.frequency_hz.ln());
+        let at = |log_f: f64| {
+            let share = (log_f - from) / (to - from);
+            of_model(model, log_f.exp()) + left(a) + share * (left(b) - left(a))
+        };
+        let found = bisect(from, to, 60, |f| at(f) > level).middle();
+        let step = 1e-3 * (to - from);
+        let slope = (at(found + step) - at(found - step)) / (2.0 * step);
+        let noise = (0.5 * (a.standard.powi(2) + b.standard.powi(2)) + common * common).sqrt();
+        // Between bands far apart, what the model leaves need not go straight.
+        let apart = ((to - from) * BANDS_PER_OCTAVE / std::f64::consts::LN_2 - 2.0).max(0.0).min(1.0);
+        let unsure = noise.hypot(0.3 * apart * (left(b) - left(a)));
+        let standard = unsure / slope.abs();
+        if !standard.is_finite() {
+            return Shown::Nothing;
+        }
+        let curve = scores().map(|score| (score, (found + score * standard).exp())).collect();
+        Shown::Value(found.exp(), Spread::Curve(curve))
+    }
+
+    /// Frequency where the gain falls to 1/√2, by the models that the record does not tell apart.
+    pub fn bandwidth_by_model(&self) -> Shown {
+        let Some(highest) = self.highest_hz().filter(|_| !self.misfits()) else { return Shown::Nothing };
+        let falls = |m: &Model| m.falls(FOLLOWED_UP_TO * highest, |m, f| m.shape(f).norm() - FRAC_1_SQRT_2);
+        let ends: Vec<Option<(f64, f64)>> = self
+            .rivals()
+            .map(|f| Some((falls(&f.model)?.ln(), f.standard(|m| Some(falls(m)?.ln()))?)))
+            .collect();
+        let known = ends.iter().flatten();
+        let low = known.clone().map(|(at, sd)| at - TWO_SIDED * sd).fold(f64::INFINITY, f64::min);
+        let high = known.map(|(at, sd)| at + TWO_SIDED * sd).fold(f64::NEG_INFINITY, f64::max);
+        if ends.iter().any(Option::is_none) {
+            // A rival does not fall at all: there is no upper end.
+            let value = low.exp().max(highest);
+            let limit = LowerLimit { value: if low.is_finite() { low.exp() } else { value }, coverage: CLAIM_CONFIDENCE };
+            return Shown::AtLeast(limit);
+        }
+        match ends.first() {
+            Some(Some((at, _))) => Shown::Value(at.exp(), between(low, *at, high, f64::exp)),
+            _ => Shown::Nothing,
+        }
+    }
+
+    /// Delay of slow motion, s, by the models that the record does not tell apart.
+    pub fn latency_s(&self) -> Shown {
+        let Some(best) = self.best().filter(|_| !self.misfits()) else { return Shown::Nothing };
+        let ends: Vec<(f64, f64)> = self
+            .rivals()
+            .filter_map(|f| Some((f.model.latency_s(), f.standard(|m| Some(m.latency_s()))?)))
+            .collect();
+        let low = ends.iter().map(|(at, sd)| at - TWO_SIDED * sd).fold(f64::INFINITY, f64::min);
+        let high = ends.iter().map(|(at, sd)| at + TWO_SIDED * sd).fold(f64::NEG_INFINITY, f64::max);
+        if ends.is_empty() {
+            return Shown::Nothing;
+        }
+        let at = best.model.latency_s();
+        Shown::Value(at, between(low, at, high, |v| v))
+    }
+
+    /// Largest rise of the gain over that at frequency zero, dB.
+    pub fn resonance_peak_db(&self) -> Shown {
+        self.largest(f64::INFINITY, |b| b.log_gain)
+    }
+
+    /// Largest deviation of the gain from that at frequency zero up to the end of the stated band, dB.
+    pub fn flatness_db(&self) -> Shown {
+        match (self.test.flat_to_hz, self.highest_hz()) {
+            // A band reaches half a band beyond its frequency.
+            (Some(to), Some(highest)) if highest * 2f64.powf(1.0 / BANDS_PER_OCTAVE) >= to => {
+                self.largest(to, |b| b.log_gain.abs())
+            }
+            _ => Shown::Nothing,
+        }
+    }
+
+    /// The largest value among the bands up to a frequency, in dB. Each band may be the largest: the ends of the interval are the
+    /// largest of the ends, with what counts the bands above.
+    fn largest(&self, up_to_hz: f64, of_band: impl Fn(&Band) -> f64) -> Shown {
+        let gain = self.best().and_then(|f| Some(f.standard(|m| Some(m.gain()))? / f.model.gain()));
+        let common = gain.unwrap_or(0.0).abs();
+        let bands = || self.bands.iter().filter(|b| b.frequency_hz <= up_to_hz);
+        let count = bands().count().max(1) as f64;
+        let for_all = crate::estimate::normal_quantile(1.0 - 0.025 / count);
+        let largest = |score: f64| {
+            bands().map(|b| of_band(b) + score * b.standard.hypot(common)).fold(f64::NEG_INFINITY, f64::max)
+        };
+        let (low, high) = (largest(-TWO_SIDED), largest(for_all));
+        if !high.is_finite() {
+            return Shown::Nothing;
+        }
+        if low <= 0.0 {
+            let value = decibel(largest(crate::estimate::normal_quantile(1.0 - 0.05 / count)).max(0.0));
+            return Shown::AtMost(UpperLimit { value, coverage: CLAIM_CONFIDENCE });
+        }
+        // The largest of many values is too large by about what the bands scatter.
+        let middle = largest(0.0).min(0.5 * (low + high)).max(low);
+        Shown::Value(decibel(middle), between(low, middle, high, decibel))
+    }
+
+    /// What the best model is, for the reader.
+    pub fn order(&self) -> Option<Order> {
+        self.best().map(|f| f.model.order)
+    }
+}
+
+/// Decibels of a natural logarithm of a ratio of amplitudes.
+pub fn decibel(log_gain: f64) -> f64 {
+    20.0 * log_gain / std::f64::consts::LN_10
+}
+
+/// Scores at which a spread is told.
+fn scores() -> impl Iterator<Item = f64> {
+    (-12..=12).map(|i| 0.25 * f64::from(i))
+}
+
+/// A spread with these ends of its interval with 95 %, of a function that rises.
+fn between(low: f64, at: f64, high: f64, of: impl Fn(f64) -> f64) -> Spread {
+    let side = |score: f64| {
+        let end = if score < 0.0 { at - low } else { high - at };
+        of(at + score / TWO_SIDED * end.max(0.0))
+    };
+    Spread::Curve(scores().map(|score| (score, side(score))).collect())
+}
