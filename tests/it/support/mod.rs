@@ -210,12 +210,13 @@ pub fn assert_no_nan(folder: &Path) {
     }
 }
 
-/// A Markdown report without what changes from run to run: the moment of evaluation, the version, the checksums of files.
+/// A Markdown report without what changes from run to run: the moment and the day of evaluation, the version, the checksums of files.
 pub fn steady(report: &str, result: &Value) -> String {
     let at = result["session"]["evaluated_at"].as_str().unwrap();
     let clock = format!("{} {} UTC", &at[..10], &at[11..19]);
     assert!(report.contains(&clock), "{clock}");
-    let mut text = report.replace(&clock, "<clock>").replace(env!("CARGO_PKG_VERSION"), "<version>");
+    let mut text = report.replace(&clock, "<clock>").replace(&at[..10], "<day>");
+    text = text.replace(env!("CARGO_PKG_VERSION"), "<version>");
     for word in report.split(|c: char| !c.is_ascii_hexdigit()).filter(|w| w.len() == 64) {
         text = text.replace(word, "<sha256>");
     }

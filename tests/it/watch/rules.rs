@@ -13,7 +13,7 @@ fn a_mistake_in_the_rules_is_one_diagnostic_with_its_place() {
         ("serial_column = \"sn\"\n", "watch.toml:7:17"),
         ("hook = \"to_mes\"\n", "watch.toml:7:8"),
         ("hok = [\"to_mes\"]\n", "watch.toml:7:1"),
-        ("after = \"60\"\n", "watch.toml:7:9"),
+        ("after = \"60\"\n", "watch.toml:7:10"),
     ] {
         let bench = Bench::new(more);
         let said = bench.once();
