@@ -120,7 +120,7 @@ fn evaluated(
         notes.push(note!("derived.correlation"));
     }
     let estimate = Estimate { notes, ..in_unit(&outcome, &spec.unit, channel) };
-    (outcome, row(&estimate, spec, limits))
+    (outcome, own_row(&estimate, &spec.id, &spec.unit, limits))
 }
 
 /// The values that a reference names, one or several; `None` for one that is not there.
@@ -163,10 +163,15 @@ fn in_unit(outcome: &Outcome, unit: &Unit, channel: &str) -> Estimate {
     }
 }
 
-/// The row, judged by the limit that holds for it.
-fn row(estimate: &Estimate, spec: &DerivedSpec, limits: &EffectiveLimits) -> MeasurandRecord {
-    let stated = limits.set.derived.iter().find(|l| l.derived == spec.id);
-    let limit = stated.map(|l| l.in_unit(&spec.unit));
+/// The row of a quantity that is no measurand, judged by the limit that holds for it.
+pub(super) fn own_row(
+    estimate: &Estimate,
+    id: &str,
+    unit: &Unit,
+    limits: &EffectiveLimits,
+) -> MeasurandRecord {
+    let stated = limits.set.derived.iter().find(|l| l.derived == id);
+    let limit = stated.map(|l| l.in_unit(unit));
     // A limit in a unit that does not fit decides nothing, as with every row.
     let other_unit = limit.as_ref().and_then(|l| l.as_ref().err()).map(|(bound, _)| bound.unit.text());
     let as_stated = stated.and_then(|l| {
@@ -175,6 +180,6 @@ fn row(estimate: &Estimate, spec: &DerivedSpec, limits: &EffectiveLimits) -> Mea
     });
     let limit = limit.and_then(Result::ok).or(as_stated.filter(|_| other_unit.is_some()));
     let against =
-        Against { limit: limit.as_ref(), unit: spec.unit.text(), other_unit, signed: true, reference: None };
-    MeasurandRecord { id: spec.id.clone(), ..judged(estimate, against) }
+        Against { limit: limit.as_ref(), unit: unit.text(), other_unit, signed: true, reference: None };
+    MeasurandRecord { id: id.to_owned(), ..judged(estimate, against) }
 }

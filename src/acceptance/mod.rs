@@ -24,6 +24,7 @@ pub mod condition;
 pub mod datasheet;
 mod derived;
 pub mod explained;
+mod external;
 pub mod figures;
 pub mod history;
 pub mod inspect;

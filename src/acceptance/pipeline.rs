@@ -6,6 +6,7 @@ use super::condition::checks::CheckLog;
 use super::condition::thermometer::Thermometer;
 use super::condition::{ColumnFact, Facts, judge_all};
 use super::derived;
+use super::external;
 use super::missing_rows;
 use super::reading::{self, tidy};
 use super::request::{Outcome, Request};
@@ -168,6 +169,7 @@ fn rows(
     let gyros: Vec<&str> = gyros.map(|c| c.id.as_str()).collect();
     let correlation = |one: &_, other: &_| evidence.correlation(one, other);
     rows.extend(derived::rows(procedure, request.limits, &gyros, estimates, &correlation));
+    rows.extend(external::rows(procedure, request.limits, &request.unit));
     rows
 }
 

@@ -7,6 +7,7 @@
 pub mod alternatives;
 pub(crate) mod contained_files;
 pub mod diagnostics;
+pub mod external;
 pub mod laboratory;
 pub mod layout;
 mod line_repair;

@@ -56,7 +56,8 @@ pub use interval_mean::IntervalMeanRecord;
 pub use lot::{LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, SerialSource, VerdictCounts};
 pub use message::Message;
 pub use origin::{
-    ColumnRecord, LimitsFile, ProcedureRecord, Program, RecordingFile, Session, Signatory, UnitUnderTest,
+    ColumnRecord, ExternalResult, LimitsFile, ProcedureRecord, Program, RecordingFile, Session, Signatory,
+    UnitUnderTest,
 };
 pub use phase::PhaseRecord;
 pub use proof::{

@@ -136,6 +136,29 @@ pub struct UnitUnderTest {
     /// What else is stated of it, by name.
     #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
     pub attributes: BTreeMap<String, String>,
+    /// Results of other tests of it, which no recording shows.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub external: Vec<ExternalResult>,
+}
+
+/// A result of another test of the unit, as its certificate states it.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct ExternalResult {
+    /// Id of the quantity.
+    pub id: String,
+    /// Value.
+    pub value: f64,
+    /// Unit of value and interval.
+    pub unit: String,
+    /// Interval with 95 %.
+    pub interval: Option<[f64; 2]>,
+    /// Number of the certificate or protocol.
+    pub certificate: Option<String>,
+    /// Who tested.
+    pub laboratory: Option<String>,
+    /// SHA-256 of the certificate, hexadecimal.
+    pub sha256: Option<String>,
 }
 
 impl UnitUnderTest {
@@ -153,6 +176,11 @@ impl UnitUnderTest {
         self.reference |= known.reference;
         for (name, value) in &known.attributes {
             self.attributes.entry(name.clone()).or_insert_with(|| value.clone());
+        }
+        for other in &known.external {
+            if self.external.iter().all(|own| own.id != other.id) {
+                self.external.push(other.clone());
+            }
         }
     }
 }

@@ -6,6 +6,7 @@ pub mod tables;
 
 use crate::config::contained_files::{self, ContainedFile};
 use crate::config::diagnostics::{Problems, Span};
+use crate::config::external;
 use crate::config::read_tables::checked;
 use crate::config::reader::Reader;
 use crate::config::section::Section;
@@ -120,7 +121,10 @@ pub fn parse(path: &Path, name: &str, bytes: &[u8], folder: &Path) -> Result<Man
         Manifest {
             path: path.to_owned(),
             serial: tables.serial.take(),
-            unit: std::mem::take(&mut tables.unit).into(),
+            unit: UnitUnderTest {
+                external: external::results(&tables.externals, reader),
+                ..std::mem::take(&mut tables.unit).into()
+            },
             contiguous: tables.contiguous,
             options: ReadOptions {
                 sources: sources(std::mem::take(&mut tables.sources), folder, reader),

@@ -1,5 +1,6 @@
 //! The tables of a manifest.
 
+use crate::config::external::ExternalKeys;
 use crate::config::recording_keys::RecordingKeys;
 use crate::config::section::Section;
 use crate::config::spec::TableSpec;
@@ -40,6 +41,9 @@ pub(super) struct ManifestTables {
     /// Files recorded beside the recording with clocks of their own, one table each.
     #[key(name = "source")]
     pub sources: Vec<SourceKeys>,
+    /// Results of other tests of the unit, one table each.
+    #[key(name = "external")]
+    pub externals: Vec<ExternalKeys>,
     #[key(section)]
     pub section: Section,
 }

@@ -11,6 +11,7 @@ pub use super::tables::conditions::{
     Bounds, Conditions, FaultBudget, RangeCondition, StatusCondition, SupplyCondition, TemperatureCondition,
 };
 use super::unit_facts::UnitFact;
+use crate::config::external::ExternalSpec;
 use crate::config::table::{Table, words};
 use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
@@ -100,6 +101,8 @@ pub struct Procedure {
     pub measurands: Vec<MeasurandSpec>,
     /// Quantities by a formula, in the order of the file.
     pub derived: Vec<DerivedSpec>,
+    /// Results of other tests that the report states, in the order of the file.
+    pub externals: Vec<ExternalSpec>,
     /// Limits, references and typical values that stand in the procedure itself.
     pub limits: LimitSet,
     /// Clauses of the standard.
@@ -412,6 +415,11 @@ impl Procedure {
     /// The channels that deliver a gyro output, in the order of the file.
     pub fn gyro_channels(&self) -> impl Iterator<Item = &ChannelSpec> {
         self.channels.iter().filter(|c| c.channel.role.is_gyro())
+    }
+
+    /// The result of another test of an id.
+    pub fn external(&self, id: &str) -> Option<&ExternalSpec> {
+        self.externals.iter().find(|e| e.id == id)
     }
 
     /// The channel of an id.

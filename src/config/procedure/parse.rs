@@ -9,6 +9,7 @@ use super::tables::limits::{LIMITS_FILE, LimitsTables};
 use super::tables::{ChannelKeys, PROCEDURE_FILE, ProcedureFile};
 use super::{channel, derived, recording_options, validate};
 use crate::config::contained_files;
+use crate::config::external;
 use crate::config::read_tables::checked;
 use crate::config::table::Table;
 use crate::influence::ComparisonTest;
@@ -111,6 +112,7 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         comparison_test: comparison.into_iter().flatten().next(),
         measurands: file.measurands.into_iter().filter_map(MeasurandKeys::spec).collect(),
         derived: derived::read(file.derived, reader),
+        externals: external::asked(file.externals, reader),
         limits,
         clauses: file.clauses.into_iter().map(Into::into).collect(),
         report: file.report,

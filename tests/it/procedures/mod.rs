@@ -4,6 +4,7 @@ mod check_list;
 mod conditions;
 mod deciding;
 mod derived;
+mod external;
 mod files;
 mod manifest;
 mod named_files;

@@ -14,6 +14,7 @@ pub(crate) mod transfer;
 use super::model::{Analysis, ExplainSpec, Instrument, MeasurandKeys, ReportSpec, UnitSpec, Waiver};
 use super::section::Section;
 use super::site::Site;
+use crate::config::external::ExternalKeys;
 use crate::config::recording_keys::RecordingKeys;
 use crate::config::spec::{TableSpec, Word};
 use crate::config::table::{Table, words};
@@ -120,10 +121,13 @@ pub(in crate::config::procedure) struct ProcedureFile {
     /// Quantities by a formula over others, one table each.
     #[key(name = "derived")]
     pub derived: Vec<DerivedKeys>,
+    /// Results of other tests that the report states, one table each.
+    #[key(name = "external")]
+    pub externals: Vec<ExternalKeys>,
     /// Limits. A limits file may replace them.
     #[key(name = "limit")]
     pub limits: Vec<LimitKeys>,
-    /// Limits of quantities by a formula. A limits file may replace them.
+    /// Limits of quantities by a formula and of results of other tests. A limits file may replace them.
     #[key(name = "derived_limit")]
     pub derived_limits: Vec<DerivedLimitKeys>,
     /// Published or data-sheet values shown for comparison.
