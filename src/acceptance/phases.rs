@@ -1,6 +1,7 @@
 //! The results of the phases of a test as one.
 
 use super::build_record::clauses;
+use super::changes::{self, PhaseRows};
 use super::condition::checks::none_made;
 use super::kinds;
 use super::request::Outcome;
@@ -8,7 +9,7 @@ use crate::config::procedure::phases::{Phase, Phased};
 use crate::config::procedure::unit_facts::unknown;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
-use crate::i18n::{Arg, Note, note};
+use crate::i18n::{Arg, Lang, LocalText, Localize, Note, note};
 use crate::record::{
     CheckRecord, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT, RunKind, RunRecord,
     Session, UnitUnderTest, Window,
@@ -29,7 +30,10 @@ pub fn folder(phase: &Phase) -> String {
 
 /// One record that covers all phases. Its conditions and measurands are those of all of them, each with its phase.
 pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session: Session) -> RunRecord {
-    let phases: Vec<PhaseRecord> = done.iter().map(of).collect();
+    let rows: Vec<PhaseRows<'_>> =
+        done.iter().map(|d| PhaseRows::of(&d.phase.id, d.outcome.as_ref())).collect();
+    let changes = changes::part(&phased.changes, &rows, title_of_changes());
+    let phases: Vec<PhaseRecord> = done.iter().map(of).chain(changes).collect();
     let worst = phases.iter().map(|p| p.verdict).max().unwrap_or(Verdict::None);
     let errors: Vec<Note> = unknown(&unit, phased.serial_required, &phased.requires);
     let of_phase = |p: &PhaseRecord| {
@@ -86,6 +90,12 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         errors: errors.into_iter().map(Into::into).collect(),
         ..RunRecord::default()
     }
+}
+
+/// Title of the changes between phases, in every language.
+fn title_of_changes() -> LocalText {
+    let text = |lang: &Lang| (lang.code().to_owned(), note!("compare_phases.title").say(*lang));
+    LocalText::in_languages(Lang::ALL.iter().map(text).collect(), Lang::En.code())
 }
 
 /// The checks of all phases, each with its phase.

@@ -20,8 +20,13 @@ impl Translator {
         lookup(self.lang, key).unwrap_or(key).to_owned()
     }
 
-    /// The text of `prefix.id`; a readable form of the id when the table lacks it.
+    /// The text of `prefix.id`; a readable form of the id when the table lacks it. The change of a quantity is named by it.
     pub fn name(self, prefix: &str, id: &str) -> String {
+        if let Some(of) = id.strip_suffix("_change")
+            && let Some(name) = lookup(self.lang, &format!("{prefix}.{of}"))
+        {
+            return self.with("compare_phases.change_of", &[("name", name)]);
+        }
         lookup(self.lang, &format!("{prefix}.{id}")).map_or_else(|| id.replace('_', " "), str::to_owned)
     }
 

@@ -1,19 +1,23 @@
 //! Procedures of several phases: each phase is a procedure of its own, on recordings of its own.
 
 use super::LimitsFile;
-use super::diagnostics::{Problems, SourceText};
+use super::diagnostics::{Problem, Problems, SourceText, Span};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
-use super::reader::Reader;
-use super::tables::phases::{PHASES_FILE, PhaseKeys, PhasesFile};
+use super::reader::{Reader, meant};
+use super::section::Section;
+use super::tables::phases::{CompareKeys, PHASES_FILE, PhaseKeys, PhasesFile};
 use super::unit_facts::UnitFact;
 use crate::config::contained_files;
 use crate::config::read_tables::checked;
 use crate::config::shipped::{self, Shipped};
 use crate::config::table::Table;
 use crate::config::text_file::{self, Wording};
+use crate::estimate::Limit;
 use crate::i18n::{LocalText, note};
+use crate::measurand::Measurand;
 use crate::record::{ClauseRecord, ProcedureRecord};
+use sagnac_core::spelling::nearest;
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
 
@@ -36,6 +40,8 @@ pub struct Phased {
     pub requires: Vec<UnitFact>,
     /// The phases in their order.
     pub phases: Vec<Phase>,
+    /// Changes from one phase to another.
+    pub changes: Vec<Change>,
     /// Clauses of the standard.
     pub clauses: Vec<ClauseRecord>,
 }
@@ -51,6 +57,21 @@ pub struct Phase {
     pub procedure: Loaded<Procedure>,
     /// Its limits file.
     pub limits: Option<Loaded<LimitsFile>>,
+}
+
+/// The change of a quantity from one phase to another.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Change {
+    /// The quantity.
+    pub measurand: &'static Measurand,
+    /// Phase before.
+    pub before: String,
+    /// Phase after.
+    pub after: String,
+    /// Limit on the change, both signs.
+    pub limit: Option<Limit>,
+    /// Where its measurand stands.
+    pub span: Span,
 }
 
 /// What the file itself says of a phase.
@@ -113,8 +134,23 @@ pub fn load_phased(path: &Path) -> Result<Phased, Problems> {
     }
     match found {
         Some(problems) => Err(problems),
-        None => Ok(phased),
+        None => not_measured(&phased, &source).map_or(Ok(phased), Err),
     }
+}
+
+/// Changes of quantities that a phase does not determine.
+fn not_measured(phased: &Phased, source: &SourceText) -> Option<Problems> {
+    let measures = |phase: &str, m: &Measurand| {
+        let procedure = phased.phases.iter().find(|p| p.id == phase).map(|p| &p.procedure.value);
+        procedure.is_none_or(|p| p.measurands.iter().any(|spec| spec.measurand == m))
+    };
+    let of = |change: &Change| {
+        let lacks = [&change.before, &change.after].into_iter().find(|p| !measures(p, change.measurand))?;
+        let message = note!("compare_phases.not_measured", id = change.measurand.id, phase = lacks.as_str());
+        Some(source.error(&change.span, message))
+    };
+    let list: Vec<Problem> = phased.changes.iter().filter_map(of).collect();
+    (!list.is_empty()).then_some(Problems { list })
 }
 
 fn read(
@@ -148,10 +184,54 @@ fn read(
             serial_required: unit.serial_required,
             requires: unit.requires,
             phases: vec![],
+            changes: changes(file.compares, root, reader),
             clauses: file.clauses.into_iter().map(Into::into).collect(),
         };
         (phased, stated(file.phases, home, reader))
     })
+}
+
+/// Id that no phase may have: that of the changes between phases.
+pub const CHANGES: &str = "compare";
+
+/// Reads the changes; each is between two phases of the file.
+fn changes(tables: Vec<CompareKeys>, root: &Section, reader: &mut Reader<'_>) -> Vec<Change> {
+    let known: Vec<String> = root.tables("phase").iter().filter_map(|s| s.text("id")).collect();
+    let mut found = vec![];
+    for keys in tables {
+        let CompareKeys { measurand: Some(measurand), before: Some(before), after: Some(after), .. } = keys else {
+            continue;
+        };
+        let section = keys.section;
+        for (key, id) in [("before", &before), ("after", &after)] {
+            if !known.contains(id) {
+                let help = nearest(id, known.iter().map(String::as_str)).map(meant);
+                let message = note!("compare_phases.unknown", id = id.as_str(), known = known.join(", "));
+                reader.error(&section.span_of(key), message, help);
+            }
+        }
+        if before == after {
+            reader.error(&section.span_of("after"), "compare_phases.same", None);
+        }
+        if measurand.unit.is_empty() {
+            let message = note!("compare_phases.as_recorded", id = measurand.id);
+            reader.error(&section.span_of("measurand"), message, None);
+        }
+        let source = reader.source.name.clone();
+        let limit = keys.max_change.map(|most| Limit {
+            min: Some(-most),
+            max: Some(most),
+            rule: keys.rule,
+            risk: keys.risk,
+            source,
+        });
+        if keys.max_change.is_some_and(|most| most <= 0.0) {
+            reader.error(&section.span_of("max_change"), "compare_phases.positive", None);
+        }
+        let span = section.span_of("measurand");
+        found.push(Change { measurand, before, after, limit, span });
+    }
+    found
 }
 
 fn stated(phases: Vec<PhaseKeys>, home: Home<'_>, reader: &mut Reader<'_>) -> Vec<Stated> {
@@ -175,6 +255,9 @@ fn stated(phases: Vec<PhaseKeys>, home: Home<'_>, reader: &mut Reader<'_>) -> Ve
                 || other.id.starts_with(&format!("{id}."))
                 || id.starts_with(&format!("{}.", other.id))
         };
+        if id == CHANGES {
+            reader.error(&section.span_of("id"), "compare_phases.reserved", None);
+        }
         if let Some(other) = list.iter().find(|o| clash(o)) {
             let message = note!("phases.twice", id = id.as_str(), other = other.id.as_str());
             reader.error(&section.span_of("id"), message, None);

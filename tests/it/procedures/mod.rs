@@ -1,6 +1,7 @@
 //! Procedures, limits and manifests: what is read, what is refused, what the guide says of every key.
 
 mod check_list;
+mod compared;
 mod conditions;
 mod deciding;
 mod derived;
