@@ -3,7 +3,7 @@
 use super::request::Outcome;
 use super::verdict::{Against, judged};
 use crate::config::procedure::phases::{CHANGES, Change};
-use crate::estimate::{Estimate, Limit, LowerLimit, Spread, UpperLimit, Verdict};
+use crate::estimate::{Estimate, Interval, Limit, LowerLimit, Spread, UpperLimit, Verdict};
 use crate::i18n::{LocalText, Note, note};
 use crate::record::{InstrumentRecord, MeasurandRecord, PhaseRecord};
 
@@ -148,7 +148,7 @@ fn difference(
     if contradicted { row.note(note!("compare_phases.contradicted")) } else { row }
 }
 
-fn as_bound(interval: crate::record::Interval) -> UpperLimit {
+fn as_bound(interval: Interval) -> UpperLimit {
     UpperLimit { value: interval.high.abs().max(interval.low.abs()), coverage: interval.coverage }
 }
 

@@ -7,9 +7,6 @@ use crate::i18n::LocalText;
 use crate::record::ExclusionRecord;
 use crate::recording::Channel;
 
-/// Largest status word: integers up to here are exact in the values of a recording.
-const MASK_MAX: f64 = 9_007_199_254_740_991.0;
-
 /// Conditions under which the test is valid. A condition that is not proven to be met makes the verdict
 /// indeterminate, because an invalid test neither passes nor fails a unit.
 #[derive(Debug, Clone, PartialEq, Table)]
@@ -161,7 +158,8 @@ impl RangeCondition {
     }
 }
 
-/// Bits of a status word that must hold over the whole evaluated window: failure bits are 0, valid-data bits are 1.
+/// Bits of a status word that must hold over the whole evaluated window: failure bits are 0, valid-data bits are 1. Masks go up
+/// to 2^53 − 1, the largest whole number that the values of a recording hold exactly.
 #[derive(Debug, Clone, PartialEq, Table)]
 #[table("conditions.status")]
 pub struct StatusCondition {
@@ -169,10 +167,10 @@ pub struct StatusCondition {
     #[key(id, example = "status")]
     pub channel: String,
     /// Bits that tell a failure where they are 1.
-    #[key(min = 0, max = MASK_MAX, default = 0.0, example = 240.0)]
+    #[key(min = 0, max = 9007199254740991, default = 0.0, example = 240.0)]
     pub failure_mask: f64,
     /// Bits that tell valid data where they are 1.
-    #[key(min = 0, max = MASK_MAX, default = 0.0, example = 1.0)]
+    #[key(min = 0, max = 9007199254740991, default = 0.0, example = 1.0)]
     pub valid_mask: f64,
     /// Maximum number of samples that break this: a count, or a share of the samples. Default: none.
     #[key(example = "0.01 %")]
