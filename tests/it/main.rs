@@ -44,6 +44,7 @@ mod recordings;
 mod registry;
 mod report;
 mod simulate;
+mod start_up;
 mod store;
 mod support;
 mod terminal;

@@ -46,4 +46,5 @@ pub mod influence;
 pub mod lot;
 pub mod measurand;
 pub mod rate_table;
+pub mod start_up;
 pub mod temperature;

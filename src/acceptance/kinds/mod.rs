@@ -7,6 +7,7 @@ mod influence;
 mod positions;
 mod rate_table;
 mod repeatability;
+mod start_up;
 mod stretch_facts;
 mod temperature;
 mod transfer;
@@ -22,6 +23,7 @@ type Maker = fn(&Procedure) -> Option<Box<dyn Test>>;
 /// Every kind of test. A procedure is of the first kind that finds what it needs in it.
 const TEST_KINDS: &[Maker] = &[
     kind::<transfer::OverFrequency>,
+    kind::<start_up::FromSwitchingOn>,
     kind::<rate_table::RateTable>,
     kind::<positions::InPositions>,
     kind::<acceleration::InGravity>,

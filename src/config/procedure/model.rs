@@ -23,6 +23,7 @@ use crate::rate_table::transfer::TransferTest;
 use crate::record::{ClauseRecord, ExclusionRecord, ProcedureRecord, Signatory, WaiverRecord};
 use crate::recording::Channel;
 use crate::signing::Role;
+use crate::start_up::StartUpTest;
 use crate::temperature::{TemperatureTest, WarmUpTest};
 use chrono::NaiveDate;
 use sagnac_ingest::ReadOptions;
@@ -93,6 +94,8 @@ pub struct Procedure {
     pub acceleration_test: Option<AccelerationTest>,
     /// A test of the transfer function.
     pub transfer_test: Option<TransferTest>,
+    /// A test of the start-up.
+    pub start_up_test: Option<StartUpTest>,
     /// A series of switching off and on.
     pub repeatability_test: Option<RepeatabilityTest>,
     /// A comparison without and with an influence.

@@ -108,6 +108,7 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         warm_up_test: file.warm_up_test.map(Into::into),
         acceleration_test: file.acceleration_test.map(Into::into),
         transfer_test: file.transfer_test.map(Into::into),
+        start_up_test: file.start_up_test.map(Into::into),
         repeatability_test: file.repeatability_test.map(Into::into),
         comparison_test: comparison.into_iter().flatten().next(),
         measurands: file.measurands.into_iter().filter_map(MeasurandKeys::spec).collect(),

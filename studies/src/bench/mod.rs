@@ -11,6 +11,7 @@ pub mod influence;
 pub mod noise_source;
 pub mod rate_table;
 pub mod small_rates;
+pub mod start_up;
 pub mod two_axes;
 
 /// Rotation of the Earth, deg/h (7.292115e-5 rad/s).

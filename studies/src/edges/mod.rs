@@ -13,6 +13,7 @@ mod on_table;
 mod overload;
 mod rate_table;
 mod small_rates;
+mod start_up;
 mod table;
 pub mod tally;
 mod temperature;
@@ -27,7 +28,7 @@ use std::sync::LazyLock;
 use table::Bench;
 
 /// Every family.
-pub static FAMILIES: LazyLock<[Family; 10]> = LazyLock::new(|| {
+pub static FAMILIES: LazyLock<[Family; 11]> = LazyLock::new(|| {
     [
         family::<frequency::OverFrequency>(include_str!("../../cases/edges/frequency.toml")),
         family::<gravity::InGravity>(include_str!("../../cases/edges/gravity.toml")),
@@ -37,6 +38,7 @@ pub static FAMILIES: LazyLock<[Family; 10]> = LazyLock::new(|| {
         family::<overload::Rails>(include_str!("../../cases/edges/overload.toml")),
         family::<rate_table::Bench>(include_str!("../../cases/edges/rate_table.toml")),
         family::<small_rates::Sweep>(include_str!("../../cases/edges/small_rates.toml")),
+        family::<start_up::Start>(include_str!("../../cases/edges/start_up.toml")),
         family::<temperature::Bench>(include_str!("../../cases/edges/temperature.toml")),
         family::<tilts::TwoAxes>(include_str!("../../cases/edges/tilts.toml")),
     ]
@@ -75,6 +77,8 @@ pub static RATE_TABLE: Study =
 /// Dead zones and thresholds.
 pub static SMALL_RATES: Study =
     study("edges-small-rates", "Small rates at their edges", || cases("small_rates"));
+/// Switching on.
+pub static START_UP: Study = study("edges-start-up", "Start-up at its edges", || cases("start_up"));
 /// Bias over temperature and the warm-up.
 pub static TEMPERATURE: Study =
     study("edges-temperature", "Temperature at its edges", || cases("temperature"));

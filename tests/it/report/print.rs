@@ -22,6 +22,7 @@ const RUNS: &[(&str, &str, &[&str])] = &[
     ("threshold", "threshold-fail.csv", &["--serial", "SN-1"]),
     ("maximum-rate", "maximum-rate-fail.csv", &["--serial", "SN-1"]),
     ("transfer-function", "transfer-function-fail.csv", &["--serial", "SN-1"]),
+    ("start-up", "start-up-fail.csv", &["--serial", "SN-1"]),
     ("acceleration", "acceleration-fail.csv", &["--serial", "SN-1"]),
     ("misalignment", "misalignment-fail.csv", &["--serial", "SN-1"]),
     ("multi-position", "multi-position-software.csv", &["--serial", "SN-1"]),

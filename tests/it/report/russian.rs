@@ -17,6 +17,7 @@ const CASES: &[(&str, &str)] = &[
     ("magnetic-sensitivity", "magnetic-sensitivity-fail"),
     ("maximum-rate", "maximum-rate-fail"),
     ("transfer-function", "transfer-function-fail"),
+    ("start-up", "start-up-fail"),
     ("misalignment", "misalignment-fail"),
     ("multi-position", "multi-position-software"),
     ("output-noise", "output-noise-fail"),

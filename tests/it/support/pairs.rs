@@ -60,7 +60,7 @@ const VOLTS: Option<&str> = Some("supply_V");
 const TEMP: Option<&str> = Some("temp_degC");
 
 /// Every pair.
-pub const PAIRS: [Pair; 35] = [
+pub const PAIRS: [Pair; 37] = [
     pair("unit-pass", "static-bias", UNIT, "SN-0001", 0, None),
     pair("unit-fail", "static-bias", UNIT, "SN-0001", 1, None),
     pair("unit-indeterminate", "static-bias", UNIT, "SN-0001", 3, None),
@@ -73,6 +73,8 @@ pub const PAIRS: [Pair; 35] = [
     pair("maximum-rate-fail", "maximum-rate", None, "SN-1", 1, RATE),
     pair("transfer-function-pass", "transfer-function", None, "SN-1", 0, None),
     pair("transfer-function-fail", "transfer-function", None, "SN-1", 1, None),
+    pair("start-up-pass", "start-up", None, "SN-1", 0, None),
+    pair("start-up-fail", "start-up", None, "SN-1", 1, None),
     pair("misalignment-pass", "misalignment", None, "SN-1", 0, OUTER),
     pair("misalignment-fail", "misalignment", None, "SN-1", 1, OUTER),
     scheduled(pair("multi-position-pass", "multi-position", None, "SN-1", 0, None), 60.0),

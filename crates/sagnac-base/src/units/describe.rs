@@ -56,6 +56,8 @@ const KNOWN_DIMENSIONS: &[(&str, &str)] = &[
     ("dimension.acceleration", "g"),
     ("dimension.rate_per_acceleration_squared", "deg/h/g^2"),
     ("dimension.level", "dB"),
+    ("dimension.electric_current", "A"),
+    ("dimension.electric_power", "W"),
     ("dimension.count", "count"),
     ("dimension.angle_per_count", "arcsec/count"),
 ];

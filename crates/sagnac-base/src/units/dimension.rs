@@ -28,6 +28,14 @@ pub(super) const fn one(base: Base) -> Dimension {
     dimension
 }
 
+/// The product of two base dimensions.
+pub(super) const fn product(one: Base, other: Base) -> Dimension {
+    let mut dimension = [0; BASE_COUNT];
+    dimension[one as usize] = 2;
+    dimension[other as usize] = 2;
+    dimension
+}
+
 /// A base dimension over a power of time.
 pub(super) const fn per_time(base: Base, power: i8) -> Dimension {
     let mut dimension = one(base);

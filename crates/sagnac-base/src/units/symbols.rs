@@ -1,6 +1,6 @@
 //! The symbols of units, English and Russian.
 
-use super::dimension::{BASE_COUNT, Base, Dimension, inverse, one, per_time};
+use super::dimension::{BASE_COUNT, Base, Dimension, inverse, one, per_time, product};
 
 /// Spellings of the degree Celsius. A C may be Latin or Cyrillic.
 pub(super) const CELSIUS_SYMBOLS: &[&str] = &[
@@ -110,6 +110,8 @@ const UNIT_SYMBOLS: &[(&[&str], f64, Dimension)] = &[
     // Decibels of a ratio of amplitudes: their zero is a ratio of 1, so that they are no pure number.
     (&["dB", "дБ"], 1.0, one(Base::Level)),
     (&["mA", "мА"], 1e-3, one(Base::Current)),
+    (&["W", "Вт"], 1.0, product(Base::Voltage, Base::Current)),
+    (&["mW", "мВт"], 1e-3, product(Base::Voltage, Base::Current)),
     (
         &[
             "count",
@@ -191,5 +193,5 @@ pub(super) fn differ_by_prefix(written: &str, symbol: &str) -> bool {
 pub(super) const SUGGESTED_SYMBOLS: &[&str] = &[
     "deg", "mdeg", "arcmin", "arcsec", "rad", "mrad", "urad", "nrad", "rev", "s", "ms", "us", "ns", "min",
     "h", "day", "Hz", "kHz", "dph", "dps", "rpm", "degC", "K", "degF", "V", "mV", "mT", "uT", "Oe", "Pa",
-    "hPa", "kPa", "m", "mm", "g", "mg", "A", "mA", "dB", "count", "LSB", "pulse", "ppm", "ppb", "sqrt",
+    "hPa", "kPa", "m", "mm", "g", "mg", "A", "mA", "W", "mW", "dB", "count", "LSB", "pulse", "ppm", "ppb", "sqrt",
 ];

@@ -10,6 +10,7 @@ use crate::noise::in_band::NoiseTest;
 use crate::rate_table::acceleration::Acceleration;
 use crate::rate_table::design::Extra;
 use crate::rate_table::transfer::Transfer;
+use crate::start_up::StartUp;
 use crate::temperature::findings::Findings;
 use crate::temperature::warm_up::WarmUpFindings;
 use std::fmt;
@@ -41,6 +42,8 @@ pub enum Test {
     Acceleration,
     /// Motion of a table over frequency.
     Transfer,
+    /// Supply, status and output from switching on.
+    StartUp,
     /// Rate at rest over switching off and on.
     Repeatability,
     /// Rate at rest without and with an influence other than temperature.
@@ -70,6 +73,8 @@ pub enum Evaluation {
     },
     /// From positions in the field of gravity.
     Acceleration(fn(&Measurand, &Acceleration) -> Vec<Estimate>),
+    /// From supply, status and output from switching on.
+    StartUp(fn(&Measurand, &StartUp) -> Vec<Estimate>),
     /// From the response to motion over frequency.
     Transfer(fn(&Measurand, &Transfer) -> Vec<Estimate>),
     /// From a series of switchings-on.
@@ -302,6 +307,16 @@ impl Measurand {
         Measurand::new(id, unit, doc, Evaluation::Transfer(evaluate))
     }
 
+    /// A measurand of the start-up.
+    pub const fn of_start_up(
+        id: &'static str,
+        unit: &'static str,
+        doc: &'static str,
+        evaluate: fn(&Measurand, &StartUp) -> Vec<Estimate>,
+    ) -> Measurand {
+        Measurand::new(id, unit, doc, Evaluation::StartUp(evaluate))
+    }
+
     /// A measurand of a series of switchings-on.
     pub const fn of_runs(
         id: &'static str,
@@ -408,6 +423,7 @@ impl Measurand {
             Evaluation::RateTable { .. } => Test::RateTable,
             Evaluation::Acceleration(_) => Test::Acceleration,
             Evaluation::Transfer(_) => Test::Transfer,
+            Evaluation::StartUp(_) => Test::StartUp,
             Evaluation::Repeatability(_) => Test::Repeatability,
             Evaluation::Comparison { .. } => Test::Comparison,
         }
@@ -492,6 +508,14 @@ impl Measurand {
     pub fn evaluate_transfer(&self, found: &Transfer) -> Vec<Estimate> {
         match self.evaluation {
             Evaluation::Transfer(evaluate) => evaluate(self, found),
+            _ => vec![],
+        }
+    }
+
+    /// Its rows on a gyro channel from the start-up; none for a measurand of other tests.
+    pub fn evaluate_start_up(&self, found: &StartUp) -> Vec<Estimate> {
+        match self.evaluation {
+            Evaluation::StartUp(evaluate) => evaluate(self, found),
             _ => vec![],
         }
     }

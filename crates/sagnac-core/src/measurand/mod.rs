@@ -26,7 +26,8 @@ mod scale_factor_shape;
 mod sine_response;
 mod slope_readout;
 mod spectral_line;
-pub mod static_bias;
+pub mod start_up;
+mod static_bias;
 mod table_harmonics;
 mod temperature;
 mod transfer;
@@ -137,6 +138,11 @@ registry! {
     transfer::LATENCY,
     transfer::RESONANCE_PEAK,
     transfer::RESPONSE_FLATNESS,
+    start_up::TIME_TO_FIRST_SAMPLE,
+    start_up::TIME_TO_VALID_DATA,
+    start_up::POWER_STEADY,
+    start_up::POWER_PEAK,
+    start_up::INRUSH_CURRENT,
     influence::MAGNETIC_SENSITIVITY,
     influence::SUPPLY_SENSITIVITY,
     influence::VIBRATION_SENSITIVITY,

@@ -8,6 +8,7 @@ pub mod limits;
 pub(crate) mod noise;
 pub mod phases;
 pub(crate) mod rate_table;
+pub(crate) mod start_up;
 pub mod temperature;
 pub(crate) mod transfer;
 
@@ -30,6 +31,7 @@ use limits::{LimitKeys, ReferenceKeys, TypicalValues};
 use noise::NoiseKeys;
 use rate_table::RateTableKeys;
 use sagnac_ingest::StampWriting;
+use start_up::StartUpKeys;
 use temperature::{TemperatureKeys, WarmUpKeys};
 use transfer::TransferKeys;
 
@@ -107,6 +109,8 @@ pub(in crate::config::procedure) struct ProcedureFile {
     pub acceleration_test: Option<AccelerationKeys>,
     /// A test of the transfer function.
     pub transfer_test: Option<TransferKeys>,
+    /// A test of the start-up.
+    pub start_up_test: Option<StartUpKeys>,
     /// A series of turn-ons.
     pub repeatability_test: Option<RepeatabilityKeys>,
     /// A comparison in a magnetic field.

@@ -1,0 +1,96 @@
+//! Start-up and power: the samples, and a recording that begins after switching on.
+
+use crate::support::pairs::sample_once;
+use crate::support::{altered, result, sagnac, shipped};
+use sagnac_studies::bench::start_up::SwitchedOn;
+use serde_json::Value;
+use std::fs;
+use tempfile::tempdir;
+
+fn fast() -> SwitchedOn {
+    SwitchedOn::default()
+}
+
+fn slow() -> SwitchedOn {
+    SwitchedOn { valid_s: 9.6, steady_a: 0.92, ..SwitchedOn::default() }
+}
+
+/// Samples with what stands in them.
+fn files() -> [(&'static str, String); 2] {
+    [("samples/start-up-pass.csv", fast().csv(81)), ("samples/start-up-fail.csv", slow().csv(83))]
+}
+
+fn row<'a>(result: &'a Value, id: &str) -> &'a Value {
+    result["measurands"].as_array().unwrap().iter().find(|r| r["id"] == id).unwrap_or_else(|| panic!("{id}"))
+}
+
+fn holds(row: &Value, truth: f64) {
+    let end = |name: &str| row["interval"][name].as_f64().unwrap_or_else(|| panic!("{row}"));
+    let half = 0.25 * (end("high") - end("low"));
+    assert!((end("low") - half..=end("high") + half).contains(&truth), "{truth}: {row}");
+}
+
+#[test]
+fn the_samples_are_those_of_the_bench() {
+    for (path, text) in files() {
+        let path = shipped(path);
+        if std::env::var_os("SAGNAC_WRITE_SAMPLES").is_some() {
+            fs::write(&path, &text).unwrap();
+        }
+        assert_eq!(fs::read_to_string(&path).unwrap(), text, "{path}: written by SAGNAC_WRITE_SAMPLES=1");
+    }
+}
+
+#[test]
+fn times_and_powers_of_the_samples_come_back() {
+    for (name, unit) in [("start-up-pass", fast()), ("start-up-fail", slow())] {
+        let r = sample_once(name).result();
+        holds(row(r, "time_to_first_sample"), unit.first_s);
+        holds(row(r, "time_to_valid_data"), unit.valid_s);
+        holds(row(r, "power_steady"), 5.0 * unit.steady_a);
+        assert!((row(r, "inrush_current")["value"].as_f64().unwrap() - 1.9).abs() < 0.5);
+    }
+    let failed = sample_once("start-up-fail").result();
+    assert_eq!(row(failed, "time_to_valid_data")["verdict"], "fail");
+    assert_eq!(row(failed, "time_to_first_sample")["verdict"], "pass");
+}
+
+#[test]
+fn a_recording_that_begins_after_switching_on_gives_bounds_only() {
+    let folder = tempdir().unwrap();
+    fs::write(folder.path().join("r.csv"), SwitchedOn { on_s: -1.0, ..fast() }.csv(5)).unwrap();
+    let procedure = shipped("procedures/start-up.toml");
+    let said = sagnac(folder.path(), &["run", &procedure, "r.csv", "--serial", "SN-1", "--out", "o"]);
+    assert_eq!(said.code, 3, "{}{}", said.out, said.err);
+    let r = result(&folder.path().join("o"));
+    for id in ["time_to_first_sample", "time_to_valid_data", "power_peak", "inrush_current"] {
+        assert!(row(&r, id)["value"].is_null(), "{}", row(&r, id));
+    }
+    let valid = row(&r, "time_to_valid_data")["lower_limit"]["value"].as_f64().unwrap();
+    assert!((valid - 3.18).abs() < 0.03, "{valid}");
+    holds(row(&r, "power_steady"), 3.5);
+}
+
+#[test]
+fn a_band_tells_valid_data_and_a_missing_sign_is_refused() {
+    let folder = tempdir().unwrap();
+    fs::write(folder.path().join("r.csv"), fast().csv(7)).unwrap();
+    let shipped = shipped("procedures/start-up.toml");
+    let band = altered(folder.path(), "band.toml", &shipped, &[("valid_mask = 1", "valid_band = \"0.5 deg/h\"")]);
+    let said = sagnac(folder.path(), &["run", &band, "r.csv", "--serial", "SN-1", "--out", "o"]);
+    assert_ne!(said.code, 2, "{}", said.err);
+    let found = result(&folder.path().join("o"));
+    let found = row(&found, "time_to_valid_data")["value"].as_f64().unwrap();
+    // 3·e^(−t/2) falls to 0.5 after 3.6 s; means of 1 s.
+    assert!((2.5..=6.0).contains(&found), "{found}");
+    for (from, to, says) in [
+        ("valid_mask = 1\n", "", "valid_mask"),
+        ("role = \"current\"", "role = \"auxiliary\"", "current"),
+        ("role = \"supply\"", "role = \"auxiliary\"", "supply"),
+        ("valid_mask = 1\n", "valid_mask = 1\nvalid_band = \"1 deg/h\"\n", "valid_band"),
+    ] {
+        altered(folder.path(), "p.toml", &shipped, &[(from, to)]);
+        let said = sagnac(folder.path(), &["check", "p.toml"]);
+        assert!(said.code == 2 && said.err.contains(says), "{to}: {}{}", said.out, said.err);
+    }
+}
