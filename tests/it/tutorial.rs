@@ -71,7 +71,7 @@ fn every_command_gives_the_output_on_the_page() {
             other => panic!("a block of `{other}`"),
         }
     }
-    assert_eq!(compared, 11);
+    assert_eq!(compared, 13);
     let report = std::fs::read_to_string(folder.path().join("report/report.md")).unwrap();
     for value in ["0.1186", "10.64 °/h", "0.001994", "| 0.0043 | 0.0028 … 0.0058 |", "0.0133 °/h"] {
         assert!(report.contains(value), "{value} is not in the report");
