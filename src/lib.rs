@@ -78,7 +78,7 @@ pub use record::UnitUnderTest;
 pub use report::export;
 pub use sagnac_core::{
     claim, criticism, effect, estimate, evidence, figure, formula, influence, lot, measurand, mismatch,
-    numeric, plan, rate_table, schedule, temperature, units,
+    numeric, plan, rate_table, schedule, start_up, temperature, units,
 };
 
 /// Noise of a gyro at rest: [`allan`](fn@allan) and [`identify`](fn@identify) for samples in memory, and the methods that it is made of.

@@ -54,6 +54,6 @@ impl Evidence for StartUpEvidence {
     }
 
     fn figures(&self, reading: &Reading<'_>) -> Vec<Figure> {
-        figures::time_series::of_every_gyro(reading).collect()
+        figures::time_series::of_every_gyro(reading)
     }
 }
