@@ -50,7 +50,6 @@ pub static LATENCY: Measurand = Measurand::of_transfer(
     "delay of the output against slow motion, from phase over frequency",
     |m, found| vec![by_model(m, found, &found.latency_s(), MILLISECONDS)],
 )
-.signed()
 .also_called(&["delay", "group_delay"]);
 
 /// Largest rise of the gain.
@@ -82,7 +81,7 @@ fn by_model(m: &Measurand, found: &Transfer, shown: &Shown, scale: f64) -> Estim
     let row = row(m, found, shown, OF_MODEL, scale);
     match found.best() {
         Some(best) if found.misfits() => {
-            row.note(note!("transfer.misfit", misfit = Arg::figures(best.misfit, 2)))
+            row.note(note!("transfer.misfit", percent = Arg::figures(100.0 * best.relative_misfit, 2)))
         }
         Some(_) => {
             let rivals: Vec<Arg> = found

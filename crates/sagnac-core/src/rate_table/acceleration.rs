@@ -116,7 +116,7 @@ impl AccelerationTest {
     }
 }
 
-/// Length of what is left of a column beside the others, as a share of it, from which it is one of its own.
+/// Length of what is left of a column beside the others, as a share of it or of 1 g, from which it is one of its own.
 const MIN_INDEPENDENT_SHARE: f64 = 1e-6;
 
 /// Which terms positions determine, and how well.
@@ -170,7 +170,7 @@ fn independent(x: &DMatrix<f64>, without: Option<usize>) -> Vec<usize> {
         for b in basis.iter().chain(&basis) {
             left -= b * left.dot(b);
         }
-        if left.norm() > MIN_INDEPENDENT_SHARE * own.norm().max(1e-12) {
+        if left.norm() > MIN_INDEPENDENT_SHARE * own.norm().max(1.0) {
             basis.push(left.normalize());
             columns.push(j);
         }

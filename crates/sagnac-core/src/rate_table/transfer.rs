@@ -20,8 +20,8 @@ const FEWEST_BANDS: usize = 4;
 /// A model counts beside the best one where its criterion is larger by no more than this.
 const RIVAL_CRITERION: f64 = 6.0;
 
-/// Misfit of the best model from which on no row rests on it.
-pub const LARGEST_MISFIT: f64 = 4.0;
+/// What the best model may leave beyond the noise, as a share of the response: with more no row rests on it. Less is in the intervals.
+const LARGEST_RELATIVE_MISFIT: f64 = 0.03;
 
 /// Probability with which a bound holds.
 pub const CLAIM_CONFIDENCE: f64 = 0.95;
@@ -85,13 +85,16 @@ pub enum Shown {
 pub fn evaluate(channel: &str, bins: &[Bin], test: TransferTest) -> Transfer {
     let used: Vec<Bin> = bins.iter().copied().filter(|b| b.coherence >= test.least_coherence).collect();
     let fits = fit(&used);
-    let bands = fits.first().map_or_else(Vec::new, |best| bands(&used, &best.model));
+    let bands = fits.first().map_or_else(Vec::new, |best| bands(&used, best));
     let (bands, fits) = if bands.len() < FEWEST_BANDS { (vec![], vec![]) } else { (bands, fits) };
     Transfer { channel: channel.to_owned(), bands, fits, test }
 }
 
 /// Bins joined in narrow bands by their ratio to a model, which hardly changes in a band.
-fn bands(bins: &[Bin], model: &Model) -> Vec<Band> {
+fn bands(bins: &[Bin], best: &FittedModel) -> Vec<Band> {
+    let model = &best.model;
+    // Scatter about the model beyond the noise is that of the bands too.
+    let shared = SHARED_BY_BINS * best.misfit.max(1.0);
     let band_of = |f: f64| (BANDS_PER_OCTAVE * f.log2()).floor() as i64;
     let groups = bins.chunk_by(|a, b| band_of(a.frequency_hz) == band_of(b.frequency_hz));
     let mut found: Vec<Band> = groups
@@ -115,7 +118,7 @@ fn bands(bins: &[Bin], model: &Model) -> Vec<Band> {
                 frequency_hz,
                 log_gain: ratio.norm().ln() + model.shape(frequency_hz).norm().ln(),
                 phase: ratio.arg() + model.phase(frequency_hz),
-                standard: (SHARED_BY_BINS / weights).sqrt(),
+                standard: (shared / weights).sqrt(),
             })
         })
         .collect();
@@ -136,7 +139,7 @@ impl Transfer {
 
     /// True where the best model leaves more than noise.
     pub fn misfits(&self) -> bool {
-        self.best().is_some_and(|f| f.misfit > LARGEST_MISFIT)
+        self.best().is_some_and(|f| f.relative_misfit > LARGEST_RELATIVE_MISFIT)
     }
 
     /// Models that the record does not tell from the best one.
@@ -261,7 +264,7 @@ impl Transfer {
     }
 
     /// The largest value among the bands up to a frequency, in dB. Each band may be the largest: the ends of the interval are the
-    /// largest of the ends, with what counts the bands above.
+    /// largest of the ends that hold for all bands at once.
     fn largest(&self, up_to_hz: f64, of_band: impl Fn(&Band) -> f64) -> Shown {
         let gain = self.best().and_then(|f| Some(f.standard(|m| Some(m.gain()))? / f.model.gain()));
         let common = gain.unwrap_or(0.0).abs();
@@ -271,7 +274,7 @@ impl Transfer {
         let largest = |score: f64| {
             bands().map(|b| of_band(b) + score * b.standard.hypot(common)).fold(f64::NEG_INFINITY, f64::max)
         };
-        let (low, high) = (largest(-TWO_SIDED), largest(for_all));
+        let (low, high) = (largest(-for_all), largest(for_all));
         if !high.is_finite() {
             return Shown::Nothing;
         }

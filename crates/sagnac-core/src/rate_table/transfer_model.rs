@@ -141,8 +141,11 @@ pub struct FittedModel {
     pub covariance: DMatrix<f64>,
     /// Sum of squares of the residuals over their variances, over the degrees of freedom.
     pub misfit: f64,
-    /// Schwarz criterion: smaller is better.
+    /// Root mean square of what it leaves beyond the noise, as a share of the response.
+    pub relative_misfit: f64,
+    /// Schwarz criterion, with the scatter about the best model as noise: smaller is better.
     pub criterion: f64,
+    squares: f64,
 }
 
 impl FittedModel {
@@ -166,6 +169,13 @@ impl FittedModel {
 /// Fits every order to the bins; the best first. Empty where there are too few bins.
 pub fn fit(bins: &[Bin]) -> Vec<FittedModel> {
     let mut found: Vec<FittedModel> = Order::ALL.into_iter().filter_map(|order| of_order(order, bins)).collect();
+    // Where no model leaves noise alone, what the best one leaves is the scale by which models differ.
+    let scatter = found.iter().map(|f| f.misfit).fold(f64::INFINITY, f64::min).max(1.0);
+    let independent = (2.0 * bins.len() as f64 / SHARED_BY_BINS).max(2.0);
+    for f in &mut found {
+        let count = f.model.parameters.len() as f64;
+        f.criterion = f.squares / (SHARED_BY_BINS * scatter) + count * independent.ln();
+    }
     found.sort_by(|a, b| a.criterion.total_cmp(&b.criterion));
     found
 }
@@ -197,14 +207,22 @@ fn of_order(order: Order, bins: &[Bin]) -> Option<FittedModel> {
     let count = model.parameters.len() as f64;
     let dof = (2.0 * bins.len() as f64 - count).max(1.0);
     let misfit = squares / dof;
-    // Bins share noise: what they say counts for less, and scatter beyond it widens everything.
-    let widened = SHARED_BY_BINS * misfit.max(1.0);
-    let independent = 2.0 * bins.len() as f64 / SHARED_BY_BINS;
+    let beyond: f64 = bins
+        .iter()
+        .map(|b| {
+            let expected = model.shape(b.frequency_hz) * model.gain();
+            let left = (b.response - expected).norm_sqr() - 2.0 * b.variance;
+            left.max(0.0) / expected.norm_sqr()
+        })
+        .sum();
     Some(FittedModel {
         model,
-        covariance: covariance * widened,
+        // Bins share noise: what they say counts for less, and scatter beyond it widens everything.
+        covariance: covariance * (SHARED_BY_BINS * misfit.max(1.0)),
         misfit,
-        criterion: squares / SHARED_BY_BINS + count * independent.max(2.0).ln(),
+        relative_misfit: (beyond / bins.len() as f64).sqrt(),
+        criterion: 0.0,
+        squares,
     })
 }
 
