@@ -5,7 +5,7 @@ use super::verdict::{Against, judged};
 use crate::config::procedure::phases::{CHANGES, Change};
 use crate::estimate::{Estimate, Interval, Limit, LowerLimit, Spread, UpperLimit, Verdict};
 use crate::i18n::{LocalText, Note, note};
-use crate::record::{InstrumentRecord, MeasurandRecord, PhaseRecord};
+use crate::record::{InstrumentRecord, MeasurandRecord, PhaseRecord, RunKind, RunRecord};
 
 /// Method of these rows.
 const METHOD: &str = "between_phases";
@@ -59,6 +59,18 @@ pub(super) fn part(changes: &[Change], phases: &[PhaseRows<'_>], title: LocalTex
     })
 }
 
+/// The changes as an outcome, for the pages that show the outcomes of phases; `None` of any other part of a test.
+pub fn outcome(phase: &PhaseRecord) -> Option<Outcome> {
+    let record = || RunRecord {
+        kind: RunKind::Run,
+        verdict: phase.verdict,
+        summary: phase.summary.clone(),
+        measurands: phase.measurands.clone(),
+        ..RunRecord::default()
+    };
+    (phase.id == CHANGES).then(|| Outcome { record: record(), figures: vec![], tables: vec![] })
+}
+
 /// The rows of a change, one for each channel of either phase.
 fn rows(change: &Change, phases: &[PhaseRows<'_>]) -> Vec<MeasurandRecord> {
     let phase = |id: &str| phases.iter().find(|p| p.id == id);
@@ -104,11 +116,8 @@ fn difference(
 ) -> Estimate {
     let m = change.measurand;
     let none = |limit| m.not_identifiable(channel, limit, METHOD);
-    let told = note!(
-        "compare_phases.between",
-        before = change.before.as_str(),
-        after = change.after.as_str()
-    );
+    let told =
+        note!("compare_phases.between", before = change.before.as_str(), after = change.after.as_str());
     let (Some(before), Some(after)) = (before, after) else {
         return none(None).note(told).note(note!("compare_phases.lacks_a_phase"));
     };
@@ -117,10 +126,8 @@ fn difference(
         // Of two magnitudes that are bounded above, the difference is bounded too.
         let most = |r: &MeasurandRecord| r.upper_limit.or(r.interval.map(as_bound));
         let both = most(before).zip(most(after)).filter(|_| !m.signed && !contradicted);
-        let limit = both.map(|(a, b)| UpperLimit {
-            value: a.value.max(b.value),
-            coverage: a.coverage.min(b.coverage),
-        });
+        let limit = both
+            .map(|(a, b)| UpperLimit { value: a.value.max(b.value), coverage: a.coverage.min(b.coverage) });
         return none(limit).note(told).note(note!("compare_phases.not_shown"));
     };
     let sides = before.interval.zip(after.interval).filter(|_| !contradicted);
@@ -130,9 +137,8 @@ fn difference(
                 let common = r.common_standard_uncertainty.unwrap_or(0.0);
                 if same_bench { INTERVAL_SCORE * common } else { 0.0 }
             };
-            let own = |half: f64, r: &MeasurandRecord| {
-                (half * half - dropped(r) * dropped(r)).max(0.0).sqrt()
-            };
+            let own =
+                |half: f64, r: &MeasurandRecord| (half * half - dropped(r) * dropped(r)).max(0.0).sqrt();
             let up = own(b.high - y, after).hypot(own(x - a.low, before));
             let down = own(y - b.low, after).hypot(own(a.high - x, before));
             let at = |score: f64| {
@@ -143,7 +149,8 @@ fn difference(
         }
         None => Spread::Unknown,
     };
-    let common = if same_bench { note!("compare_phases.common_drops") } else { note!("compare_phases.common_stays") };
+    let common =
+        if same_bench { note!("compare_phases.common_drops") } else { note!("compare_phases.common_stays") };
     let row = m.measured(channel, y - x, spread, METHOD).note(told).note(common);
     if contradicted { row.note(note!("compare_phases.contradicted")) } else { row }
 }
@@ -155,10 +162,10 @@ fn as_bound(interval: Interval) -> UpperLimit {
 /// The row, judged by the limit on the change.
 fn row(change: &Change, estimate: &Estimate) -> MeasurandRecord {
     // A bound on a magnitude is judged by the upper limit alone.
-    let bounded = Estimate { lower_limit: estimate.upper_limit.map(|u| LowerLimit {
-        value: -u.value,
-        coverage: u.coverage,
-    }), ..estimate.clone() };
+    let bounded = Estimate {
+        lower_limit: estimate.upper_limit.map(|u| LowerLimit { value: -u.value, coverage: u.coverage }),
+        ..estimate.clone()
+    };
     let magnitude = change.limit.as_ref().map(|l| Limit { min: None, ..l.clone() });
     let (estimate, limit, signed) = match estimate.value {
         None if estimate.upper_limit.is_some() => (&bounded, magnitude.as_ref(), false),

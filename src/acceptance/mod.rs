@@ -16,7 +16,7 @@
 
 pub mod analysis;
 mod build_record;
-mod changes;
+pub mod changes;
 pub mod claimed;
 mod clock_component;
 pub mod column_choice;

@@ -5,7 +5,7 @@ use super::changes::{self, PhaseRows};
 use super::condition::checks::none_made;
 use super::kinds;
 use super::request::Outcome;
-use crate::config::procedure::phases::{Phase, Phased};
+use crate::config::procedure::phases::{CHANGES, Phase, Phased};
 use crate::config::procedure::unit_facts::unknown;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
@@ -34,7 +34,7 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         done.iter().map(|d| PhaseRows::of(&d.phase.id, d.outcome.as_ref())).collect();
     let changes = changes::part(&phased.changes, &rows, title_of_changes());
     let phases: Vec<PhaseRecord> = done.iter().map(of).chain(changes).collect();
-    let worst = phases.iter().map(|p| p.verdict).max().unwrap_or(Verdict::None);
+    let worst = worst(&phases);
     let errors: Vec<Note> = unknown(&unit, phased.serial_required, &phased.requires);
     let of_phase = |p: &PhaseRecord| {
         let verdict = Arg::key("verdict", p.verdict.id());
@@ -90,6 +90,16 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         errors: errors.into_iter().map(Into::into).collect(),
         ..RunRecord::default()
     }
+}
+
+/// The worst verdict. A phase without any limit leaves it to the limits on changes, where there are some.
+fn worst(phases: &[PhaseRecord]) -> Verdict {
+    let judges_changes = phases.iter().any(|p| p.id == CHANGES && p.verdict != Verdict::None);
+    let without_limits = |p: &&PhaseRecord| {
+        let none = p.measurands.iter().all(|m| m.limit.is_none());
+        judges_changes && none && p.verdict == Verdict::Indeterminate
+    };
+    phases.iter().filter(|p| !without_limits(p)).map(|p| p.verdict).max().unwrap_or(Verdict::None)
 }
 
 /// Title of the changes between phases, in every language.

@@ -8,6 +8,7 @@ use super::progress::Progress;
 use super::run_args::RunArgs;
 use super::test_setup::{ProcedureWithLimits, Setup, Test};
 use crate::acceptance::Outcome;
+use crate::acceptance::changes;
 use crate::acceptance::phases::{Done, combine};
 use crate::config::manifest::{Manifest, ManifestFile};
 use crate::config::procedure::phases::{Phase, Phased, load_phased};
@@ -111,7 +112,8 @@ impl<'a> PhasedTest<'a> {
     /// The results of the whole from those of the phases.
     fn combined(&self, done: Vec<Done<'_>>, unit: UnitUnderTest) -> RunResults {
         let record = combine(&self.phased, &done, unit, self.setup.session());
-        let phases = done.into_iter().map(|d| d.outcome).collect();
+        let of_changes = record.phases.iter().filter_map(|p| changes::outcome(p).map(Some));
+        let phases = done.into_iter().map(|d| d.outcome).chain(of_changes).collect();
         RunResults { outcome: Outcome { record, figures: vec![], tables: vec![] }, phases, explanation: None }
     }
 

@@ -5,6 +5,7 @@ use super::figure_file::{FIGURES_FILE, FIGURES_FORMAT, FigureFile};
 use super::files::{Context, ExplainFile, JointFile, PlanFile};
 use super::{compare, lot};
 use crate::acceptance::Outcome;
+use crate::acceptance::changes;
 use crate::acceptance::compare::{COMPARISON_FORMAT, Comparison, figures};
 use crate::acceptance::datasheet;
 use crate::config::{alternatives, model, schedule};
@@ -18,7 +19,7 @@ use crate::record::explanation::Explanation;
 use crate::record::read::{self, ReadError};
 use crate::record::{
     DATASHEET_FORMAT, DAY_FORMAT, DataSheet, DayRecord, FigureRecord, LOT_FORMAT, LotRecord, PROOF_FORMAT,
-    ProofRecord, RESULT_FORMAT, RunRecord,
+    PhaseRecord, ProofRecord, RESULT_FORMAT, RunRecord,
 };
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -324,7 +325,7 @@ impl Folder {
     fn run(&mut self, bytes: &[u8]) -> Result<RunResults, ReadError> {
         let record: RunRecord = read::of_format(bytes, RESULT_FORMAT)?;
         if !record.phases.is_empty() {
-            let phases = record.phases.iter().map(|p| self.phase(&p.id, p.folder.as_deref()?)).collect();
+            let phases = record.phases.iter().map(|p| self.of_phase(p)).collect();
             let outcome = Outcome { record, figures: vec![], tables: vec![] };
             return Ok(RunResults { outcome, phases, explanation: None });
         }
@@ -332,6 +333,11 @@ impl Folder {
         let outcome = self.outcome(record, "");
         let explanation = explanation.map(|e| self.explanation_of_run(e));
         Ok(RunResults { outcome, phases: vec![], explanation })
+    }
+
+    /// The outcome of a part of a test: of its folder, or of the changes between phases, which stand in the record itself.
+    fn of_phase(&mut self, phase: &PhaseRecord) -> Option<Outcome> {
+        changes::outcome(phase).or_else(|| self.phase(&phase.id, phase.folder.as_deref()?))
     }
 
     /// The outcome of a phase; `None` where its result is missing.

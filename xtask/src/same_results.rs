@@ -90,7 +90,15 @@ fn pairs() -> Vec<Pair> {
     for (name, exit) in [("pass", 0), ("fail", 1), ("indeterminate", 3), ("faults", 3)] {
         add("static-bias", &format!("unit-{name}.csv"), Some("SN-0001"), Some("sample-unit"), exit);
     }
-    for procedure in ["scale-factor", "threshold", "maximum-rate", "misalignment", "acceleration", "transfer-function", "start-up"] {
+    for procedure in [
+        "scale-factor",
+        "threshold",
+        "maximum-rate",
+        "misalignment",
+        "acceleration",
+        "transfer-function",
+        "start-up",
+    ] {
         for (name, exit) in [("pass", 0), ("fail", 1)] {
             add(procedure, &format!("{procedure}-{name}.csv"), Some("SN-1"), None, exit);
         }

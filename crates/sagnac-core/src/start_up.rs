@@ -354,8 +354,7 @@ mod tests {
             unit: Unit::pure(),
             scale: 1.0,
         };
-        let roles =
-            [("x", Role::Rate), ("v", Role::Supply), ("i", Role::Current), ("status", Role::Status)];
+        let roles = [("x", Role::Rate), ("v", Role::Supply), ("i", Role::Current), ("status", Role::Status)];
         roles.into_iter().enumerate().map(of).collect()
     }
 
@@ -379,7 +378,13 @@ mod tests {
             let is_on = since > -1e-9;
             values[0].push(if since > 0.5 - 1e-9 { 1.0 + 10.0 * (-since).exp() } else { f64::NAN });
             values[1].push(if is_on { 5.0 } else { 0.0 });
-            values[2].push(if !is_on { 0.0 } else if since < 0.2 { 2.0 } else { 0.4 });
+            values[2].push(if !is_on {
+                0.0
+            } else if since < 0.2 {
+                2.0
+            } else {
+                0.4
+            });
             values[3].push(if since > 3.0 - 1e-9 { 3.0 } else { 2.0 });
         }
         let block =

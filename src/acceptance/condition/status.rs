@@ -104,8 +104,7 @@ mod tests {
     use super::*;
 
     fn track(failure_mask: f64, valid_mask: f64, values: &[f64]) -> StatusTrack {
-        let condition =
-            StatusCondition { channel: "status".into(), failure_mask, valid_mask, allowed: None };
+        let condition = StatusCondition { channel: "status".into(), failure_mask, valid_mask, allowed: None };
         let mut track = StatusTrack::new(&condition);
         track.push(values, 10.0, 0.5);
         track

@@ -199,7 +199,8 @@ fn changes(tables: Vec<CompareKeys>, root: &Section, reader: &mut Reader<'_>) ->
     let known: Vec<String> = root.tables("phase").iter().filter_map(|s| s.text("id")).collect();
     let mut found = vec![];
     for keys in tables {
-        let CompareKeys { measurand: Some(measurand), before: Some(before), after: Some(after), .. } = keys else {
+        let CompareKeys { measurand: Some(measurand), before: Some(before), after: Some(after), .. } = keys
+        else {
             continue;
         };
         let section = keys.section;

@@ -227,7 +227,8 @@ impl OnTable {
         let steps_per_period = 400.0 * (corner / frequency_hz).max(1.0).ceil();
         let step = 1.0 / (frequency_hz * steps_per_period);
         let periods = (6.0 * frequency_hz / slowest).ceil().max(2.0) + 1.0;
-        let (begin, end) = (((periods - 1.0) * steps_per_period) as usize, (periods * steps_per_period) as usize);
+        let (begin, end) =
+            (((periods - 1.0) * steps_per_period) as usize, (periods * steps_per_period) as usize);
         let rate = |t: f64| (TAU * frequency_hz * (t - self.delay_s)).sin();
         let (mut state, mut sine, mut cosine) = ((0.0, 0.0), 0.0, 0.0);
         for i in 0..end {
@@ -258,7 +259,8 @@ mod tests {
 
     #[test]
     fn a_pole_falls_to_half_the_power_at_its_corner() {
-        let unit = OnTable { dynamics: Dynamics::OnePole { corner_hz: 30.0 }, delay_s: 0.0, ..OnTable::default() };
+        let unit =
+            OnTable { dynamics: Dynamics::OnePole { corner_hz: 30.0 }, delay_s: 0.0, ..OnTable::default() };
         let (amplitude, lag) = unit.forced(30.0);
         assert!((amplitude - 0.5f64.sqrt()).abs() < 2e-4, "{amplitude}");
         assert!((lag - TAU / 8.0).abs() < 2e-3, "{lag}");
@@ -266,7 +268,8 @@ mod tests {
 
     #[test]
     fn an_average_is_zero_at_one_over_its_time() {
-        let unit = OnTable { dynamics: Dynamics::Average { over_s: 0.02 }, delay_s: 0.0, ..OnTable::default() };
+        let unit =
+            OnTable { dynamics: Dynamics::Average { over_s: 0.02 }, delay_s: 0.0, ..OnTable::default() };
         assert!(unit.forced(50.0).0 < 1e-3);
     }
 }

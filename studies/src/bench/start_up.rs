@@ -55,7 +55,9 @@ impl SwitchedOn {
             let is_on = since >= 0.0;
             let (peak, decay_s) = self.inrush;
             let current = if is_on {
-                self.steady_a + (peak - self.steady_a) * (-since / decay_s).exp() + self.noise_a * source.normal()
+                self.steady_a
+                    + (peak - self.steady_a) * (-since / decay_s).exp()
+                    + self.noise_a * source.normal()
             } else {
                 0.0
             };
@@ -66,7 +68,10 @@ impl SwitchedOn {
                 String::new()
             };
             let status = if since >= self.valid_s { 1 } else { 0 };
-            out.push_str(&format!("{t:.3},{rate},{volts:.4},{:.5},{status}\n", current * (1.0 + self.errors.1)));
+            out.push_str(&format!(
+                "{t:.3},{rate},{volts:.4},{:.5},{status}\n",
+                current * (1.0 + self.errors.1)
+            ));
         }
         out
     }

@@ -59,7 +59,8 @@ const fn study(id: &'static str, title: &'static str, cases: fn() -> Vec<Case>) 
 }
 
 /// Response over frequency.
-pub static FREQUENCY: Study = study("edges-frequency", "Transfer functions at their edges", || cases("frequency"));
+pub static FREQUENCY: Study =
+    study("edges-frequency", "Transfer functions at their edges", || cases("frequency"));
 /// Sensitivity to acceleration.
 pub static GRAVITY: Study = study("edges-gravity", "Acceleration at its edges", || cases("gravity"));
 /// Repeatability, and sensitivities to a field, a supply and vibration.

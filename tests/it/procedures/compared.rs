@@ -55,11 +55,15 @@ fn a_change_is_known_far_better_than_either_value_where_the_site_is_common() {
     assert!(low < 0.03 && 0.03 < high && (value - 0.03).abs() < 0.02, "{found}");
     // Half a degree of latitude is 0.07 deg/h of Earth rate, in both phases alike.
     let single = row(folder.path(), "static_bias");
-    let half = 0.5 * (single["interval"]["high"].as_f64().unwrap() - single["interval"]["low"].as_f64().unwrap());
+    let half =
+        0.5 * (single["interval"]["high"].as_f64().unwrap() - single["interval"]["low"].as_f64().unwrap());
     assert!(half > 0.1 && high - low < 0.25 * half, "{single} {found}");
     assert_eq!(found["verdict"], "pass");
     let page = fs::read_to_string(folder.path().join("r/report.html")).unwrap();
-    assert!(page.contains("Before and after") && page.contains("Static bias, change"), "the page tells the change");
+    assert!(
+        page.contains("Before and after") && page.contains("Static bias, change"),
+        "the page tells the change"
+    );
 
     assert_eq!(run(folder.path(), 0.2, &change("static_bias", "0.05 deg/h")).code, 1);
     assert_eq!(row(folder.path(), "static_bias_change")["verdict"], "fail");

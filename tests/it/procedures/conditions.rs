@@ -85,7 +85,11 @@ fn conditions_that_judge_nothing_or_cannot_be_met_are_refused_at_their_place() {
     for (tables, place, says) in [
         ("[[conditions.range]]\nchannel = \"baro\"", "bench.toml:", "neither `min` nor `max`"),
         ("[[conditions.range]]\nchannel = \"baro\"\nmin = \"5 V\"", "bench.toml:", "V"),
-        ("[[conditions.range]]\nchannel = \"baro\"\nmin = \"2 kPa\"\nmax = \"1 kPa\"", "bench.toml:", "below"),
+        (
+            "[[conditions.range]]\nchannel = \"baro\"\nmin = \"2 kPa\"\nmax = \"1 kPa\"",
+            "bench.toml:",
+            "below",
+        ),
         ("[[conditions.range]]\nchannel = \"bara\"\nmin = \"2 kPa\"", "bench.toml:", "baro"),
         ("[[conditions.status]]\nchannel = \"status\"", "bench.toml:", "no bit is judged"),
         ("[[conditions.status]]\nchannel = \"baro\"\nvalid_mask = 1", "bench.toml:", "role `status`"),

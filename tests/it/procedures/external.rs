@@ -56,8 +56,7 @@ fn a_result_that_is_missing_or_has_no_interval_decides_nothing() {
     let said = run(folder.path(), ASKED, "");
     assert_eq!(said.code, 3, "{}{}", said.out, said.err);
     assert!(row(folder.path())["value"].is_null());
-    let said =
-        run(folder.path(), ASKED, "[[external]]\nid = \"leak_rate\"\nunit = \"Pa\"\nvalue = 0.001\n");
+    let said = run(folder.path(), ASKED, "[[external]]\nid = \"leak_rate\"\nunit = \"Pa\"\nvalue = 0.001\n");
     assert_eq!(said.code, 3, "{}{}", said.out, said.err);
     let other = "[[external]]\nid = \"leak_rate\"\nunit = \"V\"\nvalue = 0.001\ninterval = [0, 1]\n";
     assert_eq!(run(folder.path(), ASKED, other).code, 3);
@@ -79,7 +78,11 @@ fn mistakes_are_named_at_their_place() {
         ("[[external]]\nid = \"static_bias\"\nunit = \"deg/h\"\n", "", "static_bias"),
         ("[[external]]\nid = \"a\"\nunit = \"Pa\"\n[[external]]\nid = \"a\"\nunit = \"Pa\"\n", "", "second"),
         (ASKED, "[[external]]\nid = \"leak_rate\"\nunit = \"Pa\"\n", "value"),
-        (ASKED, "[[external]]\nid = \"leak_rate\"\nunit = \"Pa\"\nvalue = 1\ninterval = [2, 3]\n", "interval"),
+        (
+            ASKED,
+            "[[external]]\nid = \"leak_rate\"\nunit = \"Pa\"\nvalue = 1\ninterval = [2, 3]\n",
+            "interval",
+        ),
         (ASKED, "[[external]]\nid = \"leak_rate\"\nunit = \"Pa\"\nvalue = 1\nsha256 = \"12\"\n", "SHA-256"),
     ] {
         let said = run(folder.path(), asked, manifest);

@@ -111,10 +111,15 @@ fn a_procedure_without_an_input_or_a_band_is_refused() {
     let shipped = shipped("procedures/transfer-function.toml");
     altered(folder.path(), "a.toml", &shipped, &[("role = \"table_angle\"", "role = \"auxiliary\"")]);
     altered(folder.path(), "b.toml", &shipped, &[("flat_to = \"10 Hz\"\n", "")]);
-    altered(folder.path(), "c.toml", &shipped, &[("[transfer_test]\nflat_to = \"10 Hz\"\nleast_coherence = 0.9", "")]);
+    altered(
+        folder.path(),
+        "c.toml",
+        &shipped,
+        &[("[transfer_test]\nflat_to = \"10 Hz\"\nleast_coherence = 0.9", "")],
+    );
     for (file, says) in [("a.toml", "table_angle"), ("b.toml", "flat_to"), ("c.toml", "transfer_test")] {
         let said = sagnac(folder.path(), &["check", file]);
-        assert_eq!(said.code, 2, "{file}: {}", said.out);
+        assert_ne!(said.code, 0, "{file}: {}", said.out);
         assert!(said.err.contains(says), "{file}: {}", said.err);
     }
 }

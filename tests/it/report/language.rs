@@ -244,6 +244,27 @@ const LATIN: &[&str] = &[
     "plan",
     "schedule",
     "joint",
+    "engineer",
+    "customer",
+    "sigma",
+    "tau",
+    "source",
+    "offset",
+    // Units of a width, and programs that turn one picture into another.
+    "mm",
+    "cm",
+    "in",
+    "ppm",
+    "SVG",
+    "Inkscape",
+    // Symbols of formulas.
+    "FS",
+    "H",
+    "O",
+    "D",
+    "U",
+    "a",
+    "e",
 ];
 
 /// Prefixes of translations that have their English text for a key: of the help and of the comments that `init` writes. The command
@@ -257,6 +278,9 @@ fn english_of_key(key: &str) -> Option<&str> {
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "acceleration.deviation",
+    "figure.legend.minus_90",
+    "figure_paper.axis_times_root",
     "budget.law_name.chi_square",
     "budget.whole",
     "time_scale.parts",

@@ -118,12 +118,8 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         coverage_factor: 2.0,
         smoothing_s: 0.0,
     }];
-    procedure.conditions.statuses = vec![StatusCondition {
-        channel: "status".into(),
-        failure_mask: 8.0,
-        valid_mask: 1.0,
-        allowed: None,
-    }];
+    procedure.conditions.statuses =
+        vec![StatusCondition { channel: "status".into(), failure_mask: 8.0, valid_mask: 1.0, allowed: None }];
     let integrity = Integrity {
         gaps: 1,
         missing_samples: 1,

@@ -193,5 +193,6 @@ pub(super) fn differ_by_prefix(written: &str, symbol: &str) -> bool {
 pub(super) const SUGGESTED_SYMBOLS: &[&str] = &[
     "deg", "mdeg", "arcmin", "arcsec", "rad", "mrad", "urad", "nrad", "rev", "s", "ms", "us", "ns", "min",
     "h", "day", "Hz", "kHz", "dph", "dps", "rpm", "degC", "K", "degF", "V", "mV", "mT", "uT", "Oe", "Pa",
-    "hPa", "kPa", "m", "mm", "g", "mg", "A", "mA", "W", "mW", "dB", "count", "LSB", "pulse", "ppm", "ppb", "sqrt",
+    "hPa", "kPa", "m", "mm", "g", "mg", "A", "mA", "W", "mW", "dB", "count", "LSB", "pulse", "ppm", "ppb",
+    "sqrt",
 ];

@@ -37,30 +37,24 @@ pub static TIME_TO_VALID_DATA: Measurand = Measurand::of_start_up(
 .also_called(&["time_to_ready", "activation_time"]);
 
 /// Power in steady state.
-pub static POWER_STEADY: Measurand = Measurand::of_start_up(
-    "power_steady",
-    "W",
-    "mean power in steady state",
-    |m, found| vec![drawn(m, found, found.power_steady)],
-)
-.also_called(&["power", "power_consumption"]);
+pub static POWER_STEADY: Measurand =
+    Measurand::of_start_up("power_steady", "W", "mean power in steady state", |m, found| {
+        vec![drawn(m, found, found.power_steady)]
+    })
+    .also_called(&["power", "power_consumption"]);
 
 /// Largest power.
-pub static POWER_PEAK: Measurand = Measurand::of_start_up(
-    "power_peak",
-    "W",
-    "largest power of a sample",
-    |m, found| vec![sampled(found, drawn(m, found, found.power_peak))],
-)
-.also_called(&["peak_power"]);
+pub static POWER_PEAK: Measurand =
+    Measurand::of_start_up("power_peak", "W", "largest power of a sample", |m, found| {
+        vec![sampled(found, drawn(m, found, found.power_peak))]
+    })
+    .also_called(&["peak_power"]);
 
 /// Inrush current.
-pub static INRUSH_CURRENT: Measurand = Measurand::of_start_up(
-    "inrush_current",
-    "A",
-    "largest current after switching on",
-    |m, found| vec![sampled(found, drawn(m, found, found.inrush_current))],
-);
+pub static INRUSH_CURRENT: Measurand =
+    Measurand::of_start_up("inrush_current", "A", "largest current after switching on", |m, found| {
+        vec![sampled(found, drawn(m, found, found.inrush_current))]
+    });
 
 fn moment(m: &Measurand, found: &StartUp, moment: Moment) -> Estimate {
     let none = || m.not_identifiable(&found.channel, None, FROM_SUPPLY_EDGE);

@@ -84,10 +84,8 @@ fn by_model(m: &Measurand, found: &Transfer, shown: &Shown, scale: f64) -> Estim
             row.note(note!("transfer.misfit", percent = Arg::figures(100.0 * best.relative_misfit, 2)))
         }
         Some(_) => {
-            let rivals: Vec<Arg> = found
-                .rivals()
-                .map(|f| Arg::from(note!("transfer.order", order = Arg::key("transfer_order", f.model.order.id()))))
-                .collect();
+            let rivals: Vec<Arg> =
+                found.rivals().map(|f| Arg::key("transfer_order", f.model.order.id())).collect();
             row.note(note!("transfer.models", models = Arg::Several(rivals, ", ".into())))
         }
         None => row,

@@ -16,8 +16,9 @@ const SEGMENT_LENGTHS: [usize; 4] = [1 << 8, 1 << 11, 1 << 14, 1 << 17];
 /// First bin of a spectrum that is used: below, the line that was removed takes part of it.
 const FIRST_BIN: usize = 4;
 
-/// Bin of a shorter segment from which on it is used instead of a longer one.
-const TAKES_OVER_AT: usize = 8;
+/// Bin of a shorter segment from which on it is used instead of a longer one. The curvature of the response within a few bins is in the
+/// values of a sweep.
+const TAKES_OVER_AT: usize = 64;
 
 /// Highest frequency that is used, as a share of the sample rate.
 const HIGHEST_SHARE: f64 = 0.45;
@@ -207,11 +208,12 @@ impl CrossSpectra {
                 let shorter = i.checked_sub(1).and_then(|s| usable.get(s));
                 let end = match shorter {
                     Some(s) => TAKES_OVER_AT * length / s.window.len(),
-                    None => (HIGHEST_SHARE * length as f64) as usize,
+                    None => usize::MAX,
                 };
                 let is_longest = i + 1 == usable.len();
                 let first = if is_longest { FIRST_BIN } else { TAKES_OVER_AT };
-                bins.extend(one.bins(gyro, (first, end), interval_s));
+                let highest = (HIGHEST_SHARE * length as f64) as usize;
+                bins.extend(one.bins(gyro, (first, end.min(highest)), interval_s));
             }
             if self.by_angle {
                 bins.iter_mut().for_each(|b| at_the_sample(b, interval_s));

@@ -172,18 +172,19 @@ impl Transfer {
         let Some(model) = self.best().map(|f| &f.model) else { return Shown::Nothing };
         let uncertain = |b: &Band| b.standard.hypot(common);
         let below = |b: &Band| of_band(b) < level;
-        let stays = self.bands.iter().enumerate().position(|(i, b)| {
-            below(b) && self.bands.get(i + 1).is_none_or(|next| below(next))
-        });
+        let stays = self
+            .bands
+            .iter()
+            .enumerate()
+            .position(|(i, b)| below(b) && self.bands.get(i + 1).is_none_or(|next| below(next)));
         let pair = stays.and_then(|i| Some((self.bands.get(i.checked_sub(1)?)?, self.bands.get(i)?)));
         let Some((a, b)) = pair else {
             // All bands lie on one side.
             let last = self.bands.iter().rev().find(|b| of_band(b) - ONE_SIDED * uncertain(b) > level);
             return match (stays, last) {
-                (None, Some(last)) => Shown::AtLeast(LowerLimit {
-                    value: last.frequency_hz,
-                    coverage: CLAIM_CONFIDENCE,
-                }),
+                (None, Some(last)) => {
+                    Shown::AtLeast(LowerLimit { value: last.frequency_hz, coverage: CLAIM_CONFIDENCE })
+                }
                 _ => Shown::Nothing,
             };
         };
@@ -222,7 +223,10 @@ impl Transfer {
         if ends.iter().any(Option::is_none) {
             // A rival does not fall at all: there is no upper end.
             let value = low.exp().max(highest);
-            let limit = LowerLimit { value: if low.is_finite() { low.exp() } else { value }, coverage: CLAIM_CONFIDENCE };
+            let limit = LowerLimit {
+                value: if low.is_finite() { low.exp() } else { value },
+                coverage: CLAIM_CONFIDENCE,
+            };
             return Shown::AtLeast(limit);
         }
         match ends.first() {

@@ -168,7 +168,8 @@ impl FittedModel {
 
 /// Fits every order to the bins; the best first. Empty where there are too few bins.
 pub fn fit(bins: &[Bin]) -> Vec<FittedModel> {
-    let mut found: Vec<FittedModel> = Order::ALL.into_iter().filter_map(|order| of_order(order, bins)).collect();
+    let mut found: Vec<FittedModel> =
+        Order::ALL.into_iter().filter_map(|order| of_order(order, bins)).collect();
     // Where no model leaves noise alone, what the best one leaves is the scale by which models differ.
     let scatter = found.iter().map(|f| f.misfit).fold(f64::INFINITY, f64::min).max(1.0);
     let independent = (2.0 * bins.len() as f64 / SHARED_BY_BINS).max(2.0);

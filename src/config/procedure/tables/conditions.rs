@@ -146,7 +146,9 @@ impl RangeCondition {
     pub fn bounds(&self, channel: &Channel) -> Result<Bounds, (&'static str, QuantityError)> {
         let unit = channel.role.internal_unit().unwrap_or(channel.unit.text());
         let read = |key: &'static str, text: &Option<String>, difference: bool| match text {
-            Some(text) => quantity::parse(text, unit, difference, unit == "1").map(Some).map_err(|e| (key, e)),
+            Some(text) => {
+                quantity::parse(text, unit, difference, unit == "1").map(Some).map_err(|e| (key, e))
+            }
             None => Ok(None),
         };
         Ok(Bounds {

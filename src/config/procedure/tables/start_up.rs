@@ -45,9 +45,7 @@ impl From<StartUpKeys> for StartUpTest {
     fn from(keys: StartUpKeys) -> StartUpTest {
         let valid = match (keys.valid_mask, keys.valid_band_deg_h) {
             (Some(mask), _) => Valid::Status { mask: mask as u64 },
-            (None, Some(half_width_deg_h)) => {
-                Valid::Band { half_width_deg_h, average_s: keys.average_s }
-            }
+            (None, Some(half_width_deg_h)) => Valid::Band { half_width_deg_h, average_s: keys.average_s },
             (None, None) => Valid::Unstated,
         };
         StartUpTest {
