@@ -2,7 +2,7 @@
 //! what is drawn over time, samples at declared rails.
 
 use super::condition::stability_track::{Band, StabilityFacts, StabilityKey, StabilityTrack};
-use super::condition::status::StatusTrack;
+use super::condition::status_track::StatusTrack;
 use crate::config::procedure::Procedure;
 use crate::i18n::note;
 use crate::noise::envelope::{Envelope, EnvelopeAccumulator};

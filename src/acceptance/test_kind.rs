@@ -2,7 +2,7 @@
 
 use super::condition::checks::CheckLog;
 use super::condition::stability_track::{StabilityFacts, StabilityKey};
-use super::condition::status::StatusTrack;
+use super::condition::status_track::StatusTrack;
 use super::condition::{GyroFact, WarmUpFact};
 use super::request::{Request, RunError, Table};
 use crate::config::procedure::Procedure;

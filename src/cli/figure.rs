@@ -33,6 +33,8 @@ enum FigureName {
     TablePolar,
     DeadZone,
     Positions,
+    Gravity,
+    Bode,
     BiasOfRuns,
     Influence,
     Against,

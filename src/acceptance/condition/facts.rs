@@ -2,7 +2,7 @@
 
 use super::checks::CheckLog;
 use super::stability_track::{StabilityFacts, StabilityKey};
-use super::status::StatusTrack;
+use super::status_track::StatusTrack;
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::i18n::{Lang, Localize, Note};
 use crate::noise::tails::TailShape;

@@ -115,6 +115,11 @@ const UNITS: &[(&str, &str)] = &[
     ("deg/h/V", r"\degree\per\hour\volt"),
     ("deg/h/mT", r"\degree\per\hour\milli\tesla"),
     ("deg/h/(m/s^2)^2", r"\degree\second\tothe{4}\per\hour\metre\tothe{2}"),
+    ("deg/h/(m/s^2)", r"\degree\second\tothe{2}\per\hour\metre"),
+    ("deg/h/sqrt(Hz)", r"\degree\second\tothe{0.5}\per\hour"),
+    ("dB", r"\decibel"),
+    ("W", r"\watt"),
+    ("A", r"\ampere"),
     ("count/arcsec", r"\one\per\arcsecond"),
     ("count/(deg/h)", r"\hour\per\degree"),
 ];

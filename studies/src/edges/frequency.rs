@@ -25,6 +25,8 @@ pub struct OverFrequency {
     gain: f64,
     /// Noise of a sample, deg/s.
     noise: f64,
+    /// Error of a reading of the angle, arcsec.
+    reading_arcsec: f64,
     motion: String,
     highest_hz: f64,
     seconds: f64,
@@ -43,6 +45,7 @@ impl Default for OverFrequency {
             delay_s: 0.0015,
             gain: 1.001,
             noise: 0.02,
+            reading_arcsec: 0.1,
             motion: "sweep".to_owned(),
             highest_hz: 80.0,
             seconds: 60.0,
@@ -71,6 +74,7 @@ impl OverFrequency {
             delay_s: self.delay_s,
             gain: self.gain,
             noise: self.noise,
+            reading_arcsec: self.reading_arcsec,
             motion,
             frequencies: (0.5, self.highest_hz),
             seconds: self.seconds,

@@ -103,7 +103,7 @@ fn a_slip_in_the_name_of_a_file_is_answered_with_the_nearest_name() {
         (&["run", "static-bias", &pass, "--limits", "sample-unti"], "did you mean `sample-unit`?"),
         (&["run", "static-bias", &pass, "--limits", "my-limit.toml"], "did you mean `my-limits.toml`?"),
         (&["run", "own/saok.toml", &pass], "did you mean `own/soak.toml`?"),
-        (&["run", "zebra", &pass], "shipped procedures: acceptance, "),
+        (&["run", "zebra", &pass], "shipped procedures: acceleration, "),
     ] {
         let said = sagnac(dir.path(), args);
         assert!(said.code == 2 && said.err.contains(near), "{args:?}: {said:?}");

@@ -4,7 +4,7 @@
 use crate::support::tested::tested;
 use sagnac::acceptance::condition::checks::CheckLog;
 use sagnac::acceptance::condition::stability_track::{Extreme, StabilityFacts, StabilityKey};
-use sagnac::acceptance::condition::status::StatusTrack;
+use sagnac::acceptance::condition::status_track::StatusTrack;
 use sagnac::acceptance::condition::{
     ALL_CONDITIONS, BiasStep, ColumnFact, Facts, GyroFact, NoiseChange, WarmUpFact, judge_all,
 };

@@ -1,8 +1,9 @@
 //! Spectra of the table's rate and of the output, and the spectrum that they share, averaged over segments of several
 //! lengths while a recording goes by: bounded in memory at any length.
 //!
-//! Hann window, three quarters overlap, straight line removed (Bendat and Piersol, Random Data, chapter 11). With less overlap a
-//! sweep that passes a frequency once finds the window rising or falling there, and a delay of the output then changes its amplitude.
+//! Hann window, three quarters overlap, straight line removed (Bendat and Piersol, Random Data, chapter 11). What the output delays past the
+//! window is told by the input under the derivatives of the window, and belongs to the model: a sweep passes a frequency once, where the
+//! window rises or falls.
 
 use super::blocks::TURN_ARCSEC;
 use crate::recording::{Channel, Role, SampleBlock, Sink};
@@ -16,9 +17,8 @@ const SEGMENT_LENGTHS: [usize; 4] = [1 << 8, 1 << 11, 1 << 14, 1 << 17];
 /// First bin of a spectrum that is used: below, the line that was removed takes part of it.
 const FIRST_BIN: usize = 4;
 
-/// Bin of a shorter segment from which on it is used instead of a longer one. The curvature of the response within a few bins is in the
-/// values of a sweep.
-const TAKES_OVER_AT: usize = 64;
+/// Bin of a shorter segment from which on it is used instead of a longer one: more segments tell its noise.
+const TAKES_OVER_AT: usize = 8;
 
 /// Highest frequency that is used, as a share of the sample rate.
 const HIGHEST_SHARE: f64 = 0.45;
@@ -33,30 +33,66 @@ const FEWEST_SEGMENTS: u64 = 12;
 /// (Welch 1967).
 const OVERLAP_LOSS: f64 = 1.925;
 
+/// What a response delays past the window: with X₁ and X₂ the spectra under the first and second derivative of the window,
+/// `Y = H·X + j/(2π)·H'·X₁ − H''/(8π²)·X₂ + …`, so that a response read as Y/X has these terms in it.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct WindowTerms {
+    /// X₁ over X, 1/s.
+    pub first: Complex<f64>,
+    /// X₂ over X, 1/s².
+    pub second: Complex<f64>,
+    /// Sample interval where the input is the mean rate of the interval before each sample, s; 0 where it is the rate at the sample.
+    pub averaged_over_s: f64,
+}
+
+/// Step of a derivative over frequency, relative.
+const FREQUENCY_STEP: f64 = 1e-3;
+
+impl WindowTerms {
+    /// The response that is read at a frequency where the true one to the rate at the sample is `response`.
+    pub fn read(&self, frequency_hz: f64, response: impl Fn(f64) -> Complex<f64>) -> Complex<f64> {
+        let of_input = |f: f64| {
+            let half = 0.5 * TAU * f * self.averaged_over_s;
+            let mean = if half.abs() < 1e-9 { 1.0 } else { half.sin() / half };
+            response(f) / (Complex::from_polar(1.0, -half) * mean)
+        };
+        let step = FREQUENCY_STEP * frequency_hz;
+        let (before, at, after) =
+            (of_input(frequency_hz - step), of_input(frequency_hz), of_input(frequency_hz + step));
+        let slope = (after - before) / (2.0 * step);
+        let bend = (after - at * 2.0 + before) / (step * step);
+        at + Complex::new(0.0, 1.0 / TAU) * slope * self.first - bend * self.second / (2.0 * TAU * TAU)
+    }
+}
+
 /// What the segments show at one frequency of one channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bin {
     /// Frequency, Hz.
     pub frequency_hz: f64,
-    /// Response: output over table rate.
+    /// Response of the output to the input as recorded.
     pub response: Complex<f64>,
+    /// What the window adds to it, from the input alone.
+    pub window: WindowTerms,
     /// Variance of its real part, and of its imaginary part, from what the input does not explain.
     pub variance: f64,
     /// Share of the power of the output that the input explains.
     pub coherence: f64,
-    /// Density of the table's rate, deg/h per √Hz, one-sided.
-    pub input: f64,
 }
 
 /// Spectra of one length of segment.
 struct Lengthwise {
-    window: Vec<f64>,
+    /// The window, and its derivatives in steps of a sample.
+    windows: [Vec<f64>; 3],
     plan: Arc<dyn RealToComplex<f64>>,
     scratch: Vec<Complex<f64>>,
     /// Input first, then the outputs.
     kept: Vec<Vec<f64>>,
     spectra: Vec<Vec<Complex<f64>>>,
     input_power: Vec<f64>,
+    /// Products of the input with the input under the derivatives of the window.
+    under_derivatives: [Vec<Complex<f64>>; 2],
+    under: Vec<Complex<f64>>,
     /// Of each output: its power, and the product with the input.
     outputs: Vec<(Vec<f64>, Vec<Complex<f64>>)>,
     segments: u64,
@@ -66,26 +102,41 @@ impl Lengthwise {
     fn new(length: usize, outputs: usize) -> Lengthwise {
         let plan = real_forward(length);
         let bins = length / 2 + 1;
-        let window = (0..length).map(|i| 0.5 - 0.5 * (TAU * i as f64 / length as f64).cos()).collect();
+        let step = TAU / length as f64;
+        let hann = |of: fn(f64) -> f64, scale: f64| -> Vec<f64> {
+            (0..length).map(|i| scale * of(step * i as f64)).collect()
+        };
+        let windows = [
+            hann(|angle| 1.0 - angle.cos(), 0.5),
+            hann(f64::sin, 0.5 * step),
+            hann(f64::cos, 0.5 * step * step),
+        ];
         Lengthwise {
-            window,
+            windows,
             scratch: plan.make_scratch_vec(),
             plan,
             kept: vec![Vec::with_capacity(length); outputs + 1],
             spectra: vec![vec![Complex::default(); bins]; outputs + 1],
             input_power: vec![0.0; bins],
+            under_derivatives: [vec![Complex::default(); bins], vec![Complex::default(); bins]],
+            under: vec![Complex::default(); bins],
             outputs: vec![(vec![0.0; bins], vec![Complex::default(); bins]); outputs],
             segments: 0,
         }
+    }
+
+    /// Samples in a segment.
+    fn len(&self) -> usize {
+        self.windows[0].len()
     }
 
     fn push(&mut self, sample: &[f64]) {
         for (kept, value) in self.kept.iter_mut().zip(sample) {
             kept.push(*value);
         }
-        if self.kept.first().is_some_and(|k| k.len() == self.window.len()) {
+        if self.kept.first().is_some_and(|k| k.len() == self.len()) {
             self.segment();
-            let hop = self.window.len() / SEGMENTS_PER_SAMPLE;
+            let hop = self.len() / SEGMENTS_PER_SAMPLE;
             self.kept.iter_mut().for_each(|k| drop(k.drain(..hop)));
         }
     }
@@ -95,11 +146,21 @@ impl Lengthwise {
     }
 
     fn segment(&mut self) {
+        let [window, ..] = &self.windows;
         for (kept, spectrum) in self.kept.iter().zip(&mut self.spectra) {
             let mut values = without_line(kept);
-            values.iter_mut().zip(&self.window).for_each(|(v, w)| *v *= w);
+            values.iter_mut().zip(window).for_each(|(v, w)| *v *= w);
             // Lengths agree by construction.
             let _ = self.plan.process_with_scratch(&mut values, spectrum, &mut self.scratch);
+        }
+        if let (Some(kept), Some(input)) = (self.kept.first(), self.spectra.first()) {
+            let flat = without_line(kept);
+            for (window, sums) in self.windows.iter().skip(1).zip(&mut self.under_derivatives) {
+                let mut values: Vec<f64> = flat.iter().zip(window).map(|(v, w)| v * w).collect();
+                let _ = self.plan.process_with_scratch(&mut values, &mut self.under, &mut self.scratch);
+                let pairs = input.iter().zip(&self.under);
+                sums.iter_mut().zip(pairs).for_each(|(sum, (x, u))| *sum += x.conj() * u);
+            }
         }
         let Some((input, outputs)) = self.spectra.split_first() else { return };
         self.input_power.iter_mut().zip(input).for_each(|(sum, x)| *sum += x.norm_sqr());
@@ -111,11 +172,20 @@ impl Lengthwise {
     }
 
     /// The bins from `first` on to below `end` of an output.
-    fn bins(&self, output: usize, (first, end): (usize, usize), interval_s: f64) -> Vec<Bin> {
+    fn bins(
+        &self,
+        output: usize,
+        (first, end): (usize, usize),
+        interval_s: f64,
+        averaged_over_s: f64,
+    ) -> Vec<Bin> {
         let Some((power, product)) = self.outputs.get(output) else { return vec![] };
-        let (n, length) = (self.segments as f64, self.window.len() as f64);
-        let power_of_window: f64 = self.window.iter().map(|w| w * w).sum();
+        let (n, length) = (self.segments as f64, self.len() as f64);
+        let [under_first, under_second] = &self.under_derivatives;
         let one = |(k, ((xx, yy), xy)): (usize, ((&f64, &f64), &Complex<f64>))| {
+            let of = |sums: &[Complex<f64>], per: f64| {
+                sums.get(k).map_or_else(Complex::default, |u| u / (xx * per))
+            };
             if *xx <= 0.0 || *yy <= 0.0 {
                 return None;
             }
@@ -124,9 +194,13 @@ impl Lengthwise {
             Some(Bin {
                 frequency_hz: k as f64 / (length * interval_s),
                 response: xy / xx,
+                window: WindowTerms {
+                    first: of(under_first, interval_s),
+                    second: of(under_second, interval_s * interval_s),
+                    averaged_over_s,
+                },
                 variance: 0.5 * noise / n / xx * OVERLAP_LOSS,
                 coherence,
-                input: (2.0 * xx / n * interval_s / power_of_window).sqrt(),
             })
         };
         let all = self.input_power.iter().zip(power).zip(product).enumerate();
@@ -204,33 +278,22 @@ impl CrossSpectra {
         let of = |gyro: usize| {
             let mut bins = vec![];
             for (i, one) in usable.iter().enumerate().rev() {
-                let length = one.window.len();
+                let length = one.len();
                 let shorter = i.checked_sub(1).and_then(|s| usable.get(s));
                 let end = match shorter {
-                    Some(s) => TAKES_OVER_AT * length / s.window.len(),
+                    Some(s) => TAKES_OVER_AT * length / s.len(),
                     None => usize::MAX,
                 };
                 let is_longest = i + 1 == usable.len();
                 let first = if is_longest { FIRST_BIN } else { TAKES_OVER_AT };
                 let highest = (HIGHEST_SHARE * length as f64) as usize;
-                bins.extend(one.bins(gyro, (first, end.min(highest)), interval_s));
-            }
-            if self.by_angle {
-                bins.iter_mut().for_each(|b| at_the_sample(b, interval_s));
+                let averaged_over_s = if self.by_angle { interval_s } else { 0.0 };
+                bins.extend(one.bins(gyro, (first, end.min(highest)), interval_s, averaged_over_s));
             }
             bins
         };
         self.gyros.iter().enumerate().map(|(i, (_, id))| (id.clone(), of(i))).collect()
     }
-}
-
-/// Makes the response to the mean rate of the interval before each sample that to the rate at the sample.
-fn at_the_sample(bin: &mut Bin, interval_s: f64) {
-    let half = 0.5 * TAU * bin.frequency_hz * interval_s;
-    let averaging = half.sin() / half;
-    bin.response = bin.response * averaging * Complex::from_polar(1.0, -half);
-    bin.variance *= averaging * averaging;
-    bin.input /= averaging;
 }
 
 impl Sink for CrossSpectra {

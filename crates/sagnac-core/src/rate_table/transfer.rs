@@ -101,7 +101,7 @@ fn bands(bins: &[Bin], best: &FittedModel) -> Vec<Band> {
         .filter_map(|group| {
             let (mut weights, mut ratio, mut log_f) = (0.0, sagnac_fft::Complex::default(), 0.0);
             for b in group {
-                let expected = model.shape(b.frequency_hz) * model.gain();
+                let expected = model.read(b);
                 let weight = expected.norm_sqr() / b.variance;
                 if !weight.is_finite() || weight <= 0.0 {
                     continue;

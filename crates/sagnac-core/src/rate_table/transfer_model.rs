@@ -132,6 +132,13 @@ impl Model {
     }
 }
 
+impl Model {
+    /// The response that is read in a bin where the unit is this model.
+    pub fn read(&self, bin: &Bin) -> Complex<f64> {
+        bin.window.read(bin.frequency_hz, |f| self.shape(f) * self.gain())
+    }
+}
+
 /// A fitted model.
 #[derive(Debug, Clone)]
 pub struct FittedModel {
@@ -211,7 +218,7 @@ fn of_order(order: Order, bins: &[Bin]) -> Option<FittedModel> {
     let beyond: f64 = bins
         .iter()
         .map(|b| {
-            let expected = model.shape(b.frequency_hz) * model.gain();
+            let expected = model.read(b);
             let left = (b.response - expected).norm_sqr() - 2.0 * b.variance;
             left.max(0.0) / expected.norm_sqr()
         })
@@ -231,7 +238,7 @@ fn of_order(order: Order, bins: &[Bin]) -> Option<FittedModel> {
 fn residuals(model: &Model, bins: &[Bin]) -> DVector<f64> {
     let mut out = Vec::with_capacity(2 * bins.len());
     for b in bins {
-        let left = b.response - model.shape(b.frequency_hz) * model.gain();
+        let left = b.response - model.read(b);
         let deviation = b.variance.sqrt();
         out.extend([left.re / deviation, left.im / deviation]);
     }
@@ -294,6 +301,7 @@ fn descend(mut model: Model, bins: &[Bin], highest_hz: f64) -> Option<(Model, f6
 
 #[cfg(test)]
 mod tests {
+    use super::super::cross_spectrum::WindowTerms;
     use super::*;
 
     /// Bins of a model from 0.5 Hz to `highest_hz` with deviations of `sd` that alternate.
@@ -302,7 +310,13 @@ mod tests {
             let frequency_hz = highest_hz * f64::from(i) / 100.0;
             let sign = |k: u32| if (i * 7 + k) % 3 == 0 { sd } else { -0.5 * sd };
             let response = model.shape(frequency_hz) * model.gain() + Complex::new(sign(0), sign(1));
-            Bin { frequency_hz, response, variance: sd * sd, coherence: 0.99, input: 1.0 }
+            Bin {
+                frequency_hz,
+                response,
+                variance: sd * sd,
+                window: WindowTerms::default(),
+                coherence: 0.99,
+                }
         };
         (1..=100).map(one).collect()
     }

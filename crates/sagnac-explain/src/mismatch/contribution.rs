@@ -5,6 +5,7 @@ use super::noise_fit::{Noise, base_index};
 use super::problem::Problem;
 use super::select::Slot;
 use super::spectral_data::SpectralData;
+use super::terms::summed;
 use crate::effect::{Domain, Knot, Model, Place, SpectrumAct};
 use crate::numeric::cosine::inverse_dct2;
 use crate::numeric::sums::cumulated;
@@ -23,20 +24,6 @@ pub fn correction(best: &FittedHypothesis, spectra: &SpectralDataSet) -> Option<
             Some(sum) => sum.iter_mut().zip(course).for_each(|(s, c)| *s += c),
             None => sum = Some(course),
         }
-    }
-    sum
-}
-
-/// Fixed part and columns times their coefficients, of so many samples.
-pub(super) fn summed(
-    columns: &[Vec<f64>],
-    coefficients: &[f64],
-    fixed: Option<&Vec<f64>>,
-    samples: usize,
-) -> Vec<f64> {
-    let mut sum = fixed.cloned().unwrap_or_else(|| vec![0.0; samples]);
-    for (column, c) in columns.iter().zip(coefficients) {
-        sum.iter_mut().zip(column).for_each(|(s, z)| *s += c * z);
     }
     sum
 }

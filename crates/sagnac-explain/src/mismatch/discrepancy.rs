@@ -6,11 +6,11 @@
 //! the record decides. The law keeps its name, its interval the width that its own error leaves it, and another effect must
 //! explain what no error of the law does.
 
-use super::contribution::summed;
 use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use super::hypothesis::fit;
+use super::law_error::Discrepancy;
 use super::spectral_data::SpectralData;
-use super::terms::MeanTerm;
+use super::terms::{MeanTerm, summed};
 use std::sync::Arc;
 
 /// Shares of a law that its own error may have.
@@ -20,62 +20,28 @@ const MIN_LAW_GAIN: f64 = 200.0;
 /// Gain of a discrepancy from which a law has one, nats.
 const MIN_DISCREPANCY_GAIN: f64 = 6.0;
 
-/// The error of a law, as power in the noise.
-#[derive(Debug, Clone)]
-pub struct Discrepancy {
-    /// Kind of the law.
-    pub kind: &'static str,
-    /// Its share of the law.
-    pub share: f64,
-    /// Frequency of each bin, Hz.
-    frequency_hz: Vec<f64>,
-    /// Density of the law and its polynomials in each bin, (deg/h)²/Hz.
-    density: Vec<f64>,
-}
-
-impl Discrepancy {
-    /// The error of a fitted law as large as the law itself; `None` for a law that is nothing.
-    fn whole(term: &MeanTerm, spectral: &SpectralData) -> Option<Discrepancy> {
-        let parts = term.course()?.regressors(&term.nonlinear_parameters, &spectral.drivers);
-        let law = summed(&parts.columns, &term.coefficients, parts.offset.as_ref(), spectral.drivers.samples);
-        let (low, high) =
-            law.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
-        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        if !(half > 0.0 && half.is_finite()) {
-            return None;
-        }
-        let legendre: [fn(f64) -> f64; 3] = [|u| u, |u| 1.5 * u * u - 0.5, |u| 0.5 * u * (5.0 * u * u - 3.0)];
-        let mut density = vec![0.0; spectral.bins.len()];
-        for polynomial in legendre {
-            let course: Vec<f64> = law.iter().map(|x| half * polynomial((x - middle) / half)).collect();
-            let power = spectral.observed(&spectral.transform(&course));
-            density.iter_mut().zip(power).for_each(|(d, p)| *d += p);
-        }
-        // Of what lies between two modes, either may hold most.
-        let beside =
-            |i: usize| density.get(i.saturating_sub(1)..(i + 2).min(density.len())).unwrap_or_default();
-        let density =
-            (0..density.len()).map(|i| beside(i).iter().sum::<f64>() / beside(i).len() as f64).collect();
-        let frequency_hz = spectral.bins.iter().map(|bin| bin.frequency_hz).collect();
-        Some(Discrepancy { kind: term.effect.kind(), share: 1.0, frequency_hz, density })
+/// The error of a fitted law as large as the law itself; `None` for a law that is nothing.
+fn whole(term: &MeanTerm, spectral: &SpectralData) -> Option<Discrepancy> {
+    let parts = term.course()?.regressors(&term.nonlinear_parameters, &spectral.drivers);
+    let law = summed(&parts.columns, &term.coefficients, parts.offset.as_ref(), spectral.drivers.samples);
+    let (low, high) = law.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), x| (l.min(*x), h.max(*x)));
+    let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+    if !(half > 0.0 && half.is_finite()) {
+        return None;
     }
-
-    /// Adds its power to the density of each bin.
-    pub fn add_to(&self, densities: &mut [f64], spectral: &SpectralData) {
-        for (density, bin) in densities.iter_mut().zip(&spectral.bins) {
-            let above = self.frequency_hz.partition_point(|f| *f < bin.frequency_hz);
-            let near =
-                |i: usize| self.frequency_hz.get(i).map_or(f64::INFINITY, |f| (f - bin.frequency_hz).abs());
-            let at = if near(above.wrapping_sub(1)) < near(above) { above - 1 } else { above };
-            *density += self.share * self.share * self.density.get(at).copied().unwrap_or(0.0);
-        }
+    let legendre: [fn(f64) -> f64; 3] = [|u| u, |u| 1.5 * u * u - 0.5, |u| 0.5 * u * (5.0 * u * u - 3.0)];
+    let mut density = vec![0.0; spectral.bins.len()];
+    for polynomial in legendre {
+        let course: Vec<f64> = law.iter().map(|x| half * polynomial((x - middle) / half)).collect();
+        let power = spectral.observed(&spectral.transform(&course));
+        density.iter_mut().zip(power).for_each(|(d, p)| *d += p);
     }
-
-    /// Log-likelihood of the law over noise of some density, nats.
-    fn law_gain(&self, densities: &[f64], spectral: &SpectralData) -> f64 {
-        let bins = self.density.iter().zip(densities).zip(&spectral.bins);
-        0.5 * bins.map(|((own, noise), bin)| spectral.weight(bin) * own / noise).sum::<f64>()
-    }
+    // Of what lies between two modes, either may hold most.
+    let beside = |i: usize| density.get(i.saturating_sub(1)..(i + 2).min(density.len())).unwrap_or_default();
+    let density =
+        (0..density.len()).map(|i| beside(i).iter().sum::<f64>() / beside(i).len() as f64).collect();
+    let frequency_hz = spectral.bins.iter().map(|bin| bin.frequency_hz).collect();
+    Some(Discrepancy { kind: term.effect.kind(), share: 1.0, frequency_hz, density })
 }
 
 /// A fitted hypothesis with the discrepancy of its largest law as the record has it, or without any where it needs none.
@@ -88,7 +54,7 @@ pub fn learned(tried: FittedHypothesis, spectra: &SpectralDataSet) -> FittedHypo
     if exact.hypothesis.noise.discrepancy.take().is_some() {
         exact.fit = fit(&mut exact.hypothesis, spectral);
     }
-    let laws = exact.hypothesis.courses.iter().filter_map(|term| Discrepancy::whole(term, spectral));
+    let laws = exact.hypothesis.courses.iter().filter_map(|term| whole(term, spectral));
     let sized = laws.map(|law| (law.law_gain(&exact.fit.densities, spectral), law));
     let Some((gain, law)) = sized.max_by(|a, b| a.0.total_cmp(&b.0)) else { return exact };
     if gain < MIN_LAW_GAIN {

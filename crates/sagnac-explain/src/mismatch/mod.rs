@@ -7,7 +7,7 @@
 //! |---|---|
 //! | rows on the grid of the claim, rounding, averages | `regular`, `quantization_grid`, `coarse` |
 //! | residual in cosine modes, missing samples imputed | `spectral_data`, `impute` |
-//! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `fitted_hypothesis`, `problem`, `discrepancy` |
+//! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `fitted_hypothesis`, `problem`, `law_error`, `discrepancy` |
 //! | tests that name no physics | `departures` |
 //! | every effect tried as an addition | `nonlinear_search`, `candidates`, `filtered` |
 //! | prediction of blocks that are held out | `heldout`, `prediction` |
@@ -46,6 +46,7 @@ mod improvement;
 pub mod impute;
 pub mod joint;
 pub mod jumps;
+pub mod law_error;
 mod named;
 pub mod noise_fit;
 mod nonlinear_search;

@@ -13,7 +13,7 @@
 //! residual from which a mean was fitted, with no more than their own bins in common. A common optimiser would need both
 //! bounded steps of variances and damped steps of logarithms, and be neither.
 
-use super::discrepancy::Discrepancy;
+use super::law_error::Discrepancy;
 use super::spectral_data::SpectralData;
 use super::terms::SpectralTerm;
 use crate::claim::Claim;

@@ -25,6 +25,20 @@ impl MeanTerm {
     }
 }
 
+/// Fixed part and columns times their coefficients, of so many samples.
+pub(super) fn summed(
+    columns: &[Vec<f64>],
+    coefficients: &[f64],
+    fixed: Option<&Vec<f64>>,
+    samples: usize,
+) -> Vec<f64> {
+    let mut sum = fixed.cloned().unwrap_or_else(|| vec![0.0; samples]);
+    for (column, c) in columns.iter().zip(coefficients) {
+        sum.iter_mut().zip(column).for_each(|(s, z)| *s += c * z);
+    }
+    sum
+}
+
 /// A spectral effect with its fitted parameters.
 #[derive(Clone)]
 pub struct SpectralTerm {

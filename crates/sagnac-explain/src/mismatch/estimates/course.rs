@@ -4,9 +4,9 @@ use super::estimated::{Estimated, TWO_SIDED_95, interval};
 use super::instant;
 use super::placed::Placed;
 use crate::effect::{Effect, MeanModel, Unmodelled, Value};
-use crate::mismatch::contribution::summed;
 use crate::mismatch::finding::ParameterValue;
 use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
+use crate::mismatch::terms::summed;
 use nalgebra::DMatrix;
 
 /// Standard deviation of a course over the record.
