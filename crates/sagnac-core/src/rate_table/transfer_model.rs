@@ -310,13 +310,7 @@ mod tests {
             let frequency_hz = highest_hz * f64::from(i) / 100.0;
             let sign = |k: u32| if (i * 7 + k) % 3 == 0 { sd } else { -0.5 * sd };
             let response = model.shape(frequency_hz) * model.gain() + Complex::new(sign(0), sign(1));
-            Bin {
-                frequency_hz,
-                response,
-                variance: sd * sd,
-                window: WindowTerms::default(),
-                coherence: 0.99,
-                }
+            Bin { frequency_hz, response, variance: sd * sd, window: WindowTerms::default(), coherence: 0.99 }
         };
         (1..=100).map(one).collect()
     }
