@@ -21,7 +21,7 @@ pub(crate) struct ExternalKeys {
     /// Unit of value and interval.
     #[key(required, example = "Pa")]
     pub unit: Option<Unit>,
-    /// Value.
+    /// Value that the certificate states.
     #[key(example = 0.02)]
     pub value: Option<f64>,
     /// Lowest and highest value with 95 %. Default: unknown; a limit is then undecided.
@@ -30,7 +30,7 @@ pub(crate) struct ExternalKeys {
     /// Number of the certificate or protocol.
     #[key(example = "LT-2026-114")]
     pub certificate: Option<String>,
-    /// Who tested.
+    /// Laboratory that tested.
     #[key(example = "Leak laboratory")]
     pub laboratory: Option<String>,
     /// SHA-256 of the certificate.

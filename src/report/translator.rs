@@ -121,8 +121,10 @@ impl Translator {
         if let Some(number) = place.strip_prefix("ramp") {
             return self.with("report.at_ramp", &[("channel", base), ("number", number)]);
         }
-        if let "positive" | "negative" = place {
-            return self.with(&format!("report.{place}_rates"), &[("channel", base)]);
+        match place {
+            "positive" => return self.with("report.positive_rates", &[("channel", base)]),
+            "negative" => return self.with("report.negative_rates", &[("channel", base)]),
+            _ => {}
         }
         let band = place.strip_suffix("Hz").and_then(|band| band.split_once('-'));
         if let Some((from, to)) = band {

@@ -33,7 +33,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
         CORE,
         &[
             &["formula", "lot"],
-            &["rate_table", "temperature"],
+            &["rate_table", "start_up", "temperature"],
             &["influence"],
             &["evidence"],
             &["criticism"],
@@ -77,6 +77,7 @@ const FACADE: &[&str] = &[
     "rate_table",
     "recording",
     "schedule",
+    "start_up",
     "temperature",
     "units",
 ];

@@ -46,7 +46,7 @@ impl TestKind for InGravity {
     fn options(&self, _: &Request<'_>) -> Vec<TestOption> {
         let terms = self.test.order.terms().len().to_string();
         let uncertainty = format!("{} ppm", 1e6 * self.test.scale_factor_uncertainty);
-        vec![("acceleration.terms", terms), ("acceleration.scale_factor_uncertainty", uncertainty)]
+        vec![("acceleration_test.terms", terms), ("acceleration_test.scale_factor_uncertainty", uncertainty)]
     }
 
     fn pauses(&self) -> Pauses {

@@ -31,7 +31,7 @@ impl TestKind for FromSwitchingOn {
     }
 
     fn options(&self, _: &Request<'_>) -> Vec<TestOption> {
-        vec![("start_up.on_voltage", format!("{} V", self.test.on_voltage_v))]
+        vec![("start_up_test.on_voltage", format!("{} V", self.test.on_voltage_v))]
     }
 
     fn collector(&self, _: &Request<'_>, channels: &[Channel], interval_s: f64) -> Run<StartUpCollector> {

@@ -32,7 +32,7 @@ impl TestKind for OverFrequency {
     }
 
     fn options(&self, _: &Request<'_>) -> Vec<TestOption> {
-        vec![("transfer.least_coherence", self.test.least_coherence.to_string())]
+        vec![("transfer_test.least_coherence", self.test.least_coherence.to_string())]
     }
 
     fn collector(&self, _: &Request<'_>, channels: &[Channel], interval_s: f64) -> Run<CrossSpectra> {

@@ -137,7 +137,7 @@ fn a_step_of_a_gyro_at_rest_is_no_change_of_heading() {
     let probability = |kind: &str| first["probabilities"][kind].as_f64().unwrap_or(0.0);
     // The record says nothing between the two, and both are said.
     assert!(probability("bias_step") >= probability("heading_change"), "{first}");
-    assert!(probability("heading_change") > 0.2, "{first}");
+    assert!(probability("heading_change") > 0.15, "{first}");
     assert!(first["equivalents"].as_array().unwrap().iter().any(|e| e == "heading_change"), "{first}");
 }
 

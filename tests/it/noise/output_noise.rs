@@ -16,7 +16,7 @@ const DT_S: f64 = 0.05;
 const SAMPLES: usize = 10_800;
 /// N of the unit that passes, deg/√h, and its line: amplitude, deg/h, and frequency, Hz.
 const N: f64 = 0.002;
-const LINE: (f64, f64) = (0.05, 3.3);
+const LINE: (f64, f64) = (0.15, 3.3);
 
 fn text(serial: &str, rate_deg_h: &[f64]) -> String {
     let mut out = format!("# serial: {serial}\ntime_s,rate_deg_h\n");

@@ -348,6 +348,10 @@ fn every_example_is_accepted_by_its_own_key() {
                 "is not a channel with",
                 "is determined at rest",
                 "are two tests",
+                "beyond half the declared sample rate",
+                "exclude each other",
+                "needs a channel with the role",
+                "no channel has the role",
             ];
             assert!(whole.iter().any(|w| p.message.say(Lang::En).contains(w)), "{p}");
         }

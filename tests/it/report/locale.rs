@@ -132,6 +132,7 @@ const OPEN: &[&str] = &[
     "history.control",
     "history.kind",
     "history.rule",
+    "transfer_order",
 ];
 
 /// Dotted names in the sources that only look like keys: tables of procedures.

@@ -35,7 +35,12 @@ const CASES: &[(&str, &str)] = &[
 const SENTENCE: usize = 3;
 
 /// Words that run on in Latin letters and are no sentence: titles of books and papers as they are cited.
-const CITED: &[&str] = &[];
+const CITED: &[&str] = &[
+    "Bendat and Piersol Random Data",
+    "Bendat Piersol Random Data",
+    "Bonferroni Berger Technometrics",
+    "Trans Audio Electroacoust",
+];
 
 /// Tags within a sentence; every other ends it.
 const INLINE: &[&str] = &["a", "abbr", "b", "em", "i", "small", "span", "strong", "sub", "sup", "tspan"];

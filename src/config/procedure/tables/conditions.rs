@@ -105,13 +105,13 @@ impl SupplyCondition {
 #[derive(Debug, Clone, PartialEq, Table)]
 #[table("conditions.range")]
 pub struct RangeCondition {
-    /// Channel.
+    /// Channel that is held between the bounds.
     #[key(id, example = "pressure")]
     pub channel: String,
-    /// Lowest value.
+    /// Lowest value allowed.
     #[key(example = "90 kPa")]
     pub min: Option<String>,
-    /// Highest value.
+    /// Highest value allowed.
     #[key(example = "110 kPa")]
     pub max: Option<String>,
     /// Standard uncertainty (k = 1) of the sensor. Default: none.

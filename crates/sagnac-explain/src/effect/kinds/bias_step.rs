@@ -1,6 +1,6 @@
 //! One jump of the bias.
 
-use super::heading_change::odds_of_same_step;
+use crate::effect::shared::heading::odds_of_same_step;
 use crate::effect::shared::step::{around, instant_bounds, instants, sizing, step};
 use crate::effect::{
     ClaimedMean, Drivers, Later, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts, Values,

@@ -1,13 +1,15 @@
 //! The gyro moved: another projection of the Earth rate from some time on.
 
+use super::bias_step::BiasStep;
 use super::earth_rate_projection::EarthRateProjection;
+use crate::effect::shared::heading::{odds_of_same_step, table_turned, turning};
 use crate::effect::shared::search::gain_of;
 use crate::effect::shared::step::{around, instant_bounds, instants, sizing, step};
 use crate::effect::{
-    ClaimedMean, Drivers, Earth, Later, MeanModel, Param, Place, Regressors, SearchContext, Sizing, Starts,
-    Values, number,
+    ClaimedMean, Drivers, Earth, Effect, Later, MeanModel, Param, Place, Regressors, SearchContext, Sizing,
+    Starts, Values, number,
 };
-use crate::numeric::order::{SortByNumber, SortNumbers};
+use crate::numeric::order::SortByNumber;
 use crate::numeric::range::Bounds;
 use crate::units::EARTH_RATE_DEG_H;
 use std::f64::consts::PI;
@@ -20,16 +22,6 @@ static PARAMS: [Param; 4] = [
     Param::inner("cosine_deg_h", "deg/h", -1e3, 1e3),
     Param::inner("sine_deg_h", "deg/h", -1e3, 1e3),
 ];
-
-/// The table's angle where it takes on headings apart enough to distinguish the projection from a step.
-fn turning(drivers: &Drivers) -> Option<&[f64]> {
-    let angle = drivers.table_angle.as_deref()?;
-    let n = angle.len().max(1) as f64;
-    let mean = |f: fn(f64) -> f64| angle.iter().map(|a| f(a.to_radians())).sum::<f64>() / n;
-    // 1 for a table at rest.
-    let together = mean(f64::cos).hypot(mean(f64::sin));
-    (together < 0.99).then_some(angle)
-}
 
 describe! {
     HeadingChange, "heading_change", Mean in Time, needs [],
@@ -59,34 +51,6 @@ fn projection_of(step: f64, earth: Option<Earth>) -> (f64, f64) {
     let turn = [heading, -heading].map(apart).into_iter().min_by(|a, b| a.abs().total_cmp(&b.abs()));
     let after = before + turn.unwrap_or(0.0);
     (horizontal * (after.cos() - before.cos()), -horizontal * (after.sin() - before.sin()))
-}
-
-/// Change of the table's angle at an instant, and the usual one in as long a time elsewhere, deg.
-fn turned(at_s: f64, drivers: &Drivers) -> Option<(f64, f64)> {
-    let angle = drivers.table_angle.as_ref()?;
-    let n = angle.len();
-    let wide = (n / 100).max(2);
-    let at = ((at_s / drivers.dt_s) as usize).min(n.saturating_sub(1));
-    let (a, b) = (angle.get(at.saturating_sub(wide))?, angle.get((at + wide).min(n - 1))?);
-    let apart = |a: f64, b: f64| ((b - a + 180.0).rem_euclid(360.0) - 180.0).abs();
-    let mut usual: Vec<f64> =
-        angle.windows(2 * wide + 1).step_by(wide).map(|w| apart(w[0], w[2 * wide])).collect();
-    usual.sort_ascending();
-    Some((apart(*a, *b), usual.get(usual.len() / 2).copied().unwrap_or(0.0)))
-}
-
-/// True where the table's angle changes at that instant and seldom else.
-fn table_turned(at_s: f64, drivers: &Drivers) -> bool {
-    turned(at_s, drivers).is_some_and(|(here, usual)| here > 0.01 && here > 5.0 * usual)
-}
-
-/// Kind of a step of the output.
-const PLAINER_NAME: &str = "bias_step";
-
-/// Logarithm of the odds of a change of heading against a step of the output, where nothing tells one from the other.
-pub(super) fn odds_of_same_step(at_s: f64, drivers: &Drivers) -> Option<f64> {
-    let same = turning(drivers).is_none() && !table_turned(at_s, drivers);
-    same.then_some(if drivers.claim.earth.is_some() { -0.1 } else { -2.0 })
 }
 
 /// Number of instants at which the search looks for a change of heading.
@@ -174,7 +138,7 @@ impl MeanModel for HeadingChange {
     }
 
     fn plainer_name(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Option<&'static str> {
-        odds_of_same_step(*nonlinear_parameters.first()?, drivers).map(|_| PLAINER_NAME)
+        odds_of_same_step(*nonlinear_parameters.first()?, drivers).map(|_| BiasStep.kind())
     }
 }
 
@@ -195,7 +159,7 @@ mod tests {
         at_rest.claim.earth = Some(Earth { latitude_deg: 60.0, azimuth_deg: 40.0 });
         let odds = HeadingChange.odds(&[500.0], &at_rest);
         assert!(odds < 0.0 && odds > -0.5, "{odds}");
-        assert_eq!(HeadingChange.plainer_name(&[500.0], &at_rest), Some("bias_step"));
+        assert_eq!(HeadingChange.plainer_name(&[500.0], &at_rest), Some(BiasStep.kind()));
         assert_eq!(HeadingChange.plainer_name(&[500.0], &drivers), None);
     }
 
