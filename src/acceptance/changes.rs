@@ -133,12 +133,9 @@ fn difference(
     let sides = before.interval.zip(after.interval).filter(|_| !contradicted);
     let spread = match sides {
         Some((a, b)) => {
-            let dropped = |r: &MeasurandRecord| {
-                let common = r.common_standard_uncertainty.unwrap_or(0.0);
-                if same_bench { INTERVAL_SCORE * common } else { 0.0 }
+            let own = |half: f64, r: &MeasurandRecord| {
+                if same_bench { half * (1.0 - common_share(half, r)).max(0.0).sqrt() } else { half }
             };
-            let own =
-                |half: f64, r: &MeasurandRecord| (half * half - dropped(r) * dropped(r)).max(0.0).sqrt();
             let up = own(b.high - y, after).hypot(own(x - a.low, before));
             let down = own(y - b.low, after).hypot(own(a.high - x, before));
             let at = |score: f64| {
@@ -153,6 +150,14 @@ fn difference(
         if same_bench { note!("compare_phases.common_drops") } else { note!("compare_phases.common_stays") };
     let row = m.measured(channel, y - x, spread, METHOD).note(told).note(common);
     if contradicted { row.note(note!("compare_phases.contradicted")) } else { row }
+}
+
+/// Share of the variance of a row that both phases have in common. `half` is half the width of its interval.
+fn common_share(half: f64, row: &MeasurandRecord) -> f64 {
+    let common = row.common_standard_uncertainty.unwrap_or(0.0);
+    let whole: f64 = row.budget.iter().map(|c| c.contribution * c.contribution).sum();
+    let variance = if whole > 0.0 { whole } else { (half / INTERVAL_SCORE).powi(2) };
+    if variance > 0.0 { common * common / variance } else { 0.0 }
 }
 
 fn as_bound(interval: Interval) -> UpperLimit {

@@ -101,7 +101,7 @@ fn clauses(lang: Lang) {
     let of_clause = |(clause, dealt_with): &(StatedClause, Vec<String>)| {
         let none = || lines("  ", &note!("procedures.no_clause").say(lang));
         let below = if dealt_with.is_empty() { none() } else { dealt_with.concat() };
-        format!("{} {}\n{below}", clause.number, clause.title)
+        lines("", &format!("{} {}", clause.number, clause.title)) + &below
     };
     place::print(&found.values().map(of_clause).collect::<Vec<String>>().join("\n"));
 }

@@ -12,6 +12,7 @@ mod noise_bands;
 mod on_table;
 mod overload;
 mod rate_table;
+mod rest;
 mod small_rates;
 mod start_up;
 mod table;
@@ -33,8 +34,8 @@ pub static FAMILIES: LazyLock<[Family; 11]> = LazyLock::new(|| {
         family::<frequency::OverFrequency>(include_str!("../../cases/edges/frequency.toml")),
         family::<gravity::InGravity>(include_str!("../../cases/edges/gravity.toml")),
         family::<influence::Bench>(include_str!("../../cases/edges/influence.toml")),
-        family::<noise::Rest>(include_str!("../../cases/edges/noise.toml")),
-        family::<noise::Rest>(include_str!("../../cases/edges/noise_bands.toml")),
+        family::<rest::Rest>(include_str!("../../cases/edges/noise.toml")),
+        family::<rest::Rest>(include_str!("../../cases/edges/noise_bands.toml")),
         family::<overload::Rails>(include_str!("../../cases/edges/overload.toml")),
         family::<rate_table::Bench>(include_str!("../../cases/edges/rate_table.toml")),
         family::<small_rates::Sweep>(include_str!("../../cases/edges/small_rates.toml")),

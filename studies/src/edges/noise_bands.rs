@@ -1,7 +1,7 @@
 //! What is true of a unit at rest in bands of frequency, from the closed forms of its sampled noise.
 
 use super::case::Truth;
-use super::noise::{N, Part, Rest};
+use super::rest::{N, Part, Rest};
 use std::f64::consts::{PI, TAU};
 
 /// Measurands of the noise in bands.

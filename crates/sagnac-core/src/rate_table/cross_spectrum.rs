@@ -65,6 +65,9 @@ impl WindowTerms {
     }
 }
 
+/// Largest distance of the motion that a bin holds from its frequency, in bins: beyond, the bin holds what the window leaks.
+const LARGEST_DISTANCE: f64 = 1.0;
+
 /// What the segments show at one frequency of one channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bin {
@@ -186,7 +189,10 @@ impl Lengthwise {
             let of = |sums: &[Complex<f64>], per: f64| {
                 sums.get(k).map_or_else(Complex::default, |u| u / (xx * per))
             };
-            if *xx <= 0.0 || *yy <= 0.0 {
+            let first = of(under_first, interval_s);
+            // Under the derivative of the window, motion at a distance d of frequency has 2πd of its spectrum.
+            let distance = first.norm() / TAU * length * interval_s;
+            if *xx <= 0.0 || *yy <= 0.0 || distance > LARGEST_DISTANCE {
                 return None;
             }
             let coherence = (xy.norm_sqr() / (xx * yy)).min(1.0);
@@ -195,7 +201,7 @@ impl Lengthwise {
                 frequency_hz: k as f64 / (length * interval_s),
                 response: xy / xx,
                 window: WindowTerms {
-                    first: of(under_first, interval_s),
+                    first,
                     second: of(under_second, interval_s * interval_s),
                     averaged_over_s,
                 },

@@ -15,6 +15,9 @@ const MAX_STEPS: usize = 60;
 /// Steps for the derivative of a response, relative for what is a logarithm and in units of the shortest period for a delay.
 const DERIVATIVE_STEP: f64 = 1e-5;
 
+/// Largest step for the derivative of what follows from a model, relative.
+const DERIVATIVE_OF_RESULT_STEP: f64 = 1e-3;
+
 /// How a response falls with frequency, beside its gain and its delay.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Order {
@@ -161,7 +164,9 @@ impl FittedModel {
         let here = of(&self.model)?;
         let gradient = (0..self.model.parameters.len())
             .map(|i| {
-                let step = 0.1 * self.covariance.get((i, i))?.max(0.0).sqrt();
+                let size = self.model.parameters.get(i)?.abs().max(1e-3);
+                let step = (0.1 * self.covariance.get((i, i))?.max(0.0).sqrt())
+                    .min(DERIVATIVE_OF_RESULT_STEP * size);
                 let mut moved = self.model.clone();
                 *moved.parameters.get_mut(i)? += step;
                 if step > 0.0 { Some((of(&moved)? - here) / step) } else { Some(0.0) }
