@@ -145,7 +145,10 @@ impl Transfer {
     /// Models that the record does not tell from the best one.
     pub fn rivals(&self) -> impl Iterator<Item = &FittedModel> {
         let best = self.best().map_or(f64::INFINITY, |f| f.criterion);
-        self.fits.iter().filter(move |f| f.criterion <= best + RIVAL_CRITERION)
+        let counts = move |(i, f): &(usize, &FittedModel)| {
+            *i == 0 || f.criterion <= best + RIVAL_CRITERION && f.is_determined()
+        };
+        self.fits.iter().enumerate().filter(counts).map(|(_, f)| f)
     }
 
     /// Frequency where the gain falls to 1/√2, between the bands.

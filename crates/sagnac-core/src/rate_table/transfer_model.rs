@@ -158,7 +158,16 @@ pub struct FittedModel {
     squares: f64,
 }
 
+/// Largest standard deviation of the logarithm of a parameter that a record determines.
+const LARGEST_LOG_DEVIATION: f64 = 1.0;
+
 impl FittedModel {
+    /// True where the record tells corner, damping or averaging time to within a factor: otherwise the model is a plainer one.
+    pub fn is_determined(&self) -> bool {
+        (2..self.model.parameters.len())
+            .all(|i| self.covariance.get((i, i)).is_some_and(|v| v.sqrt() <= LARGEST_LOG_DEVIATION))
+    }
+
     /// Standard uncertainty of a function of the model, from its derivatives.
     pub fn standard(&self, of: impl Fn(&Model) -> Option<f64>) -> Option<f64> {
         let here = of(&self.model)?;
