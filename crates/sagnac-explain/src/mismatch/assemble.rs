@@ -68,6 +68,14 @@ pub(super) struct Recorded {
     pub read_from: Vec<ReadFrom>,
 }
 
+/// Everything that was tried, by what it is worth. Of equal ones, what single samples show stands before what was tried in modes.
+fn ranked(of_single_samples: &[NamedEffect], selection: &Selection) -> Vec<Candidate> {
+    let of_modes = selection.first.iter().map(candidate);
+    let mut all: Vec<Candidate> = of_single_samples.iter().map(of_samples).chain(of_modes).collect();
+    all.sort_descending_by(|a| a.delta_bic);
+    all
+}
+
 /// Puts everything together.
 pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let Evidence { problem, claim, base, held_base, selection, mut found, before, after, recorded, options } =
@@ -75,10 +83,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let (best, spectra) = (&selection.best, &problem.spectra);
     let local_gain = found.local_gain();
     let observed = with(Some(problem.residual.clone()), found.taken.as_deref()).unwrap_or_default();
-    // Of equal ones, what single samples show stands before what was tried in modes.
-    let mut ranked: Vec<Candidate> =
-        found.named.iter().map(of_samples).chain(selection.first.iter().map(candidate)).collect();
-    ranked.sort_descending_by(|a| a.delta_bic);
+    let ranked = ranked(&found.named, selection);
     let halves = Halves::new(problem);
     let nothing = selection.chosen.is_empty() && found.named.is_empty();
     let held_best = if nothing { held_base } else { halves.judge(best) };
