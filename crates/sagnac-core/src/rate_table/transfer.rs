@@ -179,7 +179,7 @@ impl Transfer {
             .bands
             .iter()
             .enumerate()
-            .position(|(i, b)| below(b) && self.bands.get(i + 1).is_none_or(|next| below(next)));
+            .position(|(i, b)| below(b) && self.bands.get(i + 1).is_none_or(below));
         let pair = stays.and_then(|i| Some((self.bands.get(i.checked_sub(1)?)?, self.bands.get(i)?)));
         let Some((a, b)) = pair else {
             // All bands lie on one side.
@@ -202,7 +202,7 @@ impl Transfer {
         let slope = (at(found + step) - at(found - step)) / (2.0 * step);
         let noise = (0.5 * (a.standard.powi(2) + b.standard.powi(2)) + common * common).sqrt();
         // Between bands far apart, what the model leaves need not go straight.
-        let apart = ((to - from) * BANDS_PER_OCTAVE / std::f64::consts::LN_2 - 2.0).max(0.0).min(1.0);
+        let apart = ((to - from) * BANDS_PER_OCTAVE / std::f64::consts::LN_2 - 2.0).clamp(0.0, 1.0);
         let unsure = noise.hypot(0.3 * apart * (left(b) - left(a)));
         let standard = unsure / slope.abs();
         if !standard.is_finite() {

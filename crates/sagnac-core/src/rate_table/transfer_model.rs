@@ -322,7 +322,7 @@ mod tests {
     fn bins(model: &Model, highest_hz: f64, sd: f64) -> Vec<Bin> {
         let one = |i: u32| {
             let frequency_hz = highest_hz * f64::from(i) / 100.0;
-            let sign = |k: u32| if (i * 7 + k) % 3 == 0 { sd } else { -0.5 * sd };
+            let sign = |k: u32| if (i * 7 + k).is_multiple_of(3) { sd } else { -0.5 * sd };
             let response = model.shape(frequency_hz) * model.gain() + Complex::new(sign(0), sign(1));
             Bin { frequency_hz, response, variance: sd * sd, window: WindowTerms::default(), coherence: 0.99 }
         };

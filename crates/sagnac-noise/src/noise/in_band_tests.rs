@@ -161,9 +161,9 @@ fn an_rms_scatters_as_its_degrees_of_freedom_say() {
     };
     let resolution = spectrum(&white(0, 8192), &[]).step_hz;
     let of_line = [line(1.5, 5.66, resolution)];
-    let kinds: [(&dyn Fn(Vec<f64>) -> Vec<f64>, &[SpectralLine]); 2] =
-        [(&smooth, &[]), (&with_line, &of_line)];
-    for (kind, lines) in kinds {
+    type Made<'a> = &'a dyn Fn(Vec<f64>) -> Vec<f64>;
+    let kinds: [Made<'_>; 2] = [&smooth, &with_line];
+    for (kind, lines) in kinds.into_iter().zip([&[][..], &of_line[..]]) {
         let found: Vec<(f64, f64)> = (0..150)
             .map(|seed| {
                 let digest = digest(&kind(white(seed, 8192)));
