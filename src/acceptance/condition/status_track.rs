@@ -50,7 +50,7 @@ impl StatusTrack {
         let is_word = value.fract() == 0.0 && value.abs() < 2f64.powi(STATUS_BITS as i32);
         // A word with a sign stands for its two's complement.
         let word = if value < 0.0 { value as i64 as u64 } else { value as u64 };
-        is_word.then(|| (word & self.failure_mask) | (!word & self.valid_mask))
+        is_word.then_some((word & self.failure_mask) | (!word & self.valid_mask))
     }
 }
 

@@ -296,7 +296,7 @@ fn range(section: &Section, condition: &RangeCondition, procedure: &Procedure, r
         return;
     }
     match condition.bounds(&channel.channel) {
-        Err((key, e)) => reader.error(&section.span_of(key), e.message, e.help),
+        Err(wrong) => reader.error(&section.span_of(wrong.key), wrong.why.message, wrong.why.help),
         Ok(b) if b.low >= b.high => reader.error(&section.span_of("max"), "check.bounds", None),
         Ok(b) => {
             let guard = condition.coverage_factor * b.standard_uncertainty;

@@ -125,6 +125,15 @@ pub struct RangeCondition {
     pub smoothing_s: f64,
 }
 
+/// A key of a range whose text is no quantity of the dimension of its channel.
+#[derive(Debug, Clone, PartialEq)]
+pub struct WrongBound {
+    /// The key.
+    pub key: &'static str,
+    /// What is wrong with it.
+    pub why: Box<QuantityError>,
+}
+
 /// Bounds of a channel in the unit of its values inside the program.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bounds {
@@ -143,12 +152,12 @@ impl RangeCondition {
     ///
     /// # Errors
     /// The key whose text is no quantity of the dimension of the channel, with the reason.
-    pub fn bounds(&self, channel: &Channel) -> Result<Bounds, (&'static str, QuantityError)> {
+    pub fn bounds(&self, channel: &Channel) -> Result<Bounds, WrongBound> {
         let unit = channel.role.internal_unit().unwrap_or(channel.unit.text());
         let read = |key: &'static str, text: &Option<String>, difference: bool| match text {
-            Some(text) => {
-                quantity::parse(text, unit, difference, unit == "1").map(Some).map_err(|e| (key, e))
-            }
+            Some(text) => quantity::parse(text, unit, difference, unit == "1")
+                .map(Some)
+                .map_err(|why| WrongBound { key, why: Box::new(why) }),
             None => Ok(None),
         };
         Ok(Bounds {
