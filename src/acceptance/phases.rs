@@ -11,8 +11,8 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::{Arg, Lang, LocalText, Localize, Note, note};
 use crate::record::{
-    CheckRecord, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT, RunKind, RunRecord,
-    Session, UnitUnderTest, Window,
+    CheckRecord, ConditionStatus, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT,
+    RunKind, RunRecord, Session, UnitUnderTest, Window,
 };
 
 /// A phase that was run, or why it was not.
@@ -92,12 +92,14 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
     }
 }
 
-/// The worst verdict. A phase without any limit leaves it to the limits on changes, where there are some.
+/// The worst verdict. A phase that is open for want of any limit, and for nothing else, leaves it to the limits on changes, where there
+/// are some.
 fn worst(phases: &[PhaseRecord]) -> Verdict {
     let judges_changes = phases.iter().any(|p| p.id == CHANGES && p.verdict != Verdict::None);
     let without_limits = |p: &&PhaseRecord| {
         let none = p.measurands.iter().all(|m| m.limit.is_none());
-        judges_changes && none && p.verdict == Verdict::Indeterminate
+        let valid = p.conditions.iter().all(|c| c.status != ConditionStatus::Invalid);
+        judges_changes && none && valid && p.verdict == Verdict::Indeterminate
     };
     phases.iter().filter(|p| !without_limits(p)).map(|p| p.verdict).max().unwrap_or(Verdict::None)
 }

@@ -71,6 +71,21 @@ fn a_change_is_known_far_better_than_either_value_where_the_site_is_common() {
 }
 
 #[test]
+fn a_change_decides_nothing_where_a_phase_is_no_valid_test() {
+    let folder = tempfile::tempdir().unwrap();
+    assert_eq!(run(folder.path(), 0.03, &change("static_bias", "0.05 deg/h")).code, 0);
+    altered(
+        folder.path(),
+        "one.toml",
+        &folder.path().join("one.toml").to_string_lossy(),
+        &[("minimum_duration = \"10 min\"", "minimum_duration = \"10 h\"")],
+    );
+    let said = sagnac(folder.path(), &["run", "shock.toml", "unit.toml", "--out", "r"]);
+    assert_eq!(said.code, 3, "{}{}", said.out, said.err);
+    assert_eq!(row(folder.path(), "static_bias_change")["verdict"], "pass");
+}
+
+#[test]
 fn a_change_without_a_limit_is_stated_and_judged_by_nobody() {
     let folder = tempfile::tempdir().unwrap();
     let change = "[[compare]]\nmeasurand = \"angle_random_walk\"\nbefore = \"before\"\nafter = \"after\"\n";
