@@ -15,15 +15,20 @@ ROOT = Path(__file__).resolve().parents[3]
 RECORDINGS = sorted((ROOT / "samples").glob("*.csv"))
 
 PROCEDURES = {
+    "acceleration": ("acceleration", None),
     "bias-repeatability": ("bias-repeatability", None),
     "magnetic-sensitivity": ("magnetic-sensitivity", None),
+    "maximum-rate": ("maximum-rate", None),
     "misalignment": ("misalignment", None),
     "multi-position": ("multi-position", None),
+    "output-noise": ("output-noise", None),
     "scale-factor": ("scale-factor", None),
+    "start-up": ("start-up", None),
     "supply-sensitivity": ("supply-sensitivity", None),
     "temperature": ("temperature-ramp", "sample-temperature"),
     "temperature-soak": ("temperature-soak", "sample-temperature"),
     "threshold": ("threshold", None),
+    "transfer-function": ("transfer-function", None),
     "unit": ("static-bias", "sample-unit"),
     "vibration": ("vibration", None),
     "warm-up": ("warm-up", "sample-warm-up"),
