@@ -3,16 +3,13 @@
 //! Sources: IEEE Std 952-2020, 12.15 (frequency response); Bendat and Piersol, Random Data, chapters 6 and 9.
 
 use super::cross_spectrum::Bin;
-use super::transfer_model::{FittedModel, Model, Order, fit};
+use super::transfer_model::{FittedModel, Model, Order, SHARED_BY_BINS, fit};
 use crate::estimate::{LowerLimit, Spread, UpperLimit};
 use crate::numeric::optimize::bisect;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
 /// Bands of an octave over which bins are joined.
 const BANDS_PER_OCTAVE: f64 = 12.0;
-
-/// Variance of the mean of bins under a Hann window beside that of as many bins that share nothing.
-const SHARED_BY_BINS: f64 = 1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0);
 
 /// Fewest bands that tell a response.
 const FEWEST_BANDS: usize = 4;
