@@ -65,7 +65,8 @@ impl Bench for Rails {
         }
         let sections = format!(
             "[rate_table]\nsettling = \"4 s\"\nminimum_step = \"5 s\"\nwhole_turns = false\nfull_scale = \"{FULL} deg/s\"\n\
-             maximum_rate_error = \"{ERROR}\"\n[conditions]\nminimum_duration = \"1 min\"\n"
+             maximum_rate_error = \"{} %\"\n[conditions]\nminimum_duration = \"1 min\"\n",
+            100.0 * ERROR
         );
         let [time, output, table] = &columns;
         Simulated {
