@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Runs Monte Carlo studies and writes their pages in docs/validation/, generated.md with all of one build, and the misses
+/// Runs Monte Carlo studies and writes their pages in docs/validation/, generated.md with all of them, and the misses
 /// of all pages into README.md there. Pages kept by hand are never overwritten. A study that was interrupted goes on after
 /// its last finished case, as long as the code is the same.
 #[derive(Parser)]
@@ -34,7 +34,7 @@ struct Options {
     /// Names the studies.
     #[arg(long)]
     list: bool,
-    /// Runs nothing; writes the misses of all pages into README.md.
+    /// Runs nothing; writes generated.md of the results that are there, and the misses of all pages into README.md.
     #[arg(long)]
     index: bool,
 }
@@ -54,7 +54,7 @@ fn main() -> ExitCode {
         return ExitCode::SUCCESS;
     }
     if options.index {
-        return exit_code(index::update(&folder));
+        return exit_code(write_summary(&folder).and_then(|()| index::update(&folder)));
     }
     if options.studies.is_empty() {
         options.studies = STUDIES.to_vec();
@@ -89,7 +89,7 @@ fn validate(options: &Options, pages: &Path) -> io::Result<()> {
         let results = run(study, kept.unwrap_or(fresh), &partial)?;
         write_page(&folder.join(format!("{}.md", study.id)), &pages::study_page(study, &results))?;
         results.write(&path)?;
-        write_summary(folder, &commit)?;
+        write_summary(folder)?;
         if options.out.is_none() {
             index::update(folder)?;
         }
@@ -127,12 +127,12 @@ fn run(study: &Study, mut results: Results, partial: &Path) -> io::Result<Result
     Ok(results)
 }
 
-fn write_summary(folder: &Path, commit: &str) -> io::Result<()> {
+fn write_summary(folder: &Path) -> io::Result<()> {
     let mut all = vec![];
     for study in STUDIES {
         all.extend(Results::read(&folder.join(format!("{}.json", study.id)))?);
     }
-    write_page(&folder.join("generated.md"), &pages::summary(STUDIES, &all, commit))
+    write_page(&folder.join("generated.md"), &pages::summary(STUDIES, &all))
 }
 
 #[cfg(test)]
