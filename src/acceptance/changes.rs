@@ -3,15 +3,14 @@
 use super::request::Outcome;
 use super::verdict::{Against, judged};
 use crate::config::procedure::phases::{CHANGES, Change};
-use crate::estimate::{Estimate, Interval, Limit, LowerLimit, Spread, UpperLimit, Verdict};
+use crate::estimate::{
+    Estimate, Interval, Limit, LowerLimit, SCORE_TWO_SIDED_95, Spread, UpperLimit, Verdict,
+};
 use crate::i18n::{LocalText, Note, note};
 use crate::record::{InstrumentRecord, MeasurandRecord, PhaseRecord, RunKind, RunRecord};
 
 /// Method of these rows.
 const METHOD: &str = "between_phases";
-
-/// Standard uncertainties from the middle of an interval with 95 % to its ends.
-const INTERVAL_SCORE: f64 = 1.959_964;
 
 /// What came of a phase.
 pub(super) struct PhaseRows<'a> {
@@ -138,11 +137,7 @@ fn difference(
             };
             let up = own(b.high - y, after).hypot(own(x - a.low, before));
             let down = own(y - b.low, after).hypot(own(a.high - x, before));
-            let at = |score: f64| {
-                let side = if score < 0.0 { down } else { up };
-                (score, y - x + score / INTERVAL_SCORE * side)
-            };
-            Spread::Curve((-12..=12).map(|i| at(0.25 * f64::from(i))).collect())
+            Spread::of_interval(y - x - down, y - x, y - x + up)
         }
         None => Spread::Unknown,
     };
@@ -156,7 +151,7 @@ fn difference(
 fn common_share(half: f64, row: &MeasurandRecord) -> f64 {
     let common = row.common_standard_uncertainty.unwrap_or(0.0);
     let whole: f64 = row.budget.iter().map(|c| c.contribution * c.contribution).sum();
-    let variance = if whole > 0.0 { whole } else { (half / INTERVAL_SCORE).powi(2) };
+    let variance = if whole > 0.0 { whole } else { (half / SCORE_TWO_SIDED_95).powi(2) };
     if variance > 0.0 { common * common / variance } else { 0.0 }
 }
 

@@ -11,9 +11,6 @@ use crate::units::Unit;
 /// Method of these rows.
 const METHOD: &str = "external";
 
-/// Standard uncertainties from the middle of an interval with 95 % to its ends.
-const INTERVAL_SCORE: f64 = 1.959_964;
-
 /// The rows that a procedure asks for: stated for the unit, or else by the procedure. One that nobody states is there too and
 /// decides nothing.
 pub(super) fn rows(
@@ -45,7 +42,7 @@ fn estimate(result: &ExternalResult, unit: &Unit) -> Estimate {
     };
     let value = factor * result.value;
     let spread = match result.interval {
-        Some([low, high]) => between(factor * low, value, factor * high),
+        Some([low, high]) => Spread::of_interval(factor * low, value, factor * high),
         None => Spread::Unknown,
     };
     let text = |of: &Option<String>| of.clone().unwrap_or_else(|| "–".to_owned());
@@ -56,13 +53,4 @@ fn estimate(result: &ExternalResult, unit: &Unit) -> Estimate {
         sha256 = text(&result.sha256)
     );
     Estimate::measured("", "", value, "", spread, METHOD).note(told)
-}
-
-/// A spread whose interval with 95 % is the one stated.
-fn between(low: f64, value: f64, high: f64) -> Spread {
-    let at = |score: f64| {
-        let side = if score < 0.0 { value - low } else { high - value };
-        (score, value + score / INTERVAL_SCORE * side)
-    };
-    Spread::Curve((-12..=12).map(|i| at(0.25 * f64::from(i))).collect())
 }

@@ -26,6 +26,12 @@ pub use tail::{
     normal_two_sided,
 };
 
+/// Normal score of the ends of a two-sided interval with 95 %.
+pub const SCORE_TWO_SIDED_95: f64 = 1.959_963_984_540_054;
+
+/// Normal score of a one-sided bound with 95 %.
+pub const SCORE_ONE_SIDED_95: f64 = 1.644_853_626_951_472_2;
+
 /// A two-sided interval with its coverage probability.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -85,6 +91,24 @@ pub enum Spread {
 }
 
 impl Spread {
+    /// The spread of a quantity whose value at a normal score is known, tabulated from −3 to 3 in quarters.
+    pub fn by_score(value_at: impl Fn(f64) -> f64) -> Spread {
+        Spread::Curve((-12..=12).map(|i| 0.25 * f64::from(i)).map(|score| (score, value_at(score))).collect())
+    }
+
+    /// The spread whose two-sided interval with 95 % is the given one: normal on either side of the value.
+    pub fn of_interval(low: f64, value: f64, high: f64) -> Spread {
+        Spread::by_score(|score| {
+            let side = if score < 0.0 { value - low } else { high - value };
+            value + score / SCORE_TWO_SIDED_95 * side.max(0.0)
+        })
+    }
+
+    /// The even spread of a time over one resolution on either side of it, and not before zero.
+    pub fn of_resolution(time: f64, resolution: f64) -> Spread {
+        Spread::by_score(|score| (time + resolution * (2.0 * normal_probability(score) - 1.0)).max(0.0))
+    }
+
     /// The value that the quantity stays below with the given confidence; Student's law is normal beyond 1e6 degrees.
     pub fn bound(&self, value: f64, confidence: f64) -> Option<f64> {
         match self {

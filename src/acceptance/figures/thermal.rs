@@ -2,6 +2,7 @@
 
 use super::draw;
 use crate::config::procedure::Procedure;
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::figure::{Figure, Layer, Panel, Style};
 use crate::i18n::{Arg, Note, note};
 use crate::measurand::GyroEvidence;
@@ -16,9 +17,6 @@ use nalgebra::DVector;
 const CURVE_POINTS: usize = 101;
 /// Points of a series at most.
 const MAX_POINTS: usize = 1500;
-/// Two-sided 95 %.
-const NORMAL_QUANTILE_95: f64 = 1.959_964;
-
 /// Every figure that a channel has.
 pub fn figures(
     gyro: &GyroEvidence,
@@ -93,7 +91,7 @@ fn over_temperature(a: &Analysis) -> (Vec<Panel>, Vec<Note>) {
             let x = 2.0 * i as f64 / (CURVE_POINTS - 1) as f64 - 1.0;
             let t = p.span.temperature(x);
             let basis = legendre(x, p.terms.order);
-            (t, a.bias_at(t), NORMAL_QUANTILE_95 * deviation(&p.draws, &padded(&basis, p.terms.count())))
+            (t, a.bias_at(t), SCORE_TWO_SIDED_95 * deviation(&p.draws, &padded(&basis, p.terms.count())))
         })
         .collect();
     let points =
@@ -226,7 +224,7 @@ fn sensitivity(a: &Analysis) -> Panel {
             let x = 2.0 * i as f64 / (CURVE_POINTS - 1) as f64 - 1.0;
             let t = p.span.temperature(x);
             let basis: Vec<f64> = legendre_slopes(x, p.terms.order).iter().map(|b| b * scale).collect();
-            (t, a.slope_at(t), NORMAL_QUANTILE_95 * deviation(&p.draws, &padded(&basis, p.terms.count())))
+            (t, a.slope_at(t), SCORE_TWO_SIDED_95 * deviation(&p.draws, &padded(&basis, p.terms.count())))
         })
         .collect();
     draw::panel(

@@ -166,3 +166,16 @@ fn a_quantity_between_two_bounds_is_judged_by_both() {
     assert_eq!(judge(&between(None, Some((350.0, 0.95))), &both).verdict, Verdict::Indeterminate);
     assert_eq!(judge(&between(Some((410.0, 0.95)), None), &both).verdict, Verdict::Fail);
 }
+
+#[test]
+fn a_spread_of_an_interval_has_that_interval_and_one_of_a_resolution_is_even() {
+    let skewed = Spread::of_interval(1.0, 2.0, 5.0);
+    let interval = skewed.interval(2.0, 0.95).unwrap();
+    assert!((interval.low - 1.0).abs() < 0.01 && (interval.high - 5.0).abs() < 0.03, "{interval:?}");
+    assert_eq!(skewed.bound(2.0, 0.5), Some(2.0));
+    let even = Spread::of_resolution(1.0, 0.5);
+    // Of an even law over 0.5 on either side, 95 % lie within 0.475.
+    let interval = even.interval(1.0, 0.95).unwrap();
+    assert!((interval.low - 0.525).abs() < 0.005 && (interval.high - 1.475).abs() < 0.005, "{interval:?}");
+    assert_eq!(Spread::of_resolution(0.1, 0.5).interval(0.1, 0.95).unwrap().low, 0.0);
+}

@@ -313,6 +313,7 @@ impl Gradient {
 mod tests {
     use super::super::Formula;
     use super::*;
+    use crate::estimate::{SCORE_ONE_SIDED_95, SCORE_TWO_SIDED_95};
 
     fn normal(value: f64, u: f64) -> Input {
         let spread = Spread::Normal { standard_uncertainty: u };
@@ -332,7 +333,7 @@ mod tests {
     /// Standard uncertainty of an outcome, from its 95 % interval.
     fn u(outcome: &Outcome) -> f64 {
         let i = outcome.spread.interval(outcome.value.unwrap(), 0.95).unwrap();
-        (i.high - i.low) / (2.0 * 1.959_964)
+        (i.high - i.low) / (2.0 * SCORE_TWO_SIDED_95)
     }
 
     #[test]
@@ -375,7 +376,7 @@ mod tests {
             assert_eq!(o.value, None, "{text}");
             (o.lower_limit.map(|l| l.value), o.upper_limit.map(|l| l.value))
         };
-        let z = 1.644_854;
+        let z = SCORE_ONE_SIDED_95;
         let near = |found: Option<f64>, expected: f64| {
             assert!((found.unwrap() - expected).abs() < 1e-5, "{found:?}")
         };

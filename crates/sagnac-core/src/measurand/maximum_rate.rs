@@ -2,7 +2,7 @@
 
 use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
-use crate::estimate::{Estimate, LowerLimit, Spread, UpperLimit, normal_probability};
+use crate::estimate::{Estimate, LowerLimit, Spread, UpperLimit};
 use crate::message::{Arg, note};
 use crate::rate_table::overload::{CLAIM_CONFIDENCE, Overload, Recovery, Side};
 
@@ -114,9 +114,7 @@ fn recovery(m: &Measurand, e: &TableEvidence<'_>, found: &Overload) -> Estimate 
         let row = m.not_identifiable(&e.channel, Some(limit), METHOD).note(told);
         return if by_angle { row } else { row.note(note!("overload.commanded")) };
     }
-    let at = |score: f64| (score, (time_s + block_s * (2.0 * normal_probability(score) - 1.0)).max(0.0));
-    let spread = Spread::Curve((-12..=12).map(|i| at(0.25 * f64::from(i))).collect());
-    m.measured(&e.channel, time_s, spread, METHOD).note(told)
+    m.measured(&e.channel, time_s, Spread::of_resolution(time_s, block_s), METHOD).note(told)
 }
 
 #[cfg(test)]

@@ -4,7 +4,9 @@ use super::allan_minimum::{lowest, minimum_edf};
 use super::descriptor::Measurand;
 use super::evidence::GyroEvidence;
 use super::russian::{DRIFT_WINDOW_S, RANDOM_WALK_WINDOW_S, degrees_of_freedom, no_windows};
-use crate::estimate::{Estimate, Spread, chi_square_quantile, normal_probability};
+use crate::estimate::{
+    Estimate, SCORE_ONE_SIDED_95, SCORE_TWO_SIDED_95, Spread, chi_square_quantile, normal_probability,
+};
 use crate::message::note;
 use crate::noise::composite::{Composite, Part, Propagated};
 use crate::noise::data::NoiseType;
@@ -41,11 +43,6 @@ pub static RATIO_RUSSIAN_TO_ALLAN_ARW: Measurand = Measurand::at_rest(
 
 /// Least share of the variance of σ over 10 s that a ratio to N of the same record keeps.
 const LEAST_LEFT: f64 = 0.12;
-/// Normal score of a two-sided 95 %.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
-/// Normal score of the coverage of upper limits.
-const LIMIT_SCORE: f64 = 1.644_853_626_951_472_2;
-
 /// Normal scores a spread is drawn through.
 fn scores() -> impl Iterator<Item = f64> {
     (-16..=16).map(|i| 0.25 * f64::from(i))
@@ -80,8 +77,11 @@ pub fn predicted(gyro: &GyroEvidence, window_s: f64) -> Option<(WindowPrediction
         } else {
             variance
         };
-        let raised =
-            if z > 0.0 { variance + (known - variance).hypot(unseen * z / LIMIT_SCORE) } else { known };
+        let raised = if z > 0.0 {
+            variance + (known - variance).hypot(unseen * z / SCORE_ONE_SIDED_95)
+        } else {
+            known
+        };
         (z, raised.sqrt())
     });
     let spread = Spread::Curve(curve.collect());
@@ -136,7 +136,7 @@ fn random_walk_ratio(m: &Measurand, gyro: &GyroEvidence) -> Estimate {
         let variance = variance * variance;
         // The interval of N may be wider: it allows for terms that the description lacks; and the description may hold
         // quantisation that was not claimed.
-        let own = read.interval95().map_or(0.0, |i| (i.high - i.low) / (2.0 * NORMAL_95));
+        let own = read.interval95().map_or(0.0, |i| (i.high - i.low) / (2.0 * SCORE_TWO_SIDED_95));
         let moved = n - variance.sqrt();
         let unshared = (own * own - u_n * u_n).max(0.0) + moved * moved;
         let scatter = 2.0 / p.scatter_dof;
@@ -218,7 +218,7 @@ mod tests {
             let found = row(&RUSSIAN_DRIFT_100S_PREDICTED, gyro);
             for (z, value) in curve(&found) {
                 let (variance, plain) = ((6.0 * N).powi(2), known(*z, 0.1).powi(2));
-                let raised = variance + (plain - variance).hypot(unseen * z / LIMIT_SCORE);
+                let raised = variance + (plain - variance).hypot(unseen * z / SCORE_ONE_SIDED_95);
                 within(*value, if *z > 0.0 { raised } else { plain }.sqrt(), 1e-6);
             }
         };

@@ -3,7 +3,7 @@
 use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
 use super::sine_response;
-use crate::estimate::{Estimate, Spread, UpperLimit};
+use crate::estimate::{Estimate, SCORE_ONE_SIDED_95, Spread, UpperLimit};
 use crate::message::note;
 use crate::numeric::reml::Combination;
 use crate::rate_table::combine::spread;
@@ -135,12 +135,11 @@ fn residual(m: &Measurand, line: &ScaleFactor) -> Estimate {
     let truth = observed - noise;
     let factor = line.ppm_of_full_scale().abs();
     let root = |v: f64| v.max(0.0).sqrt() * factor;
-    if truth <= 1.645 * standard {
-        let value = root(truth.max(0.0) + 1.645 * standard);
+    if truth <= SCORE_ONE_SIDED_95 * standard {
+        let value = root(truth.max(0.0) + SCORE_ONE_SIDED_95 * standard);
         return m.not_identifiable(&line.channel, Some(UpperLimit { value, coverage: 0.95 }), METHOD);
     }
-    let curve = (-12..=12).map(|z| 0.25 * f64::from(z)).map(|z| (z, root(truth + z * standard))).collect();
-    m.measured(&line.channel, root(truth), Spread::Curve(curve), METHOD)
+    m.measured(&line.channel, root(truth), Spread::by_score(|z| root(truth + z * standard)), METHOD)
 }
 
 /// A term of a polynomial of third order at full scale.
@@ -263,11 +262,11 @@ mod tests {
         // Not clear of zero: 0.8 − 0.5 with a deviation of √(4·0.5·4 + 2·5·0.25)/5.
         (line.levels, line.covariance) =
             (levels([1.0, -1.0, 1.0, -1.0, 0.0], 0.5f64.sqrt()), diagonal(&[0.5; 5]));
-        let limit = 4000.0 * (0.3 + 1.645 * 10.5f64.sqrt() / 5.0).sqrt();
+        let limit = 4000.0 * (0.3 + SCORE_ONE_SIDED_95 * 10.5f64.sqrt() / 5.0).sqrt();
         withholds(&row(&SCALE_FACTOR_RESIDUAL, &line), Some(limit), METHOD);
         // Less than its noise: √(2·5·0.25)/5 above nothing.
         line.levels = levels([0.0; 5], 0.5f64.sqrt());
-        let limit = 4000.0 * (1.645 * 2.5f64.sqrt() / 5.0).sqrt();
+        let limit = 4000.0 * (SCORE_ONE_SIDED_95 * 2.5f64.sqrt() / 5.0).sqrt();
         withholds(&row(&SCALE_FACTOR_RESIDUAL, &line), Some(limit), METHOD);
     }
 

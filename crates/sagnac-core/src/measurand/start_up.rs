@@ -1,7 +1,7 @@
 //! Time to the first sample and to valid data, and what the unit draws from its supply.
 
 use super::descriptor::Measurand;
-use crate::estimate::{Estimate, LowerLimit, Spread, normal_probability};
+use crate::estimate::{Estimate, LowerLimit, SCORE_ONE_SIDED_95, Spread};
 use crate::message::{Arg, note};
 use crate::start_up::{Drawn, Moment, StartUp};
 
@@ -11,9 +11,6 @@ const SUPPLY_POWER: &str = "supply_power";
 
 /// Probability with which a bound holds.
 const CLAIM_CONFIDENCE: f64 = 0.95;
-
-/// Standard normal quantile of a bound with 95 %.
-const BOUND_SCORE: f64 = 1.644_854;
 
 /// Time to the first sample.
 pub static TIME_TO_FIRST_SAMPLE: Measurand = Measurand::of_start_up(
@@ -59,15 +56,9 @@ pub static INRUSH_CURRENT: Measurand =
 fn moment(m: &Measurand, found: &StartUp, moment: Moment) -> Estimate {
     let none = || m.not_identifiable(&found.channel, None, FROM_SUPPLY_EDGE);
     match moment {
-        Moment::At { time_s, resolution_s } => {
-            // Even over one resolution on each side.
-            let at = |score: f64| {
-                (score, (time_s + resolution_s * (2.0 * normal_probability(score) - 1.0)).max(0.0))
-            };
-            let spread = Spread::Curve((-12..=12).map(|i| at(0.25 * f64::from(i))).collect());
-            m.measured(&found.channel, time_s, spread, FROM_SUPPLY_EDGE)
-                .note(note!("start_up.resolution", resolution_s = Arg::figures(resolution_s, 2)))
-        }
+        Moment::At { time_s, resolution_s } => m
+            .measured(&found.channel, time_s, Spread::of_resolution(time_s, resolution_s), FROM_SUPPLY_EDGE)
+            .note(note!("start_up.resolution", resolution_s = Arg::figures(resolution_s, 2))),
         Moment::AtLeast(value) => none()
             .at_least((value > 0.0).then_some(LowerLimit { value, coverage: CLAIM_CONFIDENCE }))
             .note(note!("start_up.began_later")),
@@ -82,7 +73,7 @@ fn drawn(m: &Measurand, found: &StartUp, drawn: Option<Drawn>) -> Estimate {
     match drawn {
         None => none().note(note!("start_up.no_power")),
         Some(Drawn { value, standard, at_least: true }) => {
-            let least = value - BOUND_SCORE * standard;
+            let least = value - SCORE_ONE_SIDED_95 * standard;
             none()
                 .at_least(Some(LowerLimit { value: least, coverage: CLAIM_CONFIDENCE }))
                 .note(note!("start_up.began_later"))

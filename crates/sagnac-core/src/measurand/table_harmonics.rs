@@ -2,7 +2,7 @@
 
 use super::descriptor::{Measurand, Stimulus};
 use super::scale_factor_shape::of_line;
-use crate::estimate::{Estimate, UpperLimit};
+use crate::estimate::{Estimate, SCORE_ONE_SIDED_95, UpperLimit};
 use crate::message::{Arg, note};
 use crate::numeric::reml::Combination;
 use crate::rate_table::combine::spread;
@@ -51,7 +51,7 @@ fn harmonic(m: &Measurand, line: &ScaleFactor, order: u8) -> Estimate {
         / determinant.max(f64::MIN_POSITIVE);
     // By chance alone it is as large once in a hundred tests.
     if distance < 2.0 * 100f64.ln() {
-        let value = amplitude + 1.645 * chance.sqrt();
+        let value = amplitude + SCORE_ONE_SIDED_95 * chance.sqrt();
         return m.not_identifiable(&line.channel, Some(UpperLimit { value, coverage: 0.95 }), METHOD);
     }
     let random = Combination { value: amplitude, standard, dof: cosine.dof.min(sine.dof) };
@@ -101,7 +101,7 @@ mod tests {
             if is_shown {
                 shows(&row, 5.0 * size, "table_harmonic");
             } else {
-                withholds(&row, Some(5.0 * size + 1.645 * 0.065f64.sqrt()), "table_harmonic");
+                withholds(&row, Some(5.0 * size + SCORE_ONE_SIDED_95 * 0.065f64.sqrt()), "table_harmonic");
             }
         }
     }

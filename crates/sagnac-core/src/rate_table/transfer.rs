@@ -4,7 +4,7 @@
 
 use super::cross_spectrum::Bin;
 use super::transfer_model::{FittedModel, Model, Order, SHARED_BY_BINS, fit};
-use crate::estimate::{LowerLimit, Spread, UpperLimit};
+use crate::estimate::{LowerLimit, SCORE_ONE_SIDED_95, SCORE_TWO_SIDED_95, Spread, UpperLimit};
 use crate::numeric::optimize::bisect;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
 
@@ -22,10 +22,6 @@ const LARGEST_RELATIVE_MISFIT: f64 = 0.03;
 
 /// Probability with which a bound holds.
 pub const CLAIM_CONFIDENCE: f64 = 0.95;
-
-/// Standard normal quantiles of intervals with 95 % and of bounds with 95 %.
-const TWO_SIDED: f64 = 1.959_964;
-const ONE_SIDED: f64 = 1.644_854;
 
 /// How far above the highest frequency measured a model is followed, as a factor.
 const FOLLOWED_UP_TO: f64 = 1e3;
@@ -180,7 +176,8 @@ impl Transfer {
         let pair = stays.and_then(|i| Some((self.bands.get(i.checked_sub(1)?)?, self.bands.get(i)?)));
         let Some((a, b)) = pair else {
             // All bands lie on one side.
-            let last = self.bands.iter().rev().find(|b| of_band(b) - ONE_SIDED * uncertain(b) > level);
+            let last =
+                self.bands.iter().rev().find(|b| of_band(b) - SCORE_ONE_SIDED_95 * uncertain(b) > level);
             return match (stays, last) {
                 (None, Some(last)) => {
                     Shown::AtLeast(LowerLimit { value: last.frequency_hz, coverage: CLAIM_CONFIDENCE })
@@ -205,8 +202,7 @@ impl Transfer {
         if !standard.is_finite() {
             return Shown::Nothing;
         }
-        let curve = scores().map(|score| (score, (found + score * standard).exp())).collect();
-        Shown::Value(found.exp(), Spread::Curve(curve))
+        Shown::Value(found.exp(), Spread::by_score(|score| (found + score * standard).exp()))
     }
 
     /// Frequency where the gain falls to 1/√2, by the models that the record does not tell apart.
@@ -218,8 +214,8 @@ impl Transfer {
             .map(|f| Some((falls(&f.model)?.ln(), f.standard(|m| Some(falls(m)?.ln()))?)))
             .collect();
         let known = ends.iter().flatten();
-        let low = known.clone().map(|(at, sd)| at - TWO_SIDED * sd).fold(f64::INFINITY, f64::min);
-        let high = known.map(|(at, sd)| at + TWO_SIDED * sd).fold(f64::NEG_INFINITY, f64::max);
+        let low = known.clone().map(|(at, sd)| at - SCORE_TWO_SIDED_95 * sd).fold(f64::INFINITY, f64::min);
+        let high = known.map(|(at, sd)| at + SCORE_TWO_SIDED_95 * sd).fold(f64::NEG_INFINITY, f64::max);
         if ends.iter().any(Option::is_none) {
             // A rival does not fall at all: there is no upper end.
             let value = low.exp().max(highest);
@@ -242,8 +238,8 @@ impl Transfer {
             .rivals()
             .filter_map(|f| Some((f.model.latency_s(), f.standard(|m| Some(m.latency_s()))?)))
             .collect();
-        let low = ends.iter().map(|(at, sd)| at - TWO_SIDED * sd).fold(f64::INFINITY, f64::min);
-        let high = ends.iter().map(|(at, sd)| at + TWO_SIDED * sd).fold(f64::NEG_INFINITY, f64::max);
+        let low = ends.iter().map(|(at, sd)| at - SCORE_TWO_SIDED_95 * sd).fold(f64::INFINITY, f64::min);
+        let high = ends.iter().map(|(at, sd)| at + SCORE_TWO_SIDED_95 * sd).fold(f64::NEG_INFINITY, f64::max);
         if ends.is_empty() {
             return Shown::Nothing;
         }
@@ -302,16 +298,10 @@ pub fn decibel(log_gain: f64) -> f64 {
     20.0 * log_gain / std::f64::consts::LN_10
 }
 
-/// Scores at which a spread is told.
-fn scores() -> impl Iterator<Item = f64> {
-    (-12..=12).map(|i| 0.25 * f64::from(i))
-}
-
 /// A spread with these ends of its interval with 95 %, of a function that rises.
 fn between(low: f64, at: f64, high: f64, of: impl Fn(f64) -> f64) -> Spread {
-    let side = |score: f64| {
+    Spread::by_score(|score| {
         let end = if score < 0.0 { at - low } else { high - at };
-        of(at + score / TWO_SIDED * end.max(0.0))
-    };
-    Spread::Curve(scores().map(|score| (score, side(score))).collect())
+        of(at + score / SCORE_TWO_SIDED_95 * end.max(0.0))
+    })
 }

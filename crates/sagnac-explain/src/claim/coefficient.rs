@@ -1,7 +1,7 @@
 //! What an analysis knows of a coefficient, as a claim states it: a value with a deviation, or the deviation of nothing.
 
-/// Half of a 95 % interval in standard deviations.
-const HALF_WIDTH: f64 = 1.96;
+use crate::estimate::SCORE_TWO_SIDED_95;
+
 /// Upper limit of a coefficient that is not resolved, in deviations of its prior. A value beyond the prior is no mismatch
 /// yet: the recording itself is asked. A wide prior would let a random walk stand for a single jump.
 const LIMIT_OF_PRIOR: f64 = 6.0;
@@ -31,7 +31,7 @@ impl Coefficient {
         let relative = interval.map_or(0.0, |(low, high)| {
             let below = if low > 0.0 { (value / low).ln().min(LARGEST) } else { LARGEST };
             let above = (high / value).max(1.0).ln();
-            below.max(above) / HALF_WIDTH
+            below.max(above) / SCORE_TWO_SIDED_95
         });
         Coefficient { value, relative: if relative.is_finite() { relative } else { LARGEST }, at_most: 0.0 }
     }

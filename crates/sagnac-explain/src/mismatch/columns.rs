@@ -6,11 +6,9 @@ use super::named::NamedEffect;
 use super::problem::Problem;
 use super::select::MOST_EQUIVALENTS;
 use crate::effect::{COLUMN_TEXT, Column, any_column_driver, find};
+use crate::estimate::SCORE_ONE_SIDED_95;
 use crate::numeric::cosine::dct2;
 use crate::series::ReadFrom;
-
-/// Standard deviations from the estimate to a one-sided 95 % limit.
-const ONE_SIDED_95: f64 = 1.644_854;
 
 /// Every column with its part in what was found. `best` is what was selected, `read_from` the names in the file.
 pub(super) fn records(
@@ -88,7 +86,7 @@ fn linear_limit(column: Column, problem: &Problem, best: &FittedHypothesis) -> O
         both += z * x / p;
         own += z * z / p;
     }
-    let limit = rms * ((both / own).abs() + ONE_SIDED_95 / own.sqrt());
+    let limit = rms * ((both / own).abs() + SCORE_ONE_SIDED_95 / own.sqrt());
     limit.is_finite().then_some(limit)
 }
 

@@ -9,6 +9,7 @@ use super::select::{Chosen, MIN_DELTA_BIC, Slot};
 use super::spectral_data::SpectralData;
 use super::terms::MeanTerm;
 use crate::effect::{MeanModel, ModeBin, Model};
+use crate::estimate::SCORE_ONE_SIDED_95;
 use crate::numeric::least_squares::{Normal, subtract};
 use crate::numeric::parallel;
 use rand::SeedableRng as _;
@@ -93,7 +94,7 @@ fn courses(
     let parameters = rival.tried.parameters as f64 - best.parameters as f64;
     let told = |times: f64| {
         let price = parameters * (spectra.rows as f64 * times).ln();
-        times * distance - 1.644_854 * 2.0 * (times * distance).sqrt() + price >= MIN_DELTA_BIC
+        times * distance - SCORE_ONE_SIDED_95 * 2.0 * (times * distance).sqrt() + price >= MIN_DELTA_BIC
     };
     shortest(told)
 }

@@ -4,6 +4,7 @@
 
 use super::data::WelchSpectrum;
 use super::welch::hann;
+use crate::estimate::SCORE_TWO_SIDED_95;
 use sagnac_fft::{Complex, real_forward, real_inverse};
 
 /// Autocorrelation at lags 0, 1, 2, ...
@@ -66,7 +67,7 @@ pub fn of_series(series: &[f64], max_lag: usize) -> Option<Autocorrelation> {
     Some(Autocorrelation {
         coefficients,
         values: present as u64,
-        white_band: 1.959_964 / (present as f64).sqrt(),
+        white_band: SCORE_TWO_SIDED_95 / (present as f64).sqrt(),
     })
 }
 
@@ -109,7 +110,7 @@ pub fn of_spectrum(spectrum: &WelchSpectrum, max_lag: usize) -> Option<Autocorre
     let coefficients =
         time.iter().take(max_lag + 1).enumerate().map(|(k, c)| c / c0 * whole / overlap(k)).collect();
     let values = ((spectrum.segments + 1) * length as u64 / 2).max(1);
-    Some(Autocorrelation { coefficients, values, white_band: 1.959_964 / (values as f64).sqrt() })
+    Some(Autocorrelation { coefficients, values, white_band: SCORE_TWO_SIDED_95 / (values as f64).sqrt() })
 }
 
 #[cfg(test)]

@@ -8,7 +8,7 @@ use super::points::{Left, Points};
 use super::rounded::{self, Rounded, SHOWN_FROM};
 use super::shape::{Kind, Shape};
 use super::widths::{FORM_COUNT, WITH_NOISE, Widths};
-use crate::estimate::Spread;
+use crate::estimate::{SCORE_ONE_SIDED_95, Spread};
 use crate::numeric::order::SortByNumber;
 use crate::rate_table::design::Design;
 use crate::rate_table::model::Response;
@@ -241,7 +241,8 @@ fn resolution(response: &Response, slope: f64, (centre, beyond): (f64, f64)) -> 
         (weights[j], weights[i]) = (1.0, -1.0);
         let found = response.of_levels(&weights);
         let change = x[j] - x[i];
-        let low = (found.value + response.slope * change) / slope - 1.645 * (found.standard / slope).abs();
+        let low = (found.value + response.slope * change) / slope
+            - SCORE_ONE_SIDED_95 * (found.standard / slope).abs();
         low >= 0.5 * change
     };
     let outside = |i: usize, j: usize| x[i] - centre >= 0.999 * beyond || centre - x[j] >= 0.999 * beyond;

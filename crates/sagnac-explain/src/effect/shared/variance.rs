@@ -1,6 +1,7 @@
 //! Levels of noise by regression: mean squares of groups follow scaled χ² laws whose logarithm is linear in columns.
 
 use crate::effect::Knot;
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::numeric::order::SortByNumber;
 use crate::numeric::range::{Bounds, ends};
 use nalgebra::{DMatrix, DVector};
@@ -137,7 +138,7 @@ pub(in crate::effect) fn contrast(
         }
     }
     let log = 0.5 * (log_squares[top] - log_squares[bottom]);
-    let half = 0.5 * 1.959_964 * variance.max(0.0).sqrt();
+    let half = 0.5 * SCORE_TWO_SIDED_95 * variance.max(0.0).sqrt();
     (log.exp(), [(log - half).max(0.0).exp(), (log + half).exp()])
 }
 
@@ -243,7 +244,7 @@ mod tests {
         let covariance = DMatrix::from_row_slice(3, 3, &[1.0, 0.3, 0.2, 0.3, 0.01, 0.005, 0.2, 0.005, 0.04]);
         let columns = [vec![0.0, 1.0, 2.0], vec![1.0, 3.0, 0.0]];
         let (ratio, ci95) = contrast(&[0.0, 1.0, 4.0], &covariance, &columns);
-        let half = 0.5 * 1.959_964 * (0.04f64 + 0.04 - 0.02).sqrt();
+        let half = 0.5 * SCORE_TWO_SIDED_95 * (0.04f64 + 0.04 - 0.02).sqrt();
         assert!((ratio.ln() - 2.0).abs() < 1e-12);
         assert!((ci95[0].ln() - 2.0 + half).abs() < 1e-12 && (ci95[1].ln() - 2.0 - half).abs() < 1e-12);
         // An interval of the largest over the smallest does not reach below 1.

@@ -1,9 +1,10 @@
 //! Parameters of a course.
 
-use super::estimated::{Estimated, TWO_SIDED_95, interval};
+use super::estimated::{Estimated, interval};
 use super::instant;
 use super::placed::Placed;
 use crate::effect::{Effect, MeanModel, Unmodelled, Value};
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::mismatch::finding::ParameterValue;
 use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::mismatch::terms::summed;
@@ -89,10 +90,10 @@ pub(super) fn of_course(
     }
     let deviation = deviations.last().copied().unwrap_or(f64::NAN).hypot(placed.nuisance_deviation(&series));
     if spread.is_finite() && deviation.is_finite() && spread > 0.0 {
-        let factor = (TWO_SIDED_95 * deviation / spread).min(30.0).exp();
+        let factor = (SCORE_TWO_SIDED_95 * deviation / spread).min(30.0).exp();
         // A course without coefficients is as large as its shape makes it, by a model of what goes on within a sample that
         // is no truer than the recording can tell its size.
-        let told = (TWO_SIDED_95 * placed.size_deviation(&series)).min(30.0).exp();
+        let told = (SCORE_TWO_SIDED_95 * placed.size_deviation(&series)).min(30.0).exp();
         let by_shape = profile.filter(|_| coefficients.is_empty()).map(|ends| {
             let of = |x: f64| all(&at(x), &[]).last().copied().unwrap_or(spread);
             let (a, b) = (of(ends[0]), of(ends[1]));

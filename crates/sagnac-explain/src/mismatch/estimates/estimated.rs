@@ -1,11 +1,10 @@
 //! Estimated parameters and their intervals.
 
 use crate::effect::{Param, Values};
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::mismatch::finding::ParameterValue;
 use std::collections::BTreeMap;
 
-/// Half width of a 95 % interval in standard deviations.
-pub(super) const TWO_SIDED_95: f64 = 1.959_964;
 /// Drop of the log-likelihood at the ends of a 95 % profile interval.
 pub(super) const DROP_95: f64 = 1.920_729;
 
@@ -28,10 +27,10 @@ pub struct Estimated {
 /// The 95 % interval of a parameter; `None` for one that the recording does not tell to within [`MAX_UNCERTAINTY_FACTOR`].
 pub(super) fn interval(param: &Param, value: f64, deviation: f64) -> Option<[f64; 2]> {
     if value > 0.0 && param.lower >= 0.0 {
-        let factor = (TWO_SIDED_95 * deviation / value).exp();
+        let factor = (SCORE_TWO_SIDED_95 * deviation / value).exp();
         return (factor < MAX_UNCERTAINTY_FACTOR).then_some([value / factor, value * factor]);
     }
-    Some([value - TWO_SIDED_95 * deviation, value + TWO_SIDED_95 * deviation])
+    Some([value - SCORE_TWO_SIDED_95 * deviation, value + SCORE_TWO_SIDED_95 * deviation])
 }
 
 #[cfg(test)]

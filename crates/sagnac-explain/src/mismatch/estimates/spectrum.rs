@@ -1,7 +1,8 @@
 //! Parameters of a spectral effect.
 
-use super::estimated::{Estimated, TWO_SIDED_95, interval};
+use super::estimated::{Estimated, interval};
 use crate::effect::{Effect, Model, SpectrumAct, Value};
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::mismatch::contribution::added_rms;
 use crate::mismatch::finding::ParameterValue;
 use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
@@ -77,7 +78,7 @@ pub(super) fn of_spectrum(
     let chance = added_rms(noise, index, &part.fitted, spectral, residual).deviation_deg_h;
     let (spread, last) = (values[values.len() - 1], deviation(values.len() - 1).hypot(chance));
     if spread > 0.0 && spread.is_finite() {
-        let factor = (TWO_SIDED_95 * last / spread).min(30.0).exp();
+        let factor = (SCORE_TWO_SIDED_95 * last / spread).min(30.0).exp();
         let ci95 = [spread / factor, spread * factor];
         out.reported
             .insert("rms_deg_h".to_owned(), ParameterValue { value: spread, unit: "deg/h".to_owned(), ci95 });

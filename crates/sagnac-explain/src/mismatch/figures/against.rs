@@ -3,13 +3,11 @@
 use super::join::by_abscissa;
 use super::{axis, line, shaded};
 use crate::effect::{Domain, Place};
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::figure::{Figure, Layer, Panel, Scale, Style};
 
 /// Points of each curve.
 const CURVE_POINTS: usize = 60;
-/// Half-width of the 95 % band in standard deviations.
-const TWO_SIDED_95: f64 = 1.96;
-
 /// Curves against a column.
 #[derive(Debug, Clone, Copy)]
 pub struct Against<'a> {
@@ -46,7 +44,9 @@ pub fn against(a: &Against<'_>) -> Option<Figure> {
     let (label, unit) = labels(a.domain)?;
     let curve = |series: &[f64], style: Style, legend: &str, banded: bool| {
         let means = by_abscissa(a.column, series, CURVE_POINTS);
-        let band = means.iter().map(|m| (m.x, m.y - TWO_SIDED_95 * m.spread, m.y + TWO_SIDED_95 * m.spread));
+        let band = means
+            .iter()
+            .map(|m| (m.x, m.y - SCORE_TWO_SIDED_95 * m.spread, m.y + SCORE_TWO_SIDED_95 * m.spread));
         let points: Vec<(f64, f64)> = means.iter().map(|m| (m.x, m.y)).collect();
         let mut layers = vec![];
         if banded {

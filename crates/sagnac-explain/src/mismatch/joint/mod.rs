@@ -32,6 +32,7 @@ use super::outcome::Outcome;
 use super::problem::Problem;
 use super::samples;
 use crate::claim::{Claim, Stated};
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::message::Note;
 use crate::series::Series;
 use std::collections::BTreeMap;
@@ -40,9 +41,6 @@ use std::collections::BTreeMap;
 const MAX_ROUNDS: usize = 3;
 /// A law has moved where a coefficient changed by this many of its deviations.
 const MIN_MOVED_SIGMAS: f64 = 0.1;
-/// A 95 % interval in standard deviations.
-const HALF_WIDTH: f64 = 1.959_963_985;
-
 /// A recording and how it is called.
 pub struct Recording {
     /// Name in the report.
@@ -303,7 +301,7 @@ fn told(fitted: &FittedLaw, baselines: &[Baseline<'_>], rows: usize, family: f64
 fn coefficient(law: &Law, value: f64, deviation: f64) -> Option<(&'static str, ParameterValue)> {
     let Coefficients::Number(sizing) = &law.coefficients else { return None };
     let value = sizing.claimed + value;
-    let half = HALF_WIDTH * deviation;
+    let half = SCORE_TWO_SIDED_95 * deviation;
     let told =
         ParameterValue { value, unit: sizing.parameter.unit.to_owned(), ci95: [value - half, value + half] };
     Some((sizing.parameter.name, told))
@@ -333,7 +331,7 @@ fn parameters(fitted: &FittedLaw, baselines: &[Baseline<'_>]) -> BTreeMap<String
             variance += (a - b).powi(2);
         }
         if param.reported {
-            let half = HALF_WIDTH * deviation;
+            let half = SCORE_TWO_SIDED_95 * deviation;
             let told = ParameterValue {
                 value: *value,
                 unit: param.unit.to_owned(),
@@ -349,7 +347,7 @@ fn parameters(fitted: &FittedLaw, baselines: &[Baseline<'_>]) -> BTreeMap<String
     }
     if let Some(rms) = fitted.rms(baselines) {
         // Along what was fitted, twice the gain is the squared ratio of a size to its deviation.
-        let half = rms * HALF_WIDTH / (2.0 * fitted.gain).sqrt();
+        let half = rms * SCORE_TWO_SIDED_95 / (2.0 * fitted.gain).sqrt();
         let told = ParameterValue {
             value: rms,
             unit: "deg/h".to_owned(),

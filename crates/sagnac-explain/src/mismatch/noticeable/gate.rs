@@ -3,15 +3,12 @@
 //! Twice the gain of log-likelihood of an effect that is there follows a noncentral χ² law. Its noncentrality is twice the
 //! gain that is expected of the effect itself.
 
-use crate::estimate::chi_square_tail;
+use crate::estimate::{SCORE_ONE_SIDED_95, chi_square_tail};
 use crate::mismatch::select::MIN_DELTA_BIC;
 use crate::numeric::optimize::bisect;
 
 /// Probability with which an effect is to be noticed.
 const NOTICE_PROBABILITY: f64 = 0.95;
-/// Standard deviations below which a normal number stays with that probability.
-pub(super) const ONE_SIDED_95: f64 = 1.644_854;
-
 /// The conditions that an effect must pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gate {
@@ -42,7 +39,7 @@ impl Gate {
 
     /// Margin of the root of twice a gain of some spread above the gate, to pass it with [`NOTICE_PROBABILITY`].
     pub fn margin(&self, spread: f64) -> f64 {
-        ONE_SIDED_95 * spread
+        SCORE_ONE_SIDED_95 * spread
     }
 
     /// Twice the expected gain with which such an effect is found in 95 of 100 records. `spread` is the standard deviation
@@ -58,7 +55,7 @@ impl Gate {
 
 /// Noncentrality at which χ² exceeds a threshold with a probability of 95 %.
 fn noncentrality(threshold: f64, dof: usize) -> f64 {
-    let high = (threshold.sqrt() + 2.0 * ONE_SIDED_95).powi(2);
+    let high = (threshold.sqrt() + 2.0 * SCORE_ONE_SIDED_95).powi(2);
     bisect(0.0, high, 50, |noncentral| exceeds(threshold, dof, noncentral) < NOTICE_PROBABILITY).middle()
 }
 

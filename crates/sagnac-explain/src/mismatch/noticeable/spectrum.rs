@@ -1,11 +1,12 @@
 //! Sizes of effects on the spectrum that would have been noticed.
 
 use super::draws::{Draws, Rival};
-use super::gate::{Gate, ONE_SIDED_95};
+use super::gate::Gate;
 use super::null_model::{NullModel, fit_expected};
 use super::places::{At, Placed, summary};
 use super::solve;
 use crate::effect::{Effect, SpectralContext, SpectralSizing, Spectrum, SpectrumAct};
+use crate::estimate::SCORE_ONE_SIDED_95;
 use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::mismatch::noise_fit::{Noise, Which, base_index, whittle};
 use crate::mismatch::noticeable_record::{Basis, NoticeableSize, WhyNot};
@@ -85,7 +86,7 @@ impl<'a> Expected<'a> {
         let rivals: Vec<Rival> = SIZE_GRID.into_iter().map(at).collect();
         let lowest = self.draws.lowest(&densities, &rivals, &over);
         // The noise without the effect is fitted to each record as well.
-        lowest + parameters.saturating_sub(1) as f64 - ONE_SIDED_95.powi(2) * (1.0 - spread * spread)
+        lowest + parameters.saturating_sub(1) as f64 - SCORE_ONE_SIDED_95.powi(2) * (1.0 - spread * spread)
     }
 }
 

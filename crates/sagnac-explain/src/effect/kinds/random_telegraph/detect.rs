@@ -8,6 +8,7 @@ use super::chain::{Chain, Deviations};
 use super::dwell::{Visits, slope, spread, visits};
 use super::path::Paths;
 use crate::effect::{Background, FlatResidual, averages};
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::numeric::cosine::{dct2, inverse_dct2};
 use crate::numeric::least_squares::Normal;
 use crate::numeric::order::SortNumbers;
@@ -328,9 +329,9 @@ impl PathContext<'_> {
         let spread = on_chain.powi(2) + (deviation.powi(2) - in_white).max(0.0);
         // A sample in which a jump falls lies between the levels: of dwells of few samples, part is unseen.
         let jumping = 1.0 / best.chain.dwell();
-        let half = 1.959_964 * (spread + (0.25 * size * jumping).powi(2)).sqrt();
+        let half = SCORE_TWO_SIDED_95 * (spread + (0.25 * size * jumping).powi(2)).sqrt();
         let mean_dwell_s = best.chain.dwell() * step;
-        let factor = (1.959_964 * log_dwell.hypot(0.7 * jumping)).exp();
+        let factor = (SCORE_TWO_SIDED_95 * log_dwell.hypot(0.7 * jumping)).exp();
         Telegraph {
             path: best.path.iter().map(|p| f64::from(u8::from(*p)) - share).collect(),
             course,
