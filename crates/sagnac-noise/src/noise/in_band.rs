@@ -204,6 +204,10 @@ pub fn mask_at(mask: &[MaskPoint], frequency_hz: f64) -> Option<f64> {
     Some(low.density * (high.density / low.density).powf(share.min(1.0)))
 }
 
+/// Inverse of the bins in which the power below the first bin lies, by which its scatter is counted. With it the variance of a mean square is 0.95
+/// to 1.17 times that of the exact traces of flicker and random walks beside white noise, with segments of one and of four blocks.
+const SLOW_BINS_INVERSE: f64 = 3.0;
+
 /// Equivalent degrees of freedom of the standard deviation about means of short blocks (`digest.histogram`), from the
 /// spectrum of what scatters; `None` where nothing does.
 ///
@@ -229,9 +233,10 @@ pub fn rms_dof(digest: &RateDigest, lines: &[SpectralLine]) -> Option<f64> {
     let (mut power, mut squares) = (0.0, 0.0);
     for (k, density) in spectrum.density.iter().enumerate().take(bins.saturating_sub(1)).skip(1) {
         let density = line_over(lines, k).map_or(*density, beside);
-        let kept = passed_by_block_means(k as f64 / length) * density;
-        power += 2.0 * kept / length;
-        squares += 2.0 * kept * kept / length / (1.0 + 1.0 / spectrum.effective_averages);
+        let passed = passed_by_block_means(k as f64 / length);
+        power += 2.0 * passed * density / length;
+        // Not the square of what is passed: the means of blocks mix frequencies below one cycle a block.
+        squares += 2.0 * passed * density * density / length / (1.0 + 1.0 / spectrum.effective_averages);
     }
     let (mut of_lines, mut products) = (0.0, 0.0);
     for line in lines {
@@ -239,9 +244,8 @@ pub fn rms_dof(digest: &RateDigest, lines: &[SpectralLine]) -> Option<f64> {
         of_lines += own;
         products += own * beside(line);
     }
-    // What is slower than the first bin lies within one.
     let slow = (variance - of_lines - power).max(0.0);
-    squares += 0.5 * slow * slow * length;
+    squares += SLOW_BINS_INVERSE * slow * slow * length;
     let tails = 1.0 + 0.5 * histogram.excess_kurtosis.max(0.0);
     let scatter = (2.0 * squares * tails + 4.0 * products) / histogram.samples as f64;
     Some(2.0 * variance * variance / scatter)
