@@ -43,6 +43,7 @@
 //! | [`acceptance`] | conditions, the run, comparisons, inspection |
 //! | [`report`] | views of a record as HTML, Markdown and SVG |
 //! | [`prove`] | what the engine says of a recording of which something is concealed |
+//! | [`rehearse`] | a test on simulated units before one is recorded |
 //! | [`watch`] | a watched folder: what is complete, what was tested |
 //! | [`store`] | results that are kept, and their index |
 //! | [`i18n`] | sentences in English and Russian |
@@ -60,6 +61,7 @@ pub mod moment;
 pub mod output;
 pub mod prove;
 pub mod record;
+pub mod rehearse;
 pub mod report;
 pub mod selftest;
 pub mod series;

@@ -87,7 +87,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
     let serial = request.unit.serial.as_deref();
     RunRecord {
         format: RESULT_FORMAT.to_owned(),
-        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        program: Program::this(),
         kind: request.kind,
         procedure: request.procedure_record.clone(),
         unit_under_test: request.unit.clone(),

@@ -41,7 +41,7 @@ pub fn of_record(
 pub fn lot(procedure: ProcedureRecord, session: Session, units: Vec<LotUnit>) -> LotRecord {
     LotRecord {
         format: LOT_FORMAT.to_owned(),
-        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        program: Program::this(),
         procedure,
         session,
         verdict: units.iter().map(|u| u.verdict).max().unwrap_or(Verdict::None),

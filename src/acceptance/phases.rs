@@ -64,7 +64,7 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
     };
     RunRecord {
         format: RESULT_FORMAT.to_owned(),
-        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        program: Program::this(),
         kind: RunKind::Run,
         procedure: Some(phased.identity.clone()),
         unit_under_test: unit,

@@ -37,6 +37,7 @@ mod procedures;
 mod progress;
 mod prove;
 mod read;
+mod rehearse;
 mod report;
 mod run;
 mod run_args;
@@ -99,6 +100,13 @@ enum Verb {
     /// Validate procedures and limits without data, and report what they cannot decide
     #[command(after_help = "Example:\n  sagnac check 'procedures/**/*.toml'")]
     Check(check::CheckArgs),
+    /// Rehearse a test on simulated units: how likely it passes, fails or stays open, and how long it must be
+    #[command(
+        after_help = "Exit codes: 0 a length keeps the risk, 2 could not run, 3 no rehearsed length does.\n\n\
+        Examples:\n  sagnac rehearse static-bias --limits sample-unit --out rehearsal\n  \
+        sagnac rehearse procedure.toml --limits limits.toml --model family.toml --length 10h --length 40h --units 50"
+    )]
+    Rehearse(rehearse::RehearseArgs),
     /// Run a test procedure on a recording and write the acceptance report
     #[command(
         after_help = "Examples:\n  sagnac run procedures/static-bias.toml unit-0042.csv.gz --limits procedures/limits/sample-unit.toml \
@@ -252,6 +260,7 @@ pub fn main() -> ExitCode {
         Verb::Run(args) => run::main(&args, lang),
         Verb::Watch(args) => watch::main(&args, lang),
         Verb::Check(args) => check::main(&args, lang),
+        Verb::Rehearse(args) => rehearse::main(&args, lang),
         Verb::Inspect(args) => inspect::main(&args, lang),
         Verb::Init(args) => init::main(&args, lang),
         Verb::Analyze(args) => analyze::main(&args, lang),

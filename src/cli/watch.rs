@@ -23,7 +23,7 @@ use crate::record::{
 use crate::report::lot::unit_done;
 use crate::report::{Results, page};
 use crate::watch::folder::{Found, Listing, Stamp, Stillness, age, found};
-use crate::watch::identity::{TestedBy, VERSION, hash_of};
+use crate::watch::identity::{TestedBy, hash_of};
 use crate::watch::journal::{Journal, Seen, Tested};
 use crate::watch::lock::{TEST_LOCK, WATCHER_LOCK, take};
 use crate::watch::process::Process;
@@ -406,7 +406,7 @@ fn record(
 ) -> DayRecord {
     DayRecord {
         format: DAY_FORMAT.to_owned(),
-        program: Program { name: "sagnac".to_owned(), version: VERSION.to_owned() },
+        program: Program::this(),
         day,
         watched,
         made_at,

@@ -88,7 +88,9 @@ impl Earlier {
             Kind::Explanation | Kind::Joint => {
                 described.with("verdict", text("/verdict").unwrap_or_default())
             }
-            Kind::Comparison | Kind::Plan | Kind::DataSheet | Kind::Proof | Kind::Day => described,
+            Kind::Comparison | Kind::Plan | Kind::DataSheet | Kind::Proof | Kind::Day | Kind::Rehearsal => {
+                described
+            }
         }
     }
 

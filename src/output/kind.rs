@@ -35,11 +35,13 @@ pub enum Kind {
     Proof,
     /// A day of a watched folder.
     Day,
+    /// A rehearsal of a test on simulated units.
+    Rehearsal,
 }
 
 impl Kind {
     /// Every kind.
-    pub const ALL: [Kind; 9] = [
+    pub const ALL: [Kind; 10] = [
         Kind::Result,
         Kind::Comparison,
         Kind::Explanation,
@@ -49,6 +51,7 @@ impl Kind {
         Kind::DataSheet,
         Kind::Proof,
         Kind::Day,
+        Kind::Rehearsal,
     ];
 
     /// The JSON file that a folder of this kind holds, and by which it is known.
@@ -63,13 +66,16 @@ impl Kind {
             Kind::DataSheet => "datasheet.json",
             Kind::Proof => "proof.json",
             Kind::Day => "day.json",
+            Kind::Rehearsal => "rehearsal.json",
         }
     }
 
     /// Name of its pages without the ending, such as `report` for `report.html`.
     pub fn page_stem(self) -> &'static str {
         match self {
-            Kind::Result | Kind::Explanation | Kind::Joint | Kind::Plan | Kind::Proof => "report",
+            Kind::Result | Kind::Explanation | Kind::Joint | Kind::Plan | Kind::Proof | Kind::Rehearsal => {
+                "report"
+            }
             Kind::Comparison => "comparison",
             Kind::Lot | Kind::Day => "index",
             Kind::DataSheet => "datasheet",
@@ -88,6 +94,7 @@ impl Kind {
             Kind::DataSheet => "output_error.what.datasheet",
             Kind::Proof => "output_error.what.proof",
             Kind::Day => "output_error.what.day",
+            Kind::Rehearsal => "output_error.what.rehearsal",
         }
     }
 
@@ -103,6 +110,7 @@ impl Kind {
             Kind::DataSheet => "output_error.why.foreign_datasheet",
             Kind::Proof => "prove.error.foreign_folder",
             Kind::Day => "output_error.why.foreign_day",
+            Kind::Rehearsal => "output_error.why.foreign_rehearsal",
         }
     }
 
@@ -118,6 +126,7 @@ impl Kind {
             Kind::DataSheet => "{\"format\":\"datasheet/",
             Kind::Proof => "{\"format\":\"proof-result/",
             Kind::Day => "{\"format\":\"day/",
+            Kind::Rehearsal => "{\"format\":\"rehearsal/",
         }
     }
 
@@ -140,7 +149,7 @@ impl Kind {
             Kind::Plan => name == "schedule.toml",
             Kind::DataSheet => name == "limits.toml",
             Kind::Proof => name == "model.toml",
-            Kind::Day => false,
+            Kind::Day | Kind::Rehearsal => false,
         }
     }
 
@@ -161,7 +170,8 @@ impl Kind {
                 | Kind::Plan
                 | Kind::DataSheet
                 | Kind::Proof
-                | Kind::Day => false,
+                | Kind::Day
+                | Kind::Rehearsal => false,
             };
         page || matches!(name, "figures" | "signatures.json" | CHECKSUMS_FILE)
             || name == self.record_file()

@@ -127,7 +127,7 @@ fn told(order: &ProofOrder<'_>, prepared: &Prepared, done: Done, claim: String) 
     let figures = figures::all(prepared, course.as_deref(), &done.concealed, done.unveiled.as_ref());
     let record = ProofRecord {
         format: PROOF_FORMAT.to_owned(),
-        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        program: Program::this(),
         path: order.path.to_owned(),
         sha256: order.sha256.to_owned(),
         title: proof.title.clone(),

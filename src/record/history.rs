@@ -4,7 +4,8 @@
 
 use super::{Message, Program};
 use crate::estimate::{Interval, Limits, Verdict};
-use serde::Serialize;
+use crate::lot::share::Share;
+use serde::{Deserialize, Serialize};
 
 /// Version of the format of a history.
 pub const HISTORY_FORMAT: &str = "history/1";
@@ -89,7 +90,7 @@ pub struct HistoryCounts {
 }
 
 /// A counted share with its 95 % interval.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 pub struct HistoryShare {
     /// How many there were.
@@ -100,6 +101,19 @@ pub struct HistoryShare {
     pub low: f64,
     /// Upper end of the interval.
     pub high: f64,
+}
+
+impl From<Share> for HistoryShare {
+    fn from(Share { count, of, low, high }: Share) -> HistoryShare {
+        HistoryShare { count, of, low, high }
+    }
+}
+
+impl HistoryShare {
+    /// The share itself.
+    pub fn value(&self) -> f64 {
+        self.count as f64 / self.of.max(1) as f64
+    }
 }
 
 /// The yield of a procedure.

@@ -143,6 +143,11 @@ impl VerdictCounts {
         counts
     }
 
+    /// Number of verdicts.
+    pub fn total(self) -> usize {
+        self.error + self.fail + self.indeterminate + self.pass + self.none
+    }
+
     /// The counts that are not zero, the worst verdict first.
     pub fn present(self) -> Vec<(Verdict, usize)> {
         let all = [
@@ -153,6 +158,16 @@ impl VerdictCounts {
             (Verdict::None, self.none),
         ];
         all.into_iter().filter(|(_, n)| *n > 0).collect()
+    }
+}
+
+impl std::ops::AddAssign for VerdictCounts {
+    fn add_assign(&mut self, other: VerdictCounts) {
+        self.error += other.error;
+        self.fail += other.fail;
+        self.indeterminate += other.indeterminate;
+        self.pass += other.pass;
+        self.none += other.none;
     }
 }
 

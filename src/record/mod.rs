@@ -25,6 +25,7 @@ mod origin;
 mod phase;
 mod proof;
 pub mod read;
+mod rehearsal;
 mod siblings;
 mod table_step;
 
@@ -63,6 +64,10 @@ pub use phase::PhaseRecord;
 pub use proof::{
     ClaimOrigin, CourseRecord, FoundValue, Hidden, HiddenKind, KnownRecord, PROOF_FORMAT, ProofOutcome,
     ProofRecord, ProofRecording, ProtocolStep, RuleRecord,
+};
+pub use rehearsal::{
+    NeededLength, NominalSource, NominalValue, REHEARSAL_FORMAT, RehearsalRecord, RehearsedLength,
+    RehearsedLevel, RehearsedRow,
 };
 pub use siblings::{SiblingQuantity, SiblingsRecord};
 pub use table_step::TableStepRecord;

@@ -12,7 +12,7 @@ use crate::acceptance::phases::figures as phase_figures;
 use crate::figure::Figure;
 use crate::i18n::Lang;
 use crate::output::Kind;
-use crate::record::{DataSheet, DayRecord, LotRecord, ProofRecord, RunRecord};
+use crate::record::{DataSheet, DayRecord, LotRecord, ProofRecord, RehearsalRecord, RunRecord};
 use minijinja::value::Value;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -68,6 +68,8 @@ pub enum Record<'a> {
     Proof(&'a ProofRecord),
     /// Of a day of a watched folder.
     Day(&'a DayRecord),
+    /// Of a rehearsal.
+    Rehearsal(&'a RehearsalRecord),
 }
 
 /// A form of a page that is made of a template.

@@ -23,6 +23,7 @@ pub mod pdf;
 pub mod plan;
 pub mod proof;
 mod prose;
+mod rehearsal;
 pub mod render;
 mod results;
 pub mod signatures;

@@ -19,7 +19,7 @@ use crate::record::explanation::Explanation;
 use crate::record::read::{self, ReadError};
 use crate::record::{
     DATASHEET_FORMAT, DAY_FORMAT, DataSheet, DayRecord, FigureRecord, LOT_FORMAT, LotRecord, PROOF_FORMAT,
-    PhaseRecord, ProofRecord, RESULT_FORMAT, RunRecord,
+    PhaseRecord, ProofRecord, REHEARSAL_FORMAT, RESULT_FORMAT, RehearsalRecord, RunRecord,
 };
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -254,7 +254,7 @@ struct Listing {
 
 impl StoredResults {
     /// Reads a `result.json`, `explain.json`, `joint.json`, `comparison.json`, `index.json`, `plan.json`, `datasheet.json`,
-    /// `day.json` or `proof.json`, or the folder of one, with what stands beside it.
+    /// `day.json`, `rehearsal.json` or `proof.json`, or the folder of one, with what stands beside it.
     ///
     /// # Errors
     /// A note that names the file and what is wrong with it.
@@ -281,6 +281,10 @@ impl StoredResults {
             }
             Some("day") => {
                 Results::of(read::of_format::<DayRecord>(&bytes, DAY_FORMAT).map_err(wrong)?, vec![], vec![])
+            }
+            Some("rehearsal") => {
+                let rehearsal: RehearsalRecord = read::of_format(&bytes, REHEARSAL_FORMAT).map_err(wrong)?;
+                Results::of(rehearsal, vec![], vec![])
             }
             Some("proof-result") => {
                 let proof: ProofRecord = read::of_format(&bytes, PROOF_FORMAT).map_err(wrong)?;

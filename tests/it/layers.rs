@@ -52,7 +52,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
             &["simulate"],
             &["acceptance", "selftest"],
             &["report"],
-            &["library", "prove", "verify", "watch"],
+            &["library", "prove", "rehearse", "verify", "watch"],
             &["cli"],
         ],
     ),

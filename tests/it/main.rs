@@ -42,6 +42,7 @@ mod rate_table;
 mod real;
 mod recordings;
 mod registry;
+mod rehearse;
 mod report;
 mod simulate;
 mod start_up;

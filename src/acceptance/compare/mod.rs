@@ -52,7 +52,7 @@ impl Comparison {
     fn empty(compared_at: String) -> Comparison {
         Comparison {
             format: COMPARISON_FORMAT.to_owned(),
-            program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+            program: Program::this(),
             compared_at,
             units: vec![],
             published: None,

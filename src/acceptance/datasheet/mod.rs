@@ -40,7 +40,7 @@ pub fn datasheet(selected: Selected, promise: Promise, made_at: String) -> DataS
     }
     DataSheet {
         format: DATASHEET_FORMAT.to_owned(),
-        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        program: Program::this(),
         made_at,
         audience: SheetAudience::default(),
         title: None,

@@ -25,8 +25,7 @@ pub(super) fn counts(selection: &Selection<'_>) -> HistoryCounts {
 }
 
 fn share(count: usize, of: usize) -> Option<HistoryShare> {
-    let Share { count, of, low, high } = Share::of(count, of)?;
-    Some(HistoryShare { count, of, low, high })
+    Share::of(count, of).map(Into::into)
 }
 
 /// First-pass and last-pass yield of every procedure, over the units of which no attempt is missing.

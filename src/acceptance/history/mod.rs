@@ -26,7 +26,7 @@ pub fn history(attempts: &[Attempt], asked: HistoryAsked, common: f64) -> Histor
     let drifts = if asked.serial.is_some() { units::drifts(&selection, &quantities, common) } else { vec![] };
     HistoryRecord {
         format: HISTORY_FORMAT.to_owned(),
-        program: Program { name: "sagnac".to_owned(), version: env!("CARGO_PKG_VERSION").to_owned() },
+        program: Program::this(),
         counts: counts::counts(&selection),
         yields: counts::yields(&selection),
         reasons: counts::reasons(&selection),

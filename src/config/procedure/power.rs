@@ -41,19 +41,24 @@ pub struct PowerQuestion {
     pub typical: TypicalNoise,
 }
 
+/// The typical noise of the family, as the limits state it.
+pub fn typical_noise(effective: &EffectiveLimits) -> TypicalNoise {
+    TypicalNoise {
+        angle_random_walk: effective.expected(measurand::ANGLE_RANDOM_WALK.id),
+        bias_instability: effective.expected(measurand::BIAS_INSTABILITY.id),
+        rate_random_walk: effective.expected(measurand::RATE_RANDOM_WALK.id),
+        rate_ramp: effective.expected(measurand::RATE_RAMP.id),
+        quantization: effective.expected(measurand::QUANTIZATION.id),
+    }
+}
+
 /// The questions of a procedure with its limits; none when it states neither a planned nor a least duration.
 pub fn questions(procedure: &Procedure, effective: &EffectiveLimits) -> Vec<PowerQuestion> {
     let conditions = &procedure.conditions;
     let Some(duration_s) = conditions.planned_duration_s.or(conditions.minimum_duration_s) else {
         return vec![];
     };
-    let typical = TypicalNoise {
-        angle_random_walk: effective.expected(measurand::ANGLE_RANDOM_WALK.id),
-        bias_instability: effective.expected(measurand::BIAS_INSTABILITY.id),
-        rate_random_walk: effective.expected(measurand::RATE_RANDOM_WALK.id),
-        rate_ramp: effective.expected(measurand::RATE_RAMP.id),
-        quantization: effective.expected(measurand::QUANTIZATION.id),
-    };
+    let typical = typical_noise(effective);
     let gyro: Vec<&str> = procedure.gyro_channels().map(|c| c.channel.id.as_str()).collect();
     let mut list = vec![];
     for limit in &effective.set.limits {

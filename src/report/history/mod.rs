@@ -166,12 +166,12 @@ fn percent(share: f64, words: Translator) -> String {
     format!("{}\u{202f}%", limit_digits(100.0 * share, 3, words.lang))
 }
 
-fn share(share: &HistoryShare, words: Translator) -> String {
-    let value = share.count as f64 / share.of.max(1) as f64;
+/// A counted share with its interval, in percent.
+pub(super) fn share(share: &HistoryShare, words: Translator) -> String {
     words.with(
         "history.share",
         &[
-            ("value", &percent(value, words)),
+            ("value", &percent(share.value(), words)),
             ("low", &percent(share.low, words)),
             ("high", &percent(share.high, words)),
         ],
