@@ -30,9 +30,9 @@ impl From<(&'static str, f64)> for ScoredName {
 }
 
 /// Physics differs from the formulas that are fitted, by more where it is better seen: log-likelihoods that differ by less than this
-/// share of the gain do not tell names apart. With half of it, names of .99 were right in .81 of 36 cases of a generator that shares no
-/// formula with the engine.
-const MODEL_ERROR: f64 = 0.08;
+/// share of the gain do not tell names apart. In 46 cases of a generator that shares no formula with the engine, first names were stated with .79 on
+/// average and were right in .80 (with 0.08: .74; with 0.02: .84).
+const MODEL_ERROR: f64 = 0.05;
 /// Least gain that names share, nats.
 const MIN_SHARED_GAIN: f64 = 2.0;
 /// Probability below which a name is not listed.
@@ -114,8 +114,8 @@ mod tests {
         assert_eq!(named.iter().map(|p| p.kind).collect::<Vec<_>>(), ["comb", "line"]);
         assert!((named[0].probability - 1.0 / sum).abs() < 1e-12, "{named:?}");
         assert!((named[1].probability - (-1f64).exp() / sum).abs() < 1e-12);
-        // Of 500 nats, 40 are the model's own error.
-        let clear = probabilities_of([("line", 500.0), ("comb", 460.0)]);
+        // Of 500 nats, 25 are the model's own error.
+        let clear = probabilities_of([("line", 500.0), ("comb", 475.0)]);
         assert!((clear[1].probability / clear[0].probability - (-1f64).exp()).abs() < 1e-9, "{clear:?}");
         assert!(probabilities_of([("line", f64::NAN)]).is_empty());
     }
