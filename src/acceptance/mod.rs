@@ -21,6 +21,7 @@ pub mod claimed;
 mod clock_component;
 pub mod column_choice;
 pub mod compare;
+mod compensation_files;
 pub mod condition;
 pub mod datasheet;
 mod derived;

@@ -29,6 +29,7 @@ enum FigureName {
     TemperatureSensitivity,
     WarmUp,
     ScaleFactorResidual,
+    ScaleOverTemperature,
     TableSteps,
     TablePolar,
     DeadZone,

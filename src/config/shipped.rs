@@ -65,6 +65,7 @@ pub static SHIPPED_PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
     "multi-position"
     "output-noise"
     "scale-factor"
+    "scale-factor-over-temperature"
     "start-up"
     "static-bias"
     "supply-sensitivity"

@@ -137,7 +137,9 @@ impl Kind {
                 (name.starts_with("sigma_tau") && name.ends_with(".csv"))
                     || matches!(name, "table_steps.csv" | "interval_means.csv")
                     || matches!(name, PROCEDURE_FILE | LIMITS_FILE)
-                    || (name.starts_with("compensation")
+                    || (["compensation", "scale_factor_compensation"]
+                        .iter()
+                        .any(|stem| name.starts_with(stem))
                         && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
             }
             Kind::Comparison => name == "comparison.csv",

@@ -32,6 +32,8 @@ pub struct HistoryRecord {
     pub charts: Vec<HistoryChart>,
     /// Drift of the unit that was asked for.
     pub drifts: Vec<HistoryDrift>,
+    /// Stability of the unit that was asked for over days.
+    pub stabilities: Vec<HistoryStability>,
     /// Stations set against each other.
     pub stations: Vec<HistoryStation>,
     /// What must be known of the whole.
@@ -321,6 +323,45 @@ pub struct HistoryDrift {
     pub per_year_half_width: Option<f64>,
     /// Probability of values as different as these if the unit did not change.
     pub steady_probability: Option<f64>,
+}
+
+/// Stability of a unit over days: runs within days. Intervals and bounds hold at 95 %.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct HistoryStability {
+    /// The quantity.
+    #[serde(flatten)]
+    pub quantity: HistoryQuantity,
+    /// Tests, each a run.
+    pub runs: usize,
+    /// Days with a test, by the date of their moments.
+    pub days: usize,
+    /// First moment, RFC 3339.
+    pub from: String,
+    /// Last moment.
+    pub to: String,
+    /// Standard deviation of runs of one day; absent where it is not known.
+    pub run_deviation: Option<HistoryInterval>,
+    /// Standard deviation of days beyond that of their runs; absent where it is not known or may be zero.
+    pub day_deviation: Option<HistoryInterval>,
+    /// What that is at most, where it may be zero.
+    pub day_deviation_at_most: Option<f64>,
+    /// Change per month of 30.4375 days; absent where it is not known.
+    pub per_month: Option<HistoryInterval>,
+    /// Why something is not known.
+    pub notes: Vec<Message>,
+}
+
+/// A value with its 95 % interval.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+pub struct HistoryInterval {
+    /// Value.
+    pub value: f64,
+    /// Lower end of the interval.
+    pub low: f64,
+    /// Upper end of the interval.
+    pub high: f64,
 }
 
 /// A station against the others.

@@ -49,8 +49,9 @@ pub use explained::ExplainedRecord;
 pub use goodness::GoodnessOfFitRecord;
 pub use history::{
     HISTORY_FORMAT, HistoryAsked, HistoryCapability, HistoryChart, HistoryChartOf, HistoryControl,
-    HistoryControlPoint, HistoryCounts, HistoryDrift, HistoryMonth, HistoryPoint, HistoryQuantity,
-    HistoryReason, HistoryRecord, HistoryResult, HistoryShare, HistoryStation, HistoryYield,
+    HistoryControlPoint, HistoryCounts, HistoryDrift, HistoryInterval, HistoryMonth, HistoryPoint,
+    HistoryQuantity, HistoryReason, HistoryRecord, HistoryResult, HistoryShare, HistoryStability,
+    HistoryStation, HistoryYield,
 };
 pub use integrity::{FaultRecord, FaultText, Integrity};
 pub use interval_mean::IntervalMeanRecord;

@@ -60,6 +60,7 @@ pub static STUDIES: &[&Study] = &[
     &edges::OVERLOAD,
     &edges::RATE_TABLE,
     &edges::SMALL_RATES,
+    &edges::SOAKS,
     &edges::START_UP,
     &edges::TEMPERATURE,
     &edges::TILTS,

@@ -32,7 +32,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
     (
         CORE,
         &[
-            &["formula", "lot"],
+            &["c_header", "formula", "lot"],
             &["rate_table", "start_up", "temperature"],
             &["influence"],
             &["evidence"],

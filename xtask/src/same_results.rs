@@ -92,6 +92,7 @@ fn pairs() -> Vec<Pair> {
     }
     for procedure in [
         "scale-factor",
+        "scale-factor-over-temperature",
         "threshold",
         "maximum-rate",
         "misalignment",

@@ -39,6 +39,7 @@ pub use sagnac_base::{
 pub use sagnac_explain::{claim, effect, mismatch, plan, schedule, series, simulate};
 pub use sagnac_noise::noise;
 
+mod c_header;
 pub mod criticism;
 pub mod evidence;
 pub mod formula;

@@ -23,6 +23,7 @@ PROCEDURES = {
     "multi-position": ("multi-position", None),
     "output-noise": ("output-noise", None),
     "scale-factor": ("scale-factor", None),
+    "scale-factor-over-temperature": ("scale-factor-over-temperature", None),
     "start-up": ("start-up", None),
     "supply-sensitivity": ("supply-sensitivity", None),
     "temperature": ("temperature-ramp", "sample-temperature"),

@@ -14,6 +14,7 @@ pub mod polar;
 pub mod positions;
 pub mod residual;
 pub mod scale_factor;
+pub mod scale_over_temperature;
 pub mod sigma_tau;
 mod sigma_tau_limits;
 pub mod spectrum;

@@ -4,6 +4,7 @@ mod charts;
 mod counts;
 pub mod figures;
 mod selection;
+mod stability;
 mod units;
 
 use crate::i18n::{Arg, Note, note};
@@ -23,7 +24,9 @@ pub fn history(attempts: &[Attempt], asked: HistoryAsked, common: f64) -> Histor
     let selection = Selection::of(attempts);
     let quantities = selection.quantities(asked.measurand.as_deref());
     let charts = charts::charts(&selection, &quantities, asked.serial.is_some());
-    let drifts = if asked.serial.is_some() { units::drifts(&selection, &quantities, common) } else { vec![] };
+    let of_unit = asked.serial.is_some();
+    let drifts = if of_unit { units::drifts(&selection, &quantities, common) } else { vec![] };
+    let stabilities = if of_unit { stability::stabilities(&selection, &quantities) } else { vec![] };
     HistoryRecord {
         format: HISTORY_FORMAT.to_owned(),
         program: Program::this(),
@@ -37,6 +40,7 @@ pub fn history(attempts: &[Attempt], asked: HistoryAsked, common: f64) -> Histor
         asked,
         charts,
         drifts,
+        stabilities,
     }
 }
 

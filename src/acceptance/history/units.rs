@@ -10,7 +10,7 @@ use chrono::DateTime;
 use std::collections::BTreeMap;
 
 /// Days of a year.
-const YEAR_DAYS: f64 = 365.25;
+pub(super) const YEAR_DAYS: f64 = 365.25;
 const DAY_S: f64 = 86_400.0;
 
 /// The drift of the unit in every quantity that two tests have.
@@ -53,7 +53,7 @@ fn one(
 }
 
 /// Days since 1970 of a moment in RFC 3339.
-fn days(moment: &str) -> Option<f64> {
+pub(super) fn days(moment: &str) -> Option<f64> {
     let moment = DateTime::parse_from_rfc3339(moment).ok()?;
     Some(moment.timestamp() as f64 / DAY_S)
 }

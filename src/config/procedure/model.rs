@@ -278,6 +278,7 @@ const REPORT_FIGURES: &[Word] = &[
     ("histogram", "distribution of the samples against the normal one"),
     ("residual", "distribution of what the model leaves against the normal one"),
     ("scale_factor_residual", "residuals of the scale factor over rate, in ppm of full scale"),
+    ("scale_over_temperature", "scale factor over temperature, both ways, with the line of least squares"),
     ("table_steps", "rate of the table and residuals of the steps over time"),
     ("dead_zone", "response to rates near zero"),
     ("over_temperature", "bias over temperature, both branches, with the model and its band"),

@@ -44,7 +44,8 @@ fn of_steps(procedure: &Procedure, setup: &Setup, measurand: &Measurand) -> Opti
             (!has(Role::OuterRate) || !has(Role::TableAngle)).then_some("unshown.needs_outer")
         }
         Some(Stimulus::SmallRates) => (!turned).then_some("unshown.needs_table_rates"),
-        Some(Stimulus::Rates | Stimulus::OpenLoopRates | Stimulus::Overload) => {
+        Some(Stimulus::Soaks) if !has(Role::Temperature) => Some("unshown.needs_soaks"),
+        Some(Stimulus::Soaks | Stimulus::Rates | Stimulus::OpenLoopRates | Stimulus::Overload) => {
             (!turned).then_some("unshown.needs_table")
         }
     }

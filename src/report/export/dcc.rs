@@ -111,6 +111,7 @@ const UNITS: &[(&str, &str)] = &[
     ("degC/h", r"\kelvin\per\hour"),
     ("deg/h/degC", r"\degree\per\hour\kelvin"),
     ("deg/h/(degC/min)", r"\degree\minute\per\hour\kelvin"),
+    ("mrad/degC", r"\milli\radian\per\kelvin"),
     ("ppm/degC", r"\ppm\per\kelvin"),
     ("deg/h/V", r"\degree\per\hour\volt"),
     ("deg/h/mT", r"\degree\per\hour\milli\tesla"),

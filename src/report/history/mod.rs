@@ -2,6 +2,7 @@
 
 mod chart;
 mod csv;
+mod stability;
 
 pub use csv::csv;
 
@@ -65,6 +66,7 @@ pub fn page(history: &HistoryRecord, figures: &[Figure], lang: Lang) -> Page {
             .chain(months)
             .chain(below("history.charts", &tables.charts, Some("history.charts_hint")))
             .chain(below("history.drifts", &tables.drifts, None))
+            .chain(below("history.stabilities", &tables.stabilities, Some("history.stabilities_hint")))
             .chain(below("history.stations", &tables.stations, Some("history.stations_hint")))
             .chain(charts)
             .chain([Block::section("", words.t("history.results"), results)])
@@ -92,6 +94,7 @@ pub fn on_terminal(history: &HistoryRecord, lang: Lang) -> Vec<Block> {
         .chain(below("history.charts", tables.charts))
         .chain(chart::out_of_control(&history.charts, several, words))
         .chain(below("history.drifts", tables.drifts))
+        .chain(below("history.stabilities", tables.stabilities))
         .chain(below("history.stations", tables.stations))
         .chain(Block::remarks(history.notes.iter().map(|n| n.say(lang))))
         .collect()
@@ -115,6 +118,7 @@ struct Tables {
     reasons: Table,
     charts: Table,
     drifts: Table,
+    stabilities: Table,
     stations: Table,
 }
 
@@ -125,6 +129,7 @@ impl Tables {
             reasons: reasons(&history.reasons, words),
             charts: chart::table(&history.charts, several, words),
             drifts: drifts(&history.drifts, several, words),
+            stabilities: stability::table(&history.stabilities, several, words),
             stations: stations(&history.stations, several, words),
         }
     }

@@ -11,6 +11,7 @@ pub mod influence;
 pub mod noise_source;
 pub mod rate_table;
 pub mod small_rates;
+pub mod soaks;
 pub mod start_up;
 pub mod two_axes;
 

@@ -14,6 +14,7 @@ mod overload;
 mod rate_table;
 mod rest;
 mod small_rates;
+mod soaks;
 mod start_up;
 mod table;
 pub mod tally;
@@ -29,7 +30,7 @@ use std::sync::LazyLock;
 use table::Bench;
 
 /// Every family.
-pub static FAMILIES: LazyLock<[Family; 11]> = LazyLock::new(|| {
+pub static FAMILIES: LazyLock<[Family; 12]> = LazyLock::new(|| {
     [
         family::<frequency::OverFrequency>(include_str!("../../cases/edges/frequency.toml")),
         family::<gravity::InGravity>(include_str!("../../cases/edges/gravity.toml")),
@@ -39,6 +40,7 @@ pub static FAMILIES: LazyLock<[Family; 11]> = LazyLock::new(|| {
         family::<overload::Rails>(include_str!("../../cases/edges/overload.toml")),
         family::<rate_table::Bench>(include_str!("../../cases/edges/rate_table.toml")),
         family::<small_rates::Sweep>(include_str!("../../cases/edges/small_rates.toml")),
+        family::<crate::bench::soaks::Soaks>(include_str!("../../cases/edges/soaks.toml")),
         family::<start_up::Start>(include_str!("../../cases/edges/start_up.toml")),
         family::<temperature::Bench>(include_str!("../../cases/edges/temperature.toml")),
         family::<tilts::TwoAxes>(include_str!("../../cases/edges/tilts.toml")),
@@ -79,6 +81,9 @@ pub static RATE_TABLE: Study =
 /// Dead zones and thresholds.
 pub static SMALL_RATES: Study =
     study("edges-small-rates", "Small rates at their edges", || cases("small_rates"));
+/// Scale factor over temperature.
+pub static SOAKS: Study =
+    study("edges-soaks", "Scale factors over temperature at their edges", || cases("soaks"));
 /// Switching on.
 pub static START_UP: Study = study("edges-start-up", "Start-up at its edges", || cases("start_up"));
 /// Bias over temperature and the warm-up.

@@ -33,6 +33,12 @@ pub struct TwoAxes {
     /// deg/h over the test.
     #[serde(default)]
     drift: f64,
+    /// Change of the tilts with temperature, mrad/degC, about the mean of the test.
+    #[serde(default)]
+    per_degree_mrad: (f64, f64),
+    /// Temperatures at which the turns are made, degC; none: they are not recorded.
+    #[serde(default)]
+    temperatures: Vec<f64>,
 }
 
 fn four_angles() -> Vec<f64> {
@@ -83,12 +89,18 @@ impl Bench for TwoAxes {
         let up = EARTH * LATITUDE_DEG.to_radians().sin();
         let north = EARTH * LATITUDE_DEG.to_radians().cos();
         let (x, y) = self.tilt_mrad;
-        let motion = self.motion();
+        let once = self.motion();
+        let soaks = self.temperatures.len().max(1);
+        let mean = self.temperatures.iter().sum::<f64>() / soaks as f64;
+        let at_row = |row: usize| self.temperatures.get(row / once.len()).copied().unwrap_or(mean);
+        let motion: Vec<&Row> = (0..soaks).flat_map(|_| &once).collect();
         let rows = motion.len();
         let white = source.white(N, dt, rows);
         let (mut azimuth, mut output) = (0.4f64, vec![]);
-        for (row, Row { inner, inner_rate, outer }) in motion.iter().enumerate() {
+        for (row, Row { inner, inner_rate, outer }) in motion.iter().copied().enumerate() {
             let beta = inner.to_radians();
+            let warmer = at_row(row) - mean;
+            let (x, y) = (x + self.per_degree_mrad.0 * warmer, y + self.per_degree_mrad.1 * warmer);
             let lean = 1e-3 * (squareness_mrad + y * beta.cos() + x * beta.sin());
             let through = 3600.0 * outer + up;
             let middle = azimuth + (0.5 * outer * dt).to_radians();
@@ -103,25 +115,36 @@ impl Bench for TwoAxes {
             );
         }
         let time: Vec<f64> = (0..rows).map(|row| row as f64 * dt).collect();
-        let of = |value: fn(&Row) -> f64| motion.iter().map(value).collect::<Vec<f64>>();
+        let of = |value: fn(&Row) -> f64| motion.iter().map(|r| value(r)).collect::<Vec<f64>>();
+        let temperature: Vec<f64> = (0..rows).map(at_row).collect();
+        let (x_change, y_change) = self.per_degree_mrad;
+        let mut truths = vec![
+            Truth::new("misalignment_x", x).oracle(self.oracle()),
+            Truth::new("misalignment_y", y).oracle(self.oracle()),
+        ];
+        if !self.temperatures.is_empty() {
+            truths = vec![
+                Truth::new("misalignment_x_temperature_sensitivity", x_change),
+                Truth::new("misalignment_y_temperature_sensitivity", y_change),
+            ];
+        }
         Simulated {
             csv: csv(
-                "time_s,rate_deg_h,inner_rate_deg_s,inner_angle_deg,outer_rate_deg_s",
-                &[&time, &output, &of(|r| r.inner_rate), &of(|r| r.inner), &of(|r| r.outer)],
+                "time_s,rate_deg_h,inner_rate_deg_s,inner_angle_deg,outer_rate_deg_s,temp_degC",
+                &[&time, &output, &of(|r| r.inner_rate), &of(|r| r.inner), &of(|r| r.outer), &temperature],
             ),
             procedure: procedure("Tilts", &COLUMNS, SECTIONS, ids),
-            truths: [("misalignment_x", x), ("misalignment_y", y)]
-                .map(|(id, tilt)| Truth::new(id, tilt).oracle(self.oracle()))
-                .to_vec(),
+            truths,
         }
     }
 }
 
-const COLUMNS: [Column; 4] = [
+const COLUMNS: [Column; 5] = [
     column("rate", "rate_deg_h", "rate", "deg/h"),
     column("inner_rate", "inner_rate_deg_s", "table_rate", "deg/s"),
     column("inner_angle", "inner_angle_deg", "table_angle", "deg"),
     column("outer", "outer_rate_deg_s", "outer_rate", "deg/s"),
+    column("temp", "temp_degC", "temperature", "degC"),
 ];
 
 const SECTIONS: &str = r#"[rate_table]

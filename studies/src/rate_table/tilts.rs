@@ -38,7 +38,7 @@ pub fn tilts(runs: u64, first: u64) -> [Coverage; 2] {
         ];
         let run = run_of(&channels, 1.0 / bench.hz, &setup);
         let vertical = EARTH * bench.latitude.to_radians().sin();
-        let alignment = Some(alignment::evaluate(&run.steps, "rate", 0, vertical, 0.0));
+        let alignment = Some(alignment::evaluate(&run.steps, "rate", 0, vertical, 0.0, false));
         let gain = 1e3 * (1.0 + 1e-6 * bench.error_ppm);
         let evidence = TableEvidence { alignment, ..TableEvidence::new(0, "rate", &setup, &run.steps) };
         [(&MISALIGNMENT_X, bench.tilt.0), (&MISALIGNMENT_Y, bench.tilt.1)]

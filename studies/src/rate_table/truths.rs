@@ -94,6 +94,8 @@ pub fn told(
                 (part.temperature - r.temperature) * r.slope * part.rate * 1e-6
             }
             Some(Extra::BiasOverTemperature) => part.temperature - r.temperature,
+            // The outer axis rests here.
+            Some(Extra::TiltOverTemperature) => 0.0,
             Some(Extra::Cosine(order)) => mean(part.angle, order, f64::cos),
             Some(Extra::Sine(order)) => mean(part.angle, order, f64::sin),
         }

@@ -8,6 +8,7 @@ mod overload;
 mod pauses;
 mod positions;
 mod runs;
+mod soaks;
 mod thermometer;
 mod unshown;
 mod zones;
@@ -49,9 +50,12 @@ fn files() -> Vec<(&'static str, String)> {
     let [near, far] = [(0.4e-3, -0.3e-3), (1.2e-3, -0.8e-3)].map(|tilt| TwoAxes { tilt, ..tilted() });
     let [steady, sensitive] = gravity::files();
     let [fast, slow] = frequency::files();
+    let [even, uneven] = soaks::files();
     vec![
         steady,
         sensitive,
+        even,
+        uneven,
         fast,
         slow,
         ("samples/scale-factor-pass.csv", pass().record().csv(COUNT, 0.1)),

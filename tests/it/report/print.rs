@@ -19,6 +19,7 @@ const RUNS: &[(&str, &str, &[&str])] = &[
     ),
     ("warm-up", "warm-up-fail.csv", &["--limits", "sample-warm-up", "--serial", "SN-0107"]),
     ("scale-factor", "scale-factor-fail.csv", &["--serial", "SN-1"]),
+    ("scale-factor-over-temperature", "scale-factor-over-temperature-fail.csv", &["--serial", "SN-1"]),
     ("threshold", "threshold-fail.csv", &["--serial", "SN-1"]),
     ("maximum-rate", "maximum-rate-fail.csv", &["--serial", "SN-1"]),
     ("transfer-function", "transfer-function-fail.csv", &["--serial", "SN-1"]),

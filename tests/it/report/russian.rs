@@ -22,6 +22,7 @@ const CASES: &[(&str, &str)] = &[
     ("multi-position", "multi-position-software"),
     ("output-noise", "output-noise-fail"),
     ("scale-factor", "scale-factor-fail"),
+    ("scale-factor-over-temperature", "scale-factor-over-temperature-fail"),
     ("static-bias", "unit-faults"),
     ("supply-sensitivity", "supply-sensitivity-fail"),
     ("temperature-ramp", "temperature-aborted"),

@@ -95,6 +95,77 @@ fn a_point_beyond_its_limits_is_named_and_capability_has_its_bound() {
     assert!(few["charts"][0]["notes"].to_string().contains("no_capability"), "{few:#}");
 }
 
+/// A unit tested at these hours of days of March, with its values.
+fn write_days(folder: &Path, days: &[&[f64]]) {
+    for (day, runs) in days.iter().enumerate() {
+        for (run, value) in runs.iter().enumerate() {
+            let at = format!("2026-03-{:02}T{:02}:00:00Z", 1 + 3 * day, 8 + run);
+            write_result(folder, &format!("{day}-{run}"), &a_result("SN-7", "L1", &at, *value));
+        }
+    }
+}
+
+#[test]
+fn runs_within_days_tell_the_scatter_of_both_and_the_trend() {
+    let dir = with_store();
+    // Runs differ by 0.01, days by some 0.1, and 0.02 is gained every third day.
+    let levels = [0.10, -0.08, 0.05, -0.11, 0.09, -0.02];
+    let days: Vec<Vec<f64>> = levels
+        .iter()
+        .enumerate()
+        .map(|(i, level)| [0.0, 0.01].iter().map(|run| 0.4 + 0.02 * i as f64 + level + run).collect())
+        .collect();
+    write_days(&dir.path().join("made"), &days.iter().map(Vec::as_slice).collect::<Vec<_>>());
+    store(dir.path(), &["import", "store", "made"]);
+    let of_unit = asked(dir.path(), &["7", "--measurand", "static_bias"]);
+    let found = &of_unit["stabilities"][0];
+    assert_eq!((&found["runs"], &found["days"]), (&12.into(), &6.into()), "{found}");
+    let number = |name: &str, end: &str| found[name][end].as_f64().unwrap_or_else(|| panic!("{found}"));
+    // Square sum 6·0.00005 of 6 degrees of freedom.
+    assert!((number("run_deviation", "value") - 0.00005_f64.sqrt()).abs() < 1e-9);
+    let holds = |name: &str, truth: f64| number(name, "low") < truth && truth < number(name, "high");
+    // χ² of 6 at 2.5 and 97.5 % is 1.2373 and 14.449.
+    assert!((number("run_deviation", "high") - (0.0003_f64 / 1.2373).sqrt()).abs() < 1e-6);
+    assert!(holds("day_deviation", 0.09) && number("day_deviation", "low") > 0.03, "{found}");
+    assert!(holds("per_month", 0.02 / 3.0 * 30.4375), "{found}");
+    assert_eq!(found["notes"], json!([]));
+    let english = ask(dir.path(), &["7", "--measurand", "static_bias"]).out;
+    assert!(english.contains("Stability over days") && english.contains("σ of a day"), "{english}");
+    let russian = ask(dir.path(), &["7", "--measurand", "static_bias", "--lang", "ru"]).out;
+    assert!(russian.contains("Стабильность по дням"), "{russian}");
+    // Of all units together there is no such thing.
+    assert_eq!(asked(dir.path(), &[])["stabilities"], json!([]));
+}
+
+#[test]
+fn too_few_days_or_runs_are_named_in_place_of_a_value() {
+    for (days, present, notes) in [
+        (&[&[0.5, 0.6][..], &[0.4, 0.5], &[0.3, 0.35]][..], [true, false, false], &["few_days"][..]),
+        (&[&[0.5], &[0.4], &[0.3], &[0.45], &[0.41]], [false, false, true], &["few_repeats"]),
+        (&[&[0.5, 0.6], &[0.4]], [false; 3], &["few_repeats", "few_days"]),
+        (&[&[0.5, 0.5], &[0.5, 0.5], &[0.4, 0.4], &[0.5]], [false, false, true], &["alike"]),
+    ] {
+        let dir = with_store();
+        write_days(&dir.path().join("made"), days);
+        store(dir.path(), &["import", "store", "made"]);
+        let of_unit = asked(dir.path(), &["7", "--measurand", "static_bias"]);
+        let found = &of_unit["stabilities"][0];
+        let values = ["run_deviation", "day_deviation", "per_month"];
+        assert_eq!(values.map(|name| !found[name].is_null()), present, "{found}");
+        let said: Vec<String> = found["notes"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|n| n["id"].as_str().unwrap().replace("history.stability.", ""))
+            .collect();
+        assert_eq!(said, notes, "{found}");
+    }
+    let dir = with_store();
+    write_days(&dir.path().join("made"), &[&[0.5], &[0.4]]);
+    store(dir.path(), &["import", "store", "made"]);
+    assert_eq!(asked(dir.path(), &["7"])["stabilities"], json!([]));
+}
+
 #[test]
 fn what_is_common_to_the_tests_of_a_unit_cancels_in_its_drift() {
     let dir = with_store();

@@ -60,13 +60,15 @@ const VOLTS: Option<&str> = Some("supply_V");
 const TEMP: Option<&str> = Some("temp_degC");
 
 /// Every pair.
-pub const PAIRS: [Pair; 37] = [
+pub const PAIRS: [Pair; 39] = [
     pair("unit-pass", "static-bias", UNIT, "SN-0001", 0, None),
     pair("unit-fail", "static-bias", UNIT, "SN-0001", 1, None),
     pair("unit-indeterminate", "static-bias", UNIT, "SN-0001", 3, None),
     pair("unit-faults", "static-bias", UNIT, "SN-0001", 3, None),
     pair("scale-factor-pass", "scale-factor", None, "SN-1", 0, RATE),
     pair("scale-factor-fail", "scale-factor", None, "SN-1", 1, RATE),
+    pair("scale-factor-over-temperature-pass", "scale-factor-over-temperature", None, "SN-1", 0, RATE),
+    pair("scale-factor-over-temperature-fail", "scale-factor-over-temperature", None, "SN-1", 1, RATE),
     pair("threshold-pass", "threshold", None, "SN-1", 0, RATE),
     pair("threshold-fail", "threshold", None, "SN-1", 1, RATE),
     pair("maximum-rate-pass", "maximum-rate", None, "SN-1", 0, RATE),

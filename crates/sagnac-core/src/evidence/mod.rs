@@ -30,6 +30,7 @@ use crate::rate_table::dead_zone::DeadZone;
 use crate::rate_table::known::Positions;
 use crate::rate_table::overload::Overload;
 use crate::rate_table::scale_factor::ScaleFactor;
+use crate::rate_table::scale_over_temperature::ScaleOverTemperature;
 use crate::rate_table::sine::Sine;
 use crate::rate_table::steps::Steps;
 use crate::rate_table::turns::Turns;
@@ -235,6 +236,8 @@ pub struct TableEvidence<'a> {
     pub line: Option<ScaleFactor>,
     /// What rates beyond the range show; `None` where it was not asked for, or too few rates give a line.
     pub overload: Option<Overload>,
+    /// Scale factor and bias at every soak, or why the recording does not show them; `None` where it was not asked for.
+    pub over_temperature: Option<Result<ScaleOverTemperature, Note>>,
     /// The sine of an open-loop unit; `None` where it was not asked for, or the response does not bend.
     pub sine: Option<Sine>,
     /// The response to rates near zero; `None` where it was not asked for, or there are too few rates.
@@ -255,6 +258,7 @@ impl<'a> TableEvidence<'a> {
             earth: None,
             line: None,
             overload: None,
+            over_temperature: None,
             sine: None,
             dead_zone: None,
             alignment: None,

@@ -13,6 +13,7 @@
 //! | [`station`] | groups of values against each other |
 //! | [`siblings`] | whether a unit is unlike the others in several quantities together |
 //! | [`drift`] | drift of one unit over tests that share a part of their uncertainty |
+//! | [`stability`] | scatter of runs and of days of one unit, and its trend |
 //! | [`population`] | median, spreads and bounds from values of known uncertainty in sub-lots, some only bounded |
 //!
 //! All works on the scale on which units scatter normally: the logarithm of a positive magnitude, or the value itself.
@@ -30,5 +31,6 @@ pub mod risk;
 mod sampler;
 pub mod share;
 pub mod siblings;
+pub mod stability;
 pub mod station;
 pub mod tolerance;

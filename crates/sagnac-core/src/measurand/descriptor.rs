@@ -110,6 +110,8 @@ pub enum Stimulus {
     SmallRates,
     /// Rates about the input axis up to those that the output no longer follows.
     Overload,
+    /// Rates about the input axis, repeated at several temperatures.
+    Soaks,
     /// Turns about the outer axis, which is square to the input axis.
     OuterTurns,
 }

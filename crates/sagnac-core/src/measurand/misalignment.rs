@@ -4,6 +4,7 @@ use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
 use crate::estimate::Estimate;
 use crate::rate_table::combine::spread;
+use crate::rate_table::design::Extra;
 
 /// Tilt about the first reference axis.
 pub static MISALIGNMENT_X: Measurand = Measurand::of_steps(
@@ -25,8 +26,39 @@ pub static MISALIGNMENT_Y: Measurand = Measurand::of_steps(
 )
 .signed();
 
+/// Change of the tilt about the first reference axis with temperature.
+pub static MISALIGNMENT_X_TEMPERATURE_SENSITIVITY: Measurand = Measurand::of_steps(
+    "misalignment_x_temperature_sensitivity",
+    "mrad/degC",
+    "change of the tilt about the first reference axis with temperature",
+    Stimulus::OuterTurns,
+    |m, e| change(m, e, 0),
+)
+.extras(&[Extra::TiltOverTemperature])
+.signed();
+
+/// Change of the tilt about the second reference axis with temperature.
+pub static MISALIGNMENT_Y_TEMPERATURE_SENSITIVITY: Measurand = Measurand::of_steps(
+    "misalignment_y_temperature_sensitivity",
+    "mrad/degC",
+    "change of the tilt about the second reference axis with temperature",
+    Stimulus::OuterTurns,
+    |m, e| change(m, e, 1),
+)
+.extras(&[Extra::TiltOverTemperature])
+.signed();
+
+const METHOD: &str = "outer_axis_turns";
+
+fn change(m: &Measurand, e: &TableEvidence<'_>, axis: usize) -> Vec<Estimate> {
+    let Some(change) = e.alignment.as_ref().and_then(|a| a.changes.get(axis)) else { return vec![] };
+    vec![match change {
+        Ok(change) => m.measured(&e.channel, 1e3 * change.value, spread(change, 1e3, &[]), METHOD),
+        Err(why) => m.not_identifiable(&e.channel, None, METHOD).note(why.clone()),
+    }]
+}
+
 fn tilt(m: &Measurand, e: &TableEvidence<'_>, axis: usize) -> Vec<Estimate> {
-    const METHOD: &str = "outer_axis_turns";
     let Some(tilt) = e.alignment.as_ref().and_then(|a| a.tilts.get(axis)) else { return vec![] };
     vec![match tilt {
         Ok(tilt) => {
@@ -51,7 +83,7 @@ mod tests {
     fn tilts_are_in_mrad_with_the_calibration_of_the_table() {
         let (setup, steps) = (Setup { rate_uncertainty: 4e-3, ..Setup::default() }, Steps::default());
         let tilts = [Ok(combination(-2e-3, 6e-6)), Err(note!("known.no_outer_turns"))];
-        let alignment = Some(Alignment { channel: "g".into(), tilts, factor: None });
+        let alignment = Some(Alignment { channel: "g".into(), changes: tilts.clone(), tilts, factor: None });
         let e = TableEvidence { alignment, ..on_table(&setup, &steps, None) };
         let rows = MISALIGNMENT_X.evaluate_steps(&e);
         shows(&rows[0], -2.0, "outer_axis_turns");

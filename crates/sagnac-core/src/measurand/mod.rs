@@ -22,6 +22,7 @@ pub mod russian;
 pub mod russian_prediction;
 mod scale_factor;
 mod scale_factor_changes;
+mod scale_factor_over_temperature;
 mod scale_factor_shape;
 mod sine_response;
 mod slope_readout;
@@ -110,6 +111,8 @@ registry! {
     scale_factor_changes::SCALE_FACTOR_REPEATABILITY,
     scale_factor_changes::SCALE_FACTOR_HYSTERESIS,
     scale_factor_changes::SCALE_FACTOR_TEMPERATURE_SENSITIVITY,
+    scale_factor_over_temperature::SF_OVER_TEMPERATURE_PEAK_TO_PEAK,
+    scale_factor_over_temperature::SF_TEMPERATURE_HYSTERESIS,
     sine_response::SINE_RESPONSE,
     polarity::POLARITY,
     maximum_rate::MAXIMUM_RATE,
@@ -117,6 +120,8 @@ registry! {
     maximum_rate::OVERLOAD_RECOVERY,
     misalignment::MISALIGNMENT_X,
     misalignment::MISALIGNMENT_Y,
+    misalignment::MISALIGNMENT_X_TEMPERATURE_SENSITIVITY,
+    misalignment::MISALIGNMENT_Y_TEMPERATURE_SENSITIVITY,
     cross_axis::CROSS_AXIS,
     dead_zone::DEAD_ZONE,
     dead_zone::DEAD_ZONE_NOISE,
@@ -222,7 +227,10 @@ mod tests {
         }
         assert_eq!(called("angle"), None);
         let hysteresis: Vec<&str> = with_word("Hysteresis").iter().map(|m| m.id).collect();
-        assert_eq!(hysteresis, ["thermal_hysteresis", "scale_factor_hysteresis"]);
+        assert_eq!(
+            hysteresis,
+            ["thermal_hysteresis", "scale_factor_hysteresis", "sf_temperature_hysteresis"]
+        );
     }
 
     #[test]

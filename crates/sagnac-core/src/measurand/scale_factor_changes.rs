@@ -2,6 +2,7 @@
 
 use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
+use super::scale_factor_over_temperature;
 use super::scale_factor_shape::of_line;
 use super::sine_response;
 use crate::estimate::{Estimate, Spread};
@@ -42,10 +43,14 @@ pub static SCALE_FACTOR_TEMPERATURE_SENSITIVITY: Measurand = Measurand::of_steps
         if e.setup.sine {
             return vec![sine_response::temperature_sensitivity(m, e)];
         }
-        of_line(e, |line| temperature_sensitivity(m, line, e))
+        match &e.over_temperature {
+            Some(soaks) => vec![scale_factor_over_temperature::slope(m, e, soaks)],
+            None => of_line(e, |line| temperature_sensitivity(m, line, e)),
+        }
     },
 )
 .extras(&[Extra::BiasOverTemperature, Extra::ScaleOverTemperature])
+.also_called(&["sf_temperature_coefficient", "sf_temperature_sensitivity", "sf_tc"])
 .signed();
 
 /// Standard deviation of the scale factors of single cycles.

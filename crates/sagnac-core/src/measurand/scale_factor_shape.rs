@@ -112,14 +112,24 @@ fn largest(
         let none = m.not_identifiable(&line.channel, None, METHOD);
         return none.note(note!("on_table.few_levels")).note(at);
     };
-    let factor = factor.abs();
+    of_largest(m, &line.channel, found, factor.abs(), METHOD).note(at)
+}
+
+/// The largest of several magnitudes times a factor, or its bound where chance explains it.
+pub(super) fn of_largest(
+    m: &Measurand,
+    channel: &str,
+    found: &Largest,
+    factor: f64,
+    method: &'static str,
+) -> Estimate {
     let value = found.value * factor;
     let spread = Spread::Curve(found.curve.iter().map(|(z, v)| (*z, v * factor)).collect());
     if found.by_chance > CLAIMED_BELOW {
         let bound = spread.bound(value, 0.95).map(|value| UpperLimit { value, coverage: 0.95 });
-        return m.not_identifiable(&line.channel, bound, METHOD).note(at);
+        return m.not_identifiable(channel, bound, method);
     }
-    m.measured(&line.channel, value, spread, METHOD).note(at)
+    m.measured(channel, value, spread, method)
 }
 
 /// Root mean square of the residuals of the levels without what noise adds to it.

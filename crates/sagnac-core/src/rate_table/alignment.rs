@@ -15,6 +15,13 @@ use nalgebra::{DMatrix, DVector};
 /// Least share of the turning by which a tilt must show. Sines of readings about zero are noise and no inner angle.
 const LEAST_SHARE: f64 = 0.01;
 
+/// Columns that may move the output beside its offset: two tilts, their changes with temperature, the inner axis.
+const CANDIDATES: usize = 5;
+/// The changes of the tilts among them.
+const OF_TEMPERATURE: [usize; 2] = [2, 3];
+/// The inner axis among them.
+const OF_INNER_RATE: usize = 4;
+
 /// Tilts of the input axis of a channel.
 #[derive(Debug, Clone)]
 pub struct Alignment {
@@ -22,21 +29,44 @@ pub struct Alignment {
     pub channel: String,
     /// Tilts about x and y of the plate, rad; why one is not shown.
     pub tilts: [Result<Combination, Note>; 2],
+    /// Changes of the tilts with temperature, rad/degC; why one is not shown.
+    pub changes: [Result<Combination, Note>; 2],
     /// Output per rate about the inner axis, where the test turned about it.
     pub factor: Option<Combination>,
 }
 
 /// Evaluates a channel: what the turns do not show says why. `vertical` is the Earth rate along the outer axis, deg/h, and
-/// `squareness` the standard uncertainty of the right angle between the axes of the table, rad.
-pub fn evaluate(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64) -> Alignment {
-    fit(steps, channel, gyro, vertical, squareness).unwrap_or_else(|why| Alignment {
+/// `squareness` the standard uncertainty of the right angle between the axes of the table, rad. With `over_temperature` the tilts are
+/// those at the mean temperature, beside their changes with it.
+pub fn evaluate(
+    steps: &Steps,
+    channel: &str,
+    gyro: usize,
+    vertical: f64,
+    squareness: f64,
+    over_temperature: bool,
+) -> Alignment {
+    fit(steps, channel, gyro, vertical, squareness, over_temperature).unwrap_or_else(|why| Alignment {
         channel: channel.to_owned(),
-        tilts: [Err(why.clone()), Err(why)],
+        tilts: [Err(why.clone()), Err(why.clone())],
+        changes: [Err(why.clone()), Err(why)],
         factor: None,
     })
 }
 
-fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64) -> Result<Alignment, Note> {
+/// Mean temperature of steps, degC; not a number where that of one is not known.
+fn mean_temperature(rows: &[&Step]) -> f64 {
+    rows.iter().map(|s| s.temperature).sum::<f64>() / rows.len() as f64
+}
+
+fn fit(
+    steps: &Steps,
+    channel: &str,
+    gyro: usize,
+    vertical: f64,
+    squareness: f64,
+    over_temperature: bool,
+) -> Result<Alignment, Note> {
     // A step is one row: the Earth's horizontal rotation averages out over whole turns and not within one, and at rest it
     // depends on where the outer axis stopped.
     let largest = steps.list.iter().map(|s| s.outer.abs()).filter(|r| r.is_finite()).fold(0.0, f64::max);
@@ -60,16 +90,28 @@ fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64
     let outer = |s: &Step| s.outer + vertical;
     let column = |f: &dyn Fn(&Step) -> f64| DVector::from_iterator(n, rows.iter().map(|s| f(s)));
     let mut columns = vec![column(&|_| 1.0)];
-    let candidates =
-        [column(&|s| outer(s) * angle(s).sin()), column(&|s| outer(s) * angle(s).cos()), column(&|s| s.rate)];
+    let warmer = |s: &Step| s.temperature - mean_temperature(&rows);
+    let candidates = [
+        column(&|s| outer(s) * angle(s).sin()),
+        column(&|s| outer(s) * angle(s).cos()),
+        column(&|s| outer(s) * angle(s).sin() * warmer(s)),
+        column(&|s| outer(s) * angle(s).cos() * warmer(s)),
+        column(&|s| s.rate),
+    ];
     let turning = column(&outer).norm();
-    let mut at = [None; 3];
+    let mut at = [None; CANDIDATES];
     let mut y = column(&|s| s.gyro[gyro]);
     for (k, c) in candidates.into_iter().enumerate() {
         // An unknown that few rows cannot bear: what little the inner axis turns then counts with the nominal factor.
-        if k == 2 && n < columns.len() + 3 {
+        let of_temperature = OF_TEMPERATURE.contains(&k);
+        let shows = match k {
+            OF_INNER_RATE => true,
+            _ if of_temperature => over_temperature && n > columns.len() + 1,
+            _ => c.norm() > LEAST_SHARE * turning,
+        };
+        if k == OF_INNER_RATE && n < columns.len() + 3 {
             y -= c;
-        } else if (k == 2 || c.norm() > LEAST_SHARE * turning) && is_linearly_independent(&c, &columns) {
+        } else if shows && is_linearly_independent(&c, &columns) {
             at[k] = Some(columns.len());
             columns.push(c);
         }
@@ -98,5 +140,11 @@ fn fit(steps: &Steps, channel: &str, gyro: usize, vertical: f64, squareness: f64
     let fit = reml::fit(&y, &x, &fixed, &components).ok_or_else(few)?;
     let of = |k: usize| at[k].map(|column| fit.coefficient(column));
     let tilt = |k: usize| of(k).ok_or_else(of_inner);
-    Ok(Alignment { channel: channel.to_owned(), tilts: [tilt(0), tilt(1)], factor: of(2) })
+    let change = |k: usize| of(k).ok_or_else(|| note!("known.no_temperatures_of_turns"));
+    Ok(Alignment {
+        channel: channel.to_owned(),
+        tilts: [tilt(0), tilt(1)],
+        changes: OF_TEMPERATURE.map(change),
+        factor: of(OF_INNER_RATE),
+    })
 }

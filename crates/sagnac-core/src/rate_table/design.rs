@@ -16,6 +16,8 @@ pub enum Extra {
     ScaleOverTemperature,
     /// Change of the bias with temperature, deg/h/degC.
     BiasOverTemperature,
+    /// Change of the tilts with temperature, where the outer axis turns; no column of the response to the inner axis.
+    TiltOverTemperature,
     /// cos ψ of the table angle, deg/h.
     Cosine(u8),
     /// sin ψ of the table angle, deg/h.

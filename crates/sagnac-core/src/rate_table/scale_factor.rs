@@ -57,6 +57,7 @@ pub struct ScaleFactor {
 fn recorded(extras: &[Extra], run: &TableRun) -> Vec<Extra> {
     let shown = |extra: &&Extra| match extra {
         Extra::Approach => true,
+        Extra::TiltOverTemperature => false,
         Extra::BiasOverTemperature | Extra::ScaleOverTemperature => run.blocks.has_temperature,
         Extra::Cosine(_) | Extra::Sine(_) => run.blocks.has_angle,
     };

@@ -33,6 +33,8 @@ pub struct Setup {
     pub alignment_uncertainty_rad: f64,
     /// Thermometer, degC.
     pub temperature_uncertainty_deg_c: f64,
+    /// How far the temperature of a soak may be from the middle of its range, degC.
+    pub soak_tolerance_deg_c: f64,
     /// Channel of the unit's temperature; `None`: the first.
     pub temperature: Option<String>,
     /// True when the response is the sine of an open-loop interferometer.
@@ -70,6 +72,7 @@ impl Default for Setup {
             angle_uncertainty_arcsec: 0.0,
             alignment_uncertainty_rad: 0.0,
             temperature_uncertainty_deg_c: 0.0,
+            soak_tolerance_deg_c: 2.0,
             temperature: None,
             sine: false,
             known: vec![],

@@ -4,8 +4,8 @@
 //! time constant. Hysteresis cannot be compensated from a temperature alone and is stated beside.
 
 use super::findings::Analysis;
+use crate::c_header::CHeader;
 use serde::Serialize;
-use std::fmt::Write;
 
 /// Points of the table.
 const TABLE_POINTS: usize = 25;
@@ -73,36 +73,21 @@ impl Compensation {
 
     /// The table as the text of a C header.
     pub fn header(&self) -> String {
-        let name: String = self
-            .channel
-            .chars()
-            .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' })
-            .collect();
-        let list = |v: &[f64]| v.iter().map(|x| format!("{x:.9e}")).collect::<Vec<_>>().join(", ");
-        let mut out =
-            format!("#ifndef SAGNAC_COMPENSATION_{name}_H\n#define SAGNAC_COMPENSATION_{name}_H\n\n");
-        let mut define = |key: &str, value: f64| {
-            let _ = writeln!(out, "#define COMP_{name}_{key} {value:.9e}");
-        };
-        define("VALID_LOW_DEGC", self.valid_deg_c[0]);
-        define("VALID_HIGH_DEGC", self.valid_deg_c[1]);
-        define("MIDDLE_DEGC", self.middle_deg_c);
-        define("HALF_DEGC", self.half_deg_c);
-        define("RATE_DEGH_PER_DEGC_MIN", self.rate_deg_h_per_deg_c_min);
-        define("LAG_S", self.lag_s);
-        define("HYSTERESIS_DEGH", self.hysteresis_deg_h);
-        let _ = writeln!(out, "#define COMP_{name}_ORDER {}", self.polynomial_deg_h.len().saturating_sub(1));
-        let _ = writeln!(out, "#define COMP_{name}_POINTS {}\n", self.temperature_deg_c.len());
-        let mut array = |key: &str, v: &[f64]| {
-            let name = format!("COMP_{name}_{key}");
-            let declared = format!("static const double {name}[{}]", v.len());
-            let _ = writeln!(out, "{declared} = {{{}}};", list(v));
-        };
-        array("POLYNOMIAL_DEGH", &self.polynomial_deg_h);
-        array("TEMPERATURE_DEGC", &self.temperature_deg_c);
-        array("BIAS_DEGH", &self.bias_deg_h);
-        out.push_str("\n#endif\n");
-        out
+        let mut out = CHeader::new("COMPENSATION", &self.channel);
+        out.define("VALID_LOW_DEGC", self.valid_deg_c[0]);
+        out.define("VALID_HIGH_DEGC", self.valid_deg_c[1]);
+        out.define("MIDDLE_DEGC", self.middle_deg_c);
+        out.define("HALF_DEGC", self.half_deg_c);
+        out.define("RATE_DEGH_PER_DEGC_MIN", self.rate_deg_h_per_deg_c_min);
+        out.define("LAG_S", self.lag_s);
+        out.define("HYSTERESIS_DEGH", self.hysteresis_deg_h);
+        out.count("ORDER", self.polynomial_deg_h.len().saturating_sub(1));
+        out.count("POINTS", self.temperature_deg_c.len());
+        out.gap();
+        out.array("POLYNOMIAL_DEGH", &self.polynomial_deg_h);
+        out.array("TEMPERATURE_DEGC", &self.temperature_deg_c);
+        out.array("BIAS_DEGH", &self.bias_deg_h);
+        out.finish()
     }
 }
 

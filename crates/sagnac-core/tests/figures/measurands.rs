@@ -249,7 +249,7 @@ fn rate_table() {
                 earth: Some(Earth { rate_deg_h: 8.0, uncertainty_deg_h: 0.1 }),
                 sine: setup.sine.then(|| sine::fit(&run.steps, 0)).flatten(),
                 dead_zone: zone,
-                alignment: Some(alignment::evaluate(&run.steps, "g0", 0, 12.5, 1e-5)),
+                alignment: Some(alignment::evaluate(&run.steps, "g0", 0, 12.5, 1e-5, false)),
                 line,
                 ..TableEvidence::new(0, "g0", &setup, &run.steps)
             };
@@ -285,7 +285,7 @@ fn outer_axis() {
     let setup = Setup { whole_turns: false, alignment_uncertainty_rad: 1e-5, ..Setup::default() };
     let run = TableRun::new(made, &setup);
     for vertical in [0.0, 12.5] {
-        let found = alignment::evaluate(&run.steps, "g0", 0, vertical, 1e-5);
+        let found = alignment::evaluate(&run.steps, "g0", 0, vertical, 1e-5, false);
         figures.add(format!("tilts {vertical}"), &found);
         let line = scale_factor::evaluate(&run, 0, &setup, &[]);
         let evidence =

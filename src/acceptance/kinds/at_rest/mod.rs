@@ -12,6 +12,7 @@ mod warm_up_transient;
 
 pub use evidence::{RateDigests, evidence};
 
+use crate::acceptance::compensation_files;
 use crate::acceptance::figures;
 use crate::acceptance::power;
 use crate::acceptance::reading::tidy;
@@ -207,10 +208,5 @@ fn compensation_tables(gyro: &GyroEvidence, serial: Option<&str>) -> Vec<Table> 
         return vec![];
     };
     let made = Compensation::of(analysis, &gyro.channel, serial);
-    let stem = gyro.figure_id("compensation");
-    vec![
-        (format!("{stem}.toml"), toml::to_string(&made).unwrap_or_default()),
-        (format!("{stem}.json"), serde_json::to_string_pretty(&made).unwrap_or_default() + "\n"),
-        (format!("{stem}.h"), made.header()),
-    ]
+    compensation_files::files(&gyro.figure_id("compensation"), &made, made.header())
 }

@@ -4,7 +4,10 @@ use crate::config::procedure::Procedure;
 use crate::config::procedure::scale_factor_unit::scale_factor_unit;
 use crate::measurand::{Earth, Stimulus, TableEvidence, table_extras};
 use crate::noise::static_bias::EARTH_RATE_DEG_H;
-use crate::rate_table::{Setup, TableRun, alignment, dead_zone, overload, scale_factor, sine};
+use crate::rate_table::design::Extra;
+use crate::rate_table::{
+    Setup, TableRun, alignment, dead_zone, overload, scale_factor, scale_over_temperature, sine,
+};
 
 /// True where a measurand of the procedure needs this stimulus.
 pub(super) fn wants(procedure: &Procedure, stimulus: Stimulus) -> bool {
@@ -21,7 +24,9 @@ pub(super) fn evaluate<'a>(
     let extras = table_extras(&|m| procedure.measures(m.id, None));
     let small_rates = wants(procedure, Stimulus::SmallRates);
     let beyond_range = wants(procedure, Stimulus::Overload);
+    let soaks = wants(procedure, Stimulus::Soaks);
     let outer_turns = wants(procedure, Stimulus::OuterTurns);
+    let tilts_change = extras.contains(&Extra::TiltOverTemperature);
     let site = procedure.site.as_ref();
     let vertical = site.map_or(0.0, |s| EARTH_RATE_DEG_H * s.latitude_deg.to_radians().sin());
     let one = |(gyro, channel): (usize, &String)| {
@@ -35,11 +40,12 @@ pub(super) fn evaluate<'a>(
             sine: setup.sine.then(|| sine::fit(&run.steps, gyro)).flatten(),
             dead_zone: response.and_then(|r| dead_zone::evaluate(&run.steps, gyro, r, channel, setup)),
             alignment: outer_turns
-                .then(|| alignment::evaluate(&run.steps, channel, gyro, vertical, squareness)),
+                .then(|| alignment::evaluate(&run.steps, channel, gyro, vertical, squareness, tilts_change)),
             overload: line
                 .as_ref()
                 .filter(|_| beyond_range)
                 .and_then(|line| overload::evaluate(run, gyro, line, setup)),
+            over_temperature: soaks.then(|| scale_over_temperature::evaluate(run, gyro, setup)),
             line,
             ..TableEvidence::new(gyro, channel, setup, &run.steps)
         }

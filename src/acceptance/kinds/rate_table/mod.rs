@@ -4,6 +4,7 @@ mod evidence;
 mod facts;
 mod steps;
 
+use crate::acceptance::compensation_files;
 use crate::acceptance::condition::table::{judge_and_log, judge_scale};
 use crate::acceptance::figures;
 use crate::acceptance::request::{Request, Table};
@@ -16,8 +17,10 @@ use crate::figure::Figure;
 use crate::ingest::Pauses;
 use crate::measurand::{self, Stimulus, TableEvidence};
 use crate::rate_table::blocks::Collector;
+use crate::rate_table::compensation::ScaleCompensation;
 use crate::rate_table::dead_zone::DeadZone;
 use crate::rate_table::scale_factor::ScaleFactor;
+use crate::rate_table::scale_over_temperature::ScaleOverTemperature;
 use crate::rate_table::{Setup, TableRun};
 use crate::record::{ConditionRecord, RunRecord};
 use crate::recording::Channel;
@@ -44,11 +47,33 @@ struct TableChannel {
     line: Option<ScaleFactor>,
     /// The response to rates near zero, where it is asked for.
     dead_zone: Option<DeadZone>,
+    /// Scale factor and bias at every soak, where they are asked for and shown.
+    over_temperature: Option<ScaleOverTemperature>,
 }
 
 impl StepEvidence {
     fn lines(&self) -> impl Iterator<Item = &ScaleFactor> {
         self.channels.iter().filter_map(|c| c.line.as_ref())
+    }
+
+    /// The channels whose scale factor over temperature is known, by name.
+    fn over_temperature(&self) -> impl Iterator<Item = (&str, &ScaleOverTemperature)> {
+        let named = |c: &'_ TableChannel| self.run.blocks.gyros.get(c.gyro).map(String::as_str);
+        self.channels.iter().filter_map(move |c| named(c).zip(c.over_temperature.as_ref()))
+    }
+
+    /// Scale factor and bias over temperature as tables for firmware: TOML, JSON, C header.
+    fn compensation_tables(&self, reading: &Reading<'_>) -> Vec<Table> {
+        let serial = reading.request.unit.serial.as_deref();
+        let highest = self.run.steps.list.iter().fold(0.0, |m: f64, s| m.max(s.rate.abs()));
+        let several = self.channels.len() > 1;
+        let of = |(channel, found): (&str, &ScaleOverTemperature)| {
+            let made = ScaleCompensation::of(found, channel, serial, highest);
+            let stem = "scale_factor_compensation";
+            let stem = if several { format!("{stem}_{channel}") } else { stem.to_owned() };
+            compensation_files::files(&stem, &made, made.header())
+        };
+        self.over_temperature().flat_map(of).collect()
     }
 }
 
@@ -83,8 +108,12 @@ impl TestKind for RateTable {
         let found = evidence::evaluate(procedure, &run, &setup);
         let of = |m: &MeasurandSpec| found.iter().flat_map(|c| m.measurand.evaluate_steps(c)).collect();
         let estimates = procedure.measurands.iter().map(of).collect();
-        let channel =
-            |c: TableEvidence<'_>| TableChannel { gyro: c.gyro, line: c.line, dead_zone: c.dead_zone };
+        let channel = |c: TableEvidence<'_>| TableChannel {
+            gyro: c.gyro,
+            line: c.line,
+            dead_zone: c.dead_zone,
+            over_temperature: c.over_temperature.and_then(Result::ok),
+        };
         let channels = found.into_iter().map(channel).collect();
         Ok(StepEvidence { setup, run, channels, estimates })
     }
@@ -132,6 +161,12 @@ impl Evidence for StepEvidence {
                 list.push(figures::scale_factor::over_time(&self.run, line, several));
             }
         }
+        if wanted("scale_over_temperature") {
+            let shown = |(name, found): (&str, &ScaleOverTemperature)| {
+                figures::scale_over_temperature::figure(found, name, several)
+            };
+            list.extend(self.over_temperature().map(shown));
+        }
         if wanted("dead_zone") {
             let zones = self.channels.iter().filter_map(|c| c.dead_zone.as_ref());
             list.extend(zones.map(|z| figures::dead_zone::figure(z, several)));
@@ -139,10 +174,11 @@ impl Evidence for StepEvidence {
         list
     }
 
-    fn complete(&self, _: &Reading<'_>, record: &mut RunRecord) -> Vec<Table> {
+    fn complete(&self, reading: &Reading<'_>, record: &mut RunRecord) -> Vec<Table> {
         let of = |c: &TableChannel| Some(steps::records(&self.run, c.line.as_ref()?, c.gyro));
         record.table_steps = self.channels.iter().filter_map(of).flatten().collect();
-        vec![("table_steps.csv".to_owned(), tables::table_steps(&record.table_steps))]
+        let steps = ("table_steps.csv".to_owned(), tables::table_steps(&record.table_steps));
+        std::iter::once(steps).chain(self.compensation_tables(reading)).collect()
     }
 }
 

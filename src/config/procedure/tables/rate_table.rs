@@ -64,6 +64,10 @@ pub(crate) struct RateTableKeys {
     /// The thermometer.
     #[key(difference = "degC", min = 0, default = "0 degC", example = "0.2 degC")]
     temperature_uncertainty_deg_c: f64,
+    /// How far the temperature of a soak may be from the middle of its range, where the rates are repeated at several
+    /// temperatures. Steps of which the temperature changes by more belong to no soak.
+    #[key(difference = "degC", above = 0, default = "2 degC", example = "1 degC")]
+    soak_tolerance_deg_c: f64,
     /// Shape of the output over rate.
     #[key(choice = RESPONSE_SHAPES, default = "line", example = "sine")]
     response: &'static str,
@@ -164,6 +168,7 @@ impl RateTableKeys {
             angle_uncertainty_arcsec: self.angle_uncertainty_arcsec,
             alignment_uncertainty_rad: self.alignment_uncertainty_mrad * 1e-3,
             temperature_uncertainty_deg_c: self.temperature_uncertainty_deg_c,
+            soak_tolerance_deg_c: self.soak_tolerance_deg_c,
             temperature: self.temperature,
             sine: self.response == "sine",
             known: positions.chain(turns).chain(rests).collect(),
