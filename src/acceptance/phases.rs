@@ -1,6 +1,6 @@
 //! The results of the phases of a test as one.
 
-use super::build_record::clauses;
+use super::build_record::{clauses, with_rows};
 use super::changes::{self, PhaseRows};
 use super::condition::checks::none_made;
 use super::kinds;
@@ -11,8 +11,8 @@ use crate::estimate::Verdict;
 use crate::figure::Figure;
 use crate::i18n::{Arg, Lang, LocalText, Localize, Note, note};
 use crate::record::{
-    CheckRecord, ConditionStatus, FigureRecord, Integrity, Message, PhaseRecord, Program, RESULT_FORMAT,
-    RunKind, RunRecord, Session, UnitUnderTest, Window,
+    CheckRecord, ClauseRecord, ConditionStatus, FigureRecord, Integrity, Message, PhaseRecord, Program,
+    RESULT_FORMAT, RunKind, RunRecord, Session, UnitUnderTest, Window,
 };
 
 /// A phase that was run, or why it was not.
@@ -57,10 +57,11 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         }
     }
     let evaluated = records.iter().filter(|r| r.recording.iter().any(|f| f.samples > 0)).count();
+    let declared = clauses_with_rows(phased, done);
     let clauses = match evaluated {
-        0 => clauses(&phased.clauses, "not_done"),
-        n if n < done.len() => clauses(&phased.clauses, "partly"),
-        _ => phased.clauses.clone(),
+        0 => clauses(&declared, "not_done"),
+        n if n < done.len() => clauses(&declared, "partly"),
+        _ => declared,
     };
     RunRecord {
         format: RESULT_FORMAT.to_owned(),
@@ -90,6 +91,25 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
         errors: errors.into_iter().map(Into::into).collect(),
         ..RunRecord::default()
     }
+}
+
+/// The clauses of the whole, each with the rows of the phases that deal with it by their own procedures.
+fn clauses_with_rows(phased: &Phased, done: &[Done<'_>]) -> Vec<ClauseRecord> {
+    let of_phases: Vec<ClauseRecord> = done
+        .iter()
+        .map(|d| &d.phase.procedure.value)
+        .flat_map(|procedure| with_rows(&procedure.clauses, procedure))
+        .collect();
+    let of = |c: &ClauseRecord| {
+        let mut rows: Vec<String> = vec![];
+        for id in of_phases.iter().filter(|own| own.clause == c.clause).flat_map(|own| &own.rows) {
+            if !rows.contains(id) {
+                rows.push(id.clone());
+            }
+        }
+        ClauseRecord { rows, ..c.clone() }
+    };
+    phased.clauses.iter().map(of).collect()
 }
 
 /// The worst verdict. A phase that is open for want of any limit, and for nothing else, leaves it to the limits on changes, where there

@@ -81,6 +81,16 @@ pub struct ClauseRecord {
     #[serde(flatten, with = "super::local::note")]
     #[cfg_attr(feature = "schema", schemars(with = "super::local::note::Members<String>"))]
     pub note: LocalText,
+    /// Ids of the measurands of this result that deal with it.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub rows: Vec<String>,
+}
+
+impl ClauseRecord {
+    /// True where the test that states it deals with it.
+    pub fn is_here(&self) -> bool {
+        self.status == "here"
+    }
 }
 
 /// An option that the analysis used.

@@ -109,10 +109,18 @@ pub fn clauses(part: &Part<'_>) -> Vec<Block> {
     }
     let each = |of: &dyn Fn(&ClauseRecord) -> String| all.iter().map(of).collect::<Vec<_>>();
     let notes = all.iter().map(|c| Value::Sentence(words.local(&c.note)));
-    let table = Table::new("dense clauses cards", all.len())
+    let rows = |c: &ClauseRecord| {
+        let names: Vec<String> = c.rows.iter().map(|id| row_name(id, words)).collect();
+        Value::Sentence(names.join("; "))
+    };
+    let mut table = Table::new("dense clauses cards", all.len())
         .column(words.column("report.clause"), each(&|c| words.local(&c.clause)))
         .column(words.column("report.clause_title"), each(&|c| words.local(&c.title)))
         .column(words.column("report.clause_state"), each(&|c| words.name("clause", &c.status)))
         .column(words.column("report.remark"), notes);
+    // Results of earlier versions do not tell.
+    if all.iter().any(|c| !c.rows.is_empty()) {
+        table = table.column(words.column("report.clause_rows"), all.iter().map(rows));
+    }
     vec![Block::section("", words.t("report.clauses"), vec![Block::Table(table)])]
 }

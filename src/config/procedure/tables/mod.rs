@@ -291,6 +291,12 @@ const CLAUSE_STATUS: &[Word] = &[
 impl From<ClauseKeys> for ClauseRecord {
     fn from(keys: ClauseKeys) -> ClauseRecord {
         let ClauseKeys { clause, title, status, note } = keys;
-        ClauseRecord { clause, title, status: status.to_owned(), note: note.unwrap_or_default() }
+        ClauseRecord {
+            clause,
+            title,
+            status: status.to_owned(),
+            note: note.unwrap_or_default(),
+            rows: vec![],
+        }
     }
 }
