@@ -55,18 +55,26 @@ impl Curve<'_> {
     /// A panel of the curve and of the line of this slope, without a line of the slope `without`, ppm/degC.
     fn panel(&self, slope: f64, without: f64, axis: &'static str) -> Panel {
         let left = |t: f64, value: f64| value - without * (t - self.middle);
-        let intervals = self.temperatures.iter().enumerate().map(|(point, t)| {
-            let (value, half) = self.about_mean(&self.found.mean_of(point));
-            (*t, left(*t, value - half), left(*t, value + half))
-        });
+        let means: Vec<(f64, f64, f64)> = self
+            .temperatures
+            .iter()
+            .enumerate()
+            .map(|(point, t)| {
+                let (value, half) = self.about_mean(&self.found.mean_of(point));
+                (*t, left(*t, value), half)
+            })
+            .collect();
+        let band = means.iter().map(|(t, value, half)| (*t, value - half, value + half)).collect();
+        let curve = means.iter().map(|(t, value, _)| (*t, *value)).collect();
         let ends = self.temperatures.first().into_iter().chain(self.temperatures.last());
         let line = ends.map(|t| (*t, left(*t, slope * (t - self.middle)))).collect();
         let mut layers = vec![
-            draw::strokes(intervals, Style::Data, "figure.legend.band95"),
+            draw::band(band, Style::Data, "figure.legend.band95"),
+            draw::line(curve, Style::Data, "figure_soaks.mean"),
             draw::line(line, Style::Model, "figure_soaks.line"),
         ];
         for (direction, style, legend) in [
-            (0, Style::Data, "figure_soaks.first"),
+            (0, Style::Reference, "figure_soaks.first"),
             (1, Style::Heating, "figure_soaks.heating"),
             (-1, Style::Cooling, "figure_soaks.cooling"),
         ] {

@@ -15,6 +15,9 @@ const LATITUDE_DEG: f64 = 55.98;
 /// deg/√h
 const N: f64 = 0.004;
 
+/// Scatter of the thermometer, degC.
+const READING_DEG_C: f64 = 0.02;
+
 /// Seconds at rest before a turn, of a change of rate, and of a turn.
 const REST: usize = 10;
 const TURN: usize = 42;
@@ -116,7 +119,9 @@ impl Bench for TwoAxes {
         }
         let time: Vec<f64> = (0..rows).map(|row| row as f64 * dt).collect();
         let of = |value: fn(&Row) -> f64| motion.iter().map(|r| value(r)).collect::<Vec<f64>>();
-        let temperature: Vec<f64> = (0..rows).map(at_row).collect();
+        let mut thermometer = NoiseSource::new(seed ^ 0x7e4);
+        let temperature: Vec<f64> =
+            (0..rows).map(|row| at_row(row) + READING_DEG_C * thermometer.normal()).collect();
         let (x_change, y_change) = self.per_degree_mrad;
         let mut truths = vec![
             Truth::new("misalignment_x", x).oracle(self.oracle()),

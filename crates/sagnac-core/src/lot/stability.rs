@@ -98,6 +98,14 @@ impl Means {
         (square > 0.0 && about.is_finite()).then_some(Line { slope, variance: 1.0 / square, about })
     }
 
+    /// Weighted square sum without a scatter of days over what it is in the mean, at most one.
+    fn share_of_expected(&self, of_run: f64, dof: usize) -> Option<f64> {
+        if of_run <= 0.0 {
+            return Some(1.0);
+        }
+        self.line(0.0, of_run).map(|l| (l.about / dof as f64).min(1.0))
+    }
+
     /// The variance of days at which the weighted square sum is `asked`; zero where it is smaller without any.
     fn of_day(&self, of_run: f64, asked: f64) -> Option<f64> {
         let about = |of_day: f64| self.line(of_day, of_run).map(|l| l.about);
@@ -152,9 +160,11 @@ fn of_run(within: f64, dof: usize) -> Known {
     Known { value: (within / dof as f64).sqrt(), low: at(1.0 - tail), high: at(tail) }
 }
 
-/// A state that the draws allow: variance of days, and slope with its standard deviation.
+/// A state that the draws allow: variance of days, what that is where the means scatter at least as their runs let expect, and slope
+/// with its standard deviation.
 struct State {
     of_day: f64,
+    of_day_at_most: f64,
     slope: f64,
     standard: f64,
 }
@@ -167,8 +177,9 @@ fn states(means: &Means, within: Option<f64>, repeats: usize, dof: usize) -> Vec
     };
     let each = |of_run: f64, asked: f64| {
         let of_day = means.of_day(of_run, asked)?;
+        let of_day_at_most = means.of_day(of_run, asked * means.share_of_expected(of_run, dof)?)?;
         let line = means.line(of_day, of_run)?;
-        Some(State { of_day, slope: line.slope, standard: line.variance.sqrt() })
+        Some(State { of_day, of_day_at_most, slope: line.slope, standard: line.variance.sqrt() })
     };
     let asked = draws(dof);
     of_runs.iter().flat_map(|run| asked.iter().filter_map(|asked| each(*run, *asked))).collect()
@@ -190,7 +201,10 @@ fn of_days(states: &[State]) -> Option<DayScatter> {
     deviations.sort_ascending();
     let absent = deviations.iter().filter(|d| **d <= 0.0).count() as f64 / deviations.len() as f64;
     if absent > MAX_ABSENT_PROBABILITY {
-        return Some(DayScatter::AtMost(quantile(&deviations, INTERVAL_COVERAGE)));
+        // Means that scatter less than their runs let expect do so by chance, and exclude no more than others would.
+        let mut bounds: Vec<f64> = states.iter().map(|s| s.of_day_at_most.sqrt()).collect();
+        bounds.sort_ascending();
+        return Some(DayScatter::AtMost(quantile(&bounds, INTERVAL_COVERAGE)));
     }
     let tail = 0.5 * (1.0 - INTERVAL_COVERAGE);
     let [low, value, high] = [tail, 0.5, 1.0 - tail].map(|p| quantile(&deviations, p));

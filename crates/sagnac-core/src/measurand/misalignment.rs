@@ -93,5 +93,10 @@ mod tests {
         withholds(&rows[0], None, "outer_axis_turns");
         assert_eq!(notes(&rows[0]), ["known.no_outer_turns"]);
         assert!(MISALIGNMENT_X.evaluate_steps(&on_table(&setup, &steps, None)).is_empty());
+        let rows = MISALIGNMENT_X_TEMPERATURE_SENSITIVITY.evaluate_steps(&e);
+        shows(&rows[0], -2.0, "outer_axis_turns");
+        near(student(&rows[0]).0, 0.006);
+        let rows = MISALIGNMENT_Y_TEMPERATURE_SENSITIVITY.evaluate_steps(&e);
+        withholds(&rows[0], None, "outer_axis_turns");
     }
 }

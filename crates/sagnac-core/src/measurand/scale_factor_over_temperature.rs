@@ -3,10 +3,11 @@
 use super::descriptor::{Measurand, Stimulus};
 use super::evidence::TableEvidence;
 use super::scale_factor_shape::of_largest;
-use crate::estimate::Estimate;
+use crate::estimate::{Component, Estimate, InputQuantity, normal_probability, student_quantile};
 use crate::message::{Arg, Note, note};
+use crate::numeric::reml::Combination;
 use crate::rate_table::combine::spread;
-use crate::rate_table::largest::largest;
+use crate::rate_table::largest::{Largest, largest};
 use crate::rate_table::scale_over_temperature::ScaleOverTemperature;
 
 /// Largest difference of the scale factors of two temperatures.
@@ -100,8 +101,26 @@ fn largest_of(
     let sums: Vec<_> = contrasts.iter().map(|w| found.contrast(w)).collect();
     let values: Vec<f64> = sums.iter().map(|s| s.value).collect();
     match largest(&values, &found.covariance(&contrasts), &|i| sums[i].dof) {
-        Some(largest) => (of_largest(m, &e.channel, &largest, 1.0, METHOD), Some(largest.at)),
+        Some(mut largest) => {
+            lower_for_rivals(&mut largest, &sums);
+            (of_largest(m, &e.channel, &largest, 1.0, METHOD), Some(largest.at))
+        }
         None => (m.not_identifiable(&e.channel, None, METHOD).note(note!("soaks.undetermined")), None),
+    }
+}
+
+/// Standard deviations within which a magnitude may be the largest in truth.
+const RIVAL_SIGMAS: f64 = 3.0;
+
+/// Lowers lower ends where several magnitudes may be the largest: that which came out largest is then too large by chance, and each of
+/// them alone is claimed at a share of the risk (Bonferroni).
+fn lower_for_rivals(largest: &mut Largest, sums: &[Combination]) {
+    let Some(top) = sums.get(largest.at) else { return };
+    let off = |s: &Combination| (top.value.abs() - s.value.abs()) / top.standard.hypot(s.standard);
+    let rivals = sums.iter().filter(|s| off(s) <= RIVAL_SIGMAS).count().max(1) as f64;
+    for (score, value) in largest.curve.iter_mut().filter(|(score, _)| *score < 0.0) {
+        let quantile = student_quantile(1.0 - normal_probability(*score) / rivals, top.dof);
+        *value = value.min((top.value.abs() - quantile * top.standard).max(0.0));
     }
 }
 
@@ -112,12 +131,48 @@ pub(super) fn slope(
     soaks: &Result<ScaleOverTemperature, Note>,
 ) -> Estimate {
     shown(m, e, soaks, |found| {
-        let slope = found.contrast(&found.slope_weights());
+        let weights = found.slope_weights();
+        let slope = found.contrast(&weights);
         let temperatures = found.temperatures();
         let range = temperatures.last().zip(temperatures.first()).map_or(0.0, |(high, low)| high - low);
-        let reading = [e.setup.of_thermometer(std::f64::consts::SQRT_2 / range * slope.value)];
+        // Calibration at both ends of the range, and the scatter of the readings.
+        let calibration = std::f64::consts::SQRT_2 / range * e.setup.temperature_uncertainty_deg_c;
+        let relative = calibration.hypot(found.temperature_scatter(&weights));
+        let reading = [Component::of(
+            InputQuantity::Thermometer,
+            relative * range / std::f64::consts::SQRT_2,
+            "degC",
+            std::f64::consts::SQRT_2 / range * slope.value,
+        )];
         m.measured(&e.channel, slope.value, spread(&slope, 1.0, &reading), METHOD)
             .components(&reading)
             .note(note!("on_table.temperature_range", range = Arg::figures(range, 3)))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn sum(value: f64) -> Combination {
+        Combination { value, standard: 1.0, dof: 1e9 }
+    }
+
+    /// The lower end at 2.275 % of the largest of these, each with a standard deviation of one.
+    fn lower(values: &[f64]) -> f64 {
+        let sums: Vec<Combination> = values.iter().map(|v| sum(*v)).collect();
+        let curve = vec![(-2.0, 9.5), (0.0, 10.0), (2.0, 12.0)];
+        let mut found = Largest { at: 0, value: 10.0, curve, by_chance: 0.0 };
+        lower_for_rivals(&mut found, &sums);
+        assert_eq!(found.curve[1..], [(0.0, 10.0), (2.0, 12.0)]);
+        found.curve[0].1
+    }
+
+    #[test]
+    fn rivals_share_the_risk_of_a_lower_end() {
+        assert!((lower(&[10.0, 2.0]) - 8.0).abs() < 1e-3);
+        // Normal quantiles of half and of a quarter of 2.275 %.
+        assert!((lower(&[10.0, -9.5]) - 7.722).abs() < 2e-3, "{}", lower(&[10.0, -9.5]));
+        assert!((lower(&[10.0, 9.0, 8.0, -9.5]) - 7.470).abs() < 2e-3, "{}", lower(&[10.0, 9.0, 8.0, -9.5]));
+    }
 }

@@ -215,6 +215,12 @@ impl ScaleOverTemperature {
         weights
     }
 
+    /// Standard deviation of the sum over the temperatures of the soaks with these weights, by the scatter of their steps.
+    pub fn temperature_scatter(&self, weights: &[f64]) -> f64 {
+        let own = weights.iter().zip(&self.soaks).map(|(w, s)| (w * s.temperature_standard).powi(2));
+        own.sum::<f64>().sqrt()
+    }
+
     /// Weights of the soaks that give the difference of two points.
     pub fn difference(&self, first: usize, second: usize) -> Vec<f64> {
         self.mean_of(first).iter().zip(self.mean_of(second)).map(|(a, b)| a - b).collect()
@@ -255,5 +261,111 @@ impl ScaleOverTemperature {
             Point { temperature: self.temperature_of(point), factor, bias: self.fit.combine(&bias) }
         };
         (0..self.points.len()).map(of).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::compensation::ScaleCompensation;
+    use super::super::soaks::tests::recorded;
+    use super::*;
+
+    const RATES: [f64; 3] = [1e5, 0.0, -1e5];
+
+    /// A run through the rates, so many times at each temperature, of a unit with these deviations, ppm, and biases, deg/h.
+    fn run(soaks: &[(f64, f64, f64)], cycles: usize) -> TableRun {
+        let of_soak = |(temperature, ppm, bias): &(f64, f64, f64)| {
+            let output = |rate: &f64| (*rate, rate * (1.0 + 1e-6 * ppm) + bias, *temperature);
+            RATES.iter().cycle().take(RATES.len() * cycles).map(output).collect::<Vec<_>>()
+        };
+        let steps = recorded(&soaks.iter().flat_map(of_soak).collect::<Vec<_>>());
+        let mut run = TableRun { steps, ..TableRun::default() };
+        run.blocks.gyros = vec!["g".into()];
+        run
+    }
+
+    /// Two numbers agree to a part of the second.
+    fn within(found: f64, expected: f64, part: f64) {
+        assert!((found - expected).abs() <= part * expected.abs(), "{found} {expected}");
+    }
+
+    fn found(soaks: &[(f64, f64, f64)], cycles: usize) -> ScaleOverTemperature {
+        evaluate(&run(soaks, cycles), 0, &Setup::default()).unwrap()
+    }
+
+    /// Up and back: 3 ppm/degC, 4 ppm more by heating at 20 degC; −40 is first, and at the end.
+    const LOOP: [(f64, f64, f64); 5] = [
+        (-40.0, -120.0, 1.0),
+        (20.0, 62.0, 2.0),
+        (80.0, 240.0, 3.0),
+        (20.5, 59.5, 2.0),
+        (-40.0, -120.0, 1.0),
+    ];
+
+    #[test]
+    fn differences_of_soaks_are_those_of_the_unit_in_parts_of_its_scale_factor() {
+        let unit = found(&LOOP, 2);
+        assert_eq!(unit.points, [vec![0, 4], vec![1, 3], vec![2]]);
+        assert_eq!(unit.scatter, None);
+        // Relative to the mean factor of 1 + 60.25e-6.
+        let mean = 1.0 + 1e-6 * (240.0 - 120.0 + 60.75) / 3.0;
+        let whole = unit.contrast(&unit.difference(2, 0));
+        within(whole.value, 360.0 / mean, 1e-7);
+        assert!(whole.standard > 0.0 && whole.dof > 5.0, "{whole:?}");
+        // The line through −40, 20.25, 80 degC and −120, 60.75, 240 ppm.
+        within(unit.contrast(&unit.slope_weights()).value, 3.0 / mean, 1e-3);
+        // Both ways at one temperature: 62 − 59.5 + 0.5·3.
+        within(unit.contrast(&unit.both_ways(1).unwrap()).value, 4.0, 1e-3);
+        assert_eq!((unit.both_ways(0), unit.both_ways(2)), (None, None));
+    }
+
+    #[test]
+    fn the_covariance_of_differences_is_that_of_each() {
+        for cycles in [1, 2] {
+            let unit = found(&LOOP, cycles);
+            let list = vec![unit.difference(2, 0), unit.difference(1, 0), unit.slope_weights()];
+            let covariance = unit.covariance(&list);
+            for (i, weights) in list.iter().enumerate() {
+                within(covariance[(i, i)].sqrt(), unit.contrast(weights).standard, 1e-9);
+            }
+        }
+    }
+
+    #[test]
+    fn the_compensation_table_has_factor_and_bias_of_every_temperature() {
+        let unit = found(&LOOP, 2);
+        let table = ScaleCompensation::of(&unit, "g", Some("S"), 1e5);
+        assert_eq!(table.temperature_deg_c, [-40.0, 20.25, 80.0]);
+        let close = |found: &[f64], expected: [f64; 3]| {
+            found.iter().zip(expected).for_each(|(f, e)| assert!((f - e).abs() < 1e-6, "{found:?}"));
+        };
+        close(&table.scale_factor_error_ppm, [-120.0, 60.75, 240.0]);
+        close(&table.bias_deg_h, [1.0, 2.0, 3.0]);
+        assert!(table.header().contains("COMP_G_SF_POINTS 3"), "{}", table.header());
+    }
+
+    #[test]
+    fn soaks_gone_through_once_scatter_about_a_parabola() {
+        // Orthogonal polynomials of five even temperatures leave of these what follows.
+        let off = [0.0, 500.0, 300.0, 100.0, -800.0];
+        let soaks: Vec<(f64, f64, f64)> =
+            off.iter().enumerate().map(|(i, ppm)| (20.0 * i as f64, *ppm, 0.0)).collect();
+        let unit = found(&soaks, 1);
+        let scatter = unit.scatter.unwrap();
+        within(scatter.dof, 2.0, 1e-9);
+        let (linear, square) = ([-2.0, -1.0, 0.0, 1.0, 2.0], [2.0, -1.0, -2.0, -1.0, 2.0]);
+        let dot = |a: &[f64; 5], b: &[f64; 5]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let left = dot(&off, &off) - dot(&off, &linear).powi(2) / 10.0 - dot(&off, &square).powi(2) / 14.0;
+        assert!((scatter.variance - left / 2.0).abs() < 0.15 * left / 2.0, "{scatter:?} {left}");
+    }
+
+    #[test]
+    fn what_a_recording_does_not_show_is_named() {
+        let why = |soaks: &[(f64, f64, f64)], cycles| {
+            evaluate(&run(soaks, cycles), 0, &Setup::default()).map(|_| ()).map_err(|n| n.id.into_owned())
+        };
+        assert_eq!(why(&LOOP[..1], 2), Err("soaks.one_temperature".to_owned()));
+        assert_eq!(why(&LOOP[..3], 1), Err("soaks.one_cycle".to_owned()));
+        assert_eq!(why(&LOOP[..3], 2), Ok(()));
     }
 }

@@ -13,6 +13,8 @@ const MIN_RATES: usize = 2;
 pub struct Soak {
     /// Mean temperature, degC.
     pub temperature: f64,
+    /// Standard deviation of that by the scatter of its steps, degC.
+    pub temperature_standard: f64,
     /// +1 when it was reached from a lower temperature, −1 from a higher one, 0 where that is not known.
     pub direction: i8,
     /// Positions of its steps in [`Steps::list`], in order of time.
@@ -43,13 +45,16 @@ pub fn find(steps: &Steps, tolerance: f64) -> Vec<Soak> {
     groups.retain(|(_, _, own)| levels_of(steps, own) >= MIN_RATES);
     let mut soaks: Vec<Soak> = vec![];
     for (_, _, own) in groups {
-        let temperature = own.iter().map(|i| steps.list[*i].temperature).sum::<f64>() / own.len() as f64;
+        let count = own.len() as f64;
+        let temperature = own.iter().map(|i| steps.list[*i].temperature).sum::<f64>() / count;
+        let square: f64 = own.iter().map(|i| (steps.list[*i].temperature - temperature).powi(2)).sum();
+        let temperature_standard = (square / ((count - 1.0) * count)).sqrt();
         let direction = soaks.last().map_or(0, |before| match temperature - before.temperature {
             change if change > width => 1,
             change if change < -width => -1,
             _ => before.direction,
         });
-        soaks.push(Soak { temperature, direction, steps: own });
+        soaks.push(Soak { temperature, temperature_standard, direction, steps: own });
     }
     soaks
 }
@@ -112,19 +117,50 @@ fn chosen(steps: &Steps, soaks: &[Soak], of_step: &[usize], cycles: usize) -> St
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
+    use super::super::steps::Part;
     use super::*;
-    use crate::evidence::test_evidence;
+
+    /// Steps of rates in deg/h with their outputs, deg/h, and temperatures: two parts of 10 s that scatter about each.
+    pub fn recorded(of: &[(f64, f64, f64)]) -> Steps {
+        let mut levels: Vec<f64> = of.iter().map(|s| s.0).collect();
+        levels.sort_by(f64::total_cmp);
+        levels.dedup();
+        let part = |at: usize, rate: f64, output: f64, temperature: f64| Part {
+            mid_s: 10.0 * at as f64 + 5.0,
+            length_s: 10.0,
+            rate,
+            outer: 0.0,
+            temperature,
+            gyro: vec![output],
+            angle: (f64::NAN, f64::NAN),
+        };
+        let step = |(i, (rate, output, temperature)): (usize, &(f64, f64, f64))| Step {
+            from_s: 20.0 * i as f64,
+            to_s: 20.0 * (i + 1) as f64,
+            first_row: 0,
+            end_row: 0,
+            rate: *rate,
+            nominal: *rate,
+            outer: 0.0,
+            temperature: *temperature,
+            gyro: vec![*output],
+            turns: 0.0,
+            level: levels.iter().position(|l| l == rate).unwrap(),
+            approach: 0,
+            cycle: 0,
+            parts: vec![
+                part(2 * i, *rate, output + 0.5, *temperature),
+                part(2 * i + 1, *rate, output - 0.5, *temperature),
+            ],
+            unsettled: None,
+        };
+        Steps { list: of.iter().enumerate().map(step).collect(), levels, cycles: 1, too_short: 0 }
+    }
 
     /// Steps of rates in deg/h at temperatures.
     fn steps(of: &[(f64, f64)]) -> Steps {
-        let rates: Vec<f64> = of.iter().map(|s| s.0).collect();
-        let mut steps = test_evidence::steps(&rates, &rates, rates.len());
-        for (step, (_, temperature)) in steps.list.iter_mut().zip(of) {
-            step.temperature = *temperature;
-            step.parts.iter_mut().for_each(|p| p.temperature = *temperature);
-        }
-        steps
+        recorded(&of.iter().map(|(rate, temperature)| (*rate, *rate, *temperature)).collect::<Vec<_>>())
     }
 
     fn at(rates: &[f64], temperature: f64) -> Vec<(f64, f64)> {
