@@ -6,7 +6,6 @@ use super::reading::tidy;
 use super::request::{Request, RunError, session};
 use super::test_kind::Reading;
 use super::verdict;
-use crate::config::procedure::Procedure;
 use crate::config::procedure::unit_facts::unknown;
 use crate::estimate::Verdict;
 use crate::figure::Figure;
@@ -61,25 +60,10 @@ pub(super) fn failed(request: &Request<'_>, own_checks: &[&str], error: &RunErro
         summary: errors.clone().into_iter().map(Into::into).collect(),
         recording: request.source.files().into_iter().map(unread).collect(),
         checks: if request.is_run() { none_made(own_checks) } else { vec![] },
-        clauses: clauses(&with_rows(&request.procedure.clauses, request.procedure), "not_done"),
+        clauses: clauses(&request.procedure.clauses, "not_done"),
         errors: errors.into_iter().map(Into::into).collect(),
         ..blank(request)
     }
-}
-
-/// Clauses with the rows that deal with them: those of the procedure, where it states that it does.
-pub(super) fn with_rows(declared: &[ClauseRecord], procedure: &Procedure) -> Vec<ClauseRecord> {
-    let mut rows: Vec<String> = vec![];
-    for spec in &procedure.measurands {
-        if !rows.iter().any(|id| id == spec.measurand.id) {
-            rows.push(spec.measurand.id.to_owned());
-        }
-    }
-    let of = |c: &ClauseRecord| {
-        let rows = if c.is_here() { rows.clone() } else { vec![] };
-        ClauseRecord { rows, ..c.clone() }
-    };
-    declared.iter().map(of).collect()
 }
 
 /// Clauses of a test that was not carried out as a whole.
@@ -111,7 +95,7 @@ fn blank(request: &Request<'_>) -> RunRecord {
         instruments: procedure.instruments.iter().map(|i| i.record_on(today)).collect(),
         waivers: procedure.waivers_for(serial),
         exclusions: procedure.exclusions.clone(),
-        clauses: with_rows(&procedure.clauses, procedure),
+        clauses: procedure.clauses.clone(),
         ..RunRecord::default()
     }
 }

@@ -1,10 +1,11 @@
 //! The results of the phases of a test as one.
 
-use super::build_record::{clauses, with_rows};
+use super::build_record::clauses;
 use super::changes::{self, PhaseRows};
 use super::condition::checks::none_made;
 use super::kinds;
 use super::request::Outcome;
+use crate::config::procedure::Procedure;
 use crate::config::procedure::phases::{CHANGES, Phase, Phased};
 use crate::config::procedure::unit_facts::unknown;
 use crate::estimate::Verdict;
@@ -95,16 +96,12 @@ pub fn combine(phased: &Phased, done: &[Done<'_>], unit: UnitUnderTest, session:
 
 /// The clauses of the whole, each with the rows of the phases that deal with it by their own procedures.
 fn clauses_with_rows(phased: &Phased, done: &[Done<'_>]) -> Vec<ClauseRecord> {
-    let of_phases: Vec<ClauseRecord> = done
-        .iter()
-        .map(|d| &d.phase.procedure.value)
-        .flat_map(|procedure| with_rows(&procedure.clauses, procedure))
-        .collect();
     let of = |c: &ClauseRecord| {
+        let deals = |p: &&Procedure| p.clauses.iter().any(|own| own.clause == c.clause && own.is_here());
         let mut rows: Vec<String> = vec![];
-        for id in of_phases.iter().filter(|own| own.clause == c.clause).flat_map(|own| &own.rows) {
-            if !rows.contains(id) {
-                rows.push(id.clone());
+        for spec in done.iter().map(|d| &d.phase.procedure.value).filter(deals).flat_map(|p| &p.measurands) {
+            if !rows.iter().any(|id| id == spec.measurand.id) {
+                rows.push(spec.measurand.id.to_owned());
             }
         }
         ClauseRecord { rows, ..c.clone() }

@@ -81,7 +81,7 @@ pub struct ClauseRecord {
     #[serde(flatten, with = "super::local::note")]
     #[cfg_attr(feature = "schema", schemars(with = "super::local::note::Members<String>"))]
     pub note: LocalText,
-    /// Ids of the measurands of this result that deal with it.
+    /// Ids of the measurands that deal with it, in a test of several phases.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub rows: Vec<String>,
 }

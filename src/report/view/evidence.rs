@@ -118,7 +118,7 @@ pub fn clauses(part: &Part<'_>) -> Vec<Block> {
         .column(words.column("report.clause_title"), each(&|c| words.local(&c.title)))
         .column(words.column("report.clause_state"), each(&|c| words.name("clause", &c.status)))
         .column(words.column("report.remark"), notes);
-    // Results of earlier versions do not tell.
+    // Of a test of one phase they are all of its rows.
     if all.iter().any(|c| !c.rows.is_empty()) {
         table = table.column(words.column("report.clause_rows"), all.iter().map(rows));
     }
