@@ -46,6 +46,7 @@ mod schema;
 #[cfg(any(test, feature = "schema"))]
 mod schema_files;
 mod selftest;
+mod serve;
 mod sign;
 mod simulate;
 mod single_test;
@@ -121,6 +122,13 @@ enum Verb {
         sagnac watch /data/bench-2 --procedure static-bias --limits sample-unit --once"
     )]
     Watch(watch::WatchArgs),
+    /// Serve the pages of a bench: scan a serial number, see the verdict; with an interface for programs
+    #[command(
+        after_help = "Exit codes: 0 ended when asked, 2 could not start.\n\n\
+        Examples:\n  sagnac serve --data /srv/bench --recordings /data/bench-2\n  \
+        sagnac serve --rules serve.toml --store /srv/sagnac --station \"bench 2\""
+    )]
+    Serve(serve::ServeArgs),
     /// Render the report of a result again, without its recording: in another language, with other templates
     #[command(after_help = "Exit codes: 0 written, 2 could not.\n\n\
         Examples:\n  sagnac report reports/SN-0042 --lang ru --out reports/SN-0042-ru\n  \
@@ -259,6 +267,7 @@ pub fn main() -> ExitCode {
         Verb::Run(args) if is_phased(&args.procedure) => run_phases::main(&args, lang),
         Verb::Run(args) => run::main(&args, lang),
         Verb::Watch(args) => watch::main(&args, lang),
+        Verb::Serve(args) => serve::main(&args, lang),
         Verb::Check(args) => check::main(&args, lang),
         Verb::Rehearse(args) => rehearse::main(&args, lang),
         Verb::Inspect(args) => inspect::main(&args, lang),

@@ -45,6 +45,8 @@ pub enum SchemaKind {
     Sheet,
     /// Rules of a watched folder
     Watch,
+    /// Rules of a bench
+    Serve,
     /// datasheet.json
     Datasheet,
     /// What `sagnac history --format json` writes
@@ -61,6 +63,7 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Proof => schema::proof(),
         SchemaKind::Sheet => schema::sheet(),
         SchemaKind::Watch => schema::watch(),
+        SchemaKind::Serve => schema::serve(),
         SchemaKind::Schedule => schema::schedule(),
         SchemaKind::Alternatives => schema::alternatives(),
         SchemaKind::Result => return generated(include_str!("../../schemas/result.json")),

@@ -1,8 +1,8 @@
 //! TOML files whose keys are described once, as data: reading with every problem placed, and the parts of schema and
 //! guide that follow from the description.
 //!
-//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`proof`], [`manifest`], [`layout`], [`laboratory`], [`watch`] and [`user`] are the files; the others
-//! know none of them.
+//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`proof`], [`manifest`], [`layout`], [`laboratory`],
+//! [`serve`], [`watch`] and [`user`] are the files; the others know none of them.
 
 pub mod alternatives;
 pub(crate) mod contained_files;
@@ -22,6 +22,7 @@ pub mod recording_keys;
 pub(crate) mod role_words;
 pub mod schedule;
 pub(crate) mod section;
+pub mod serve;
 pub mod sheet;
 pub mod shipped;
 pub mod spec;

@@ -3,6 +3,8 @@
 //! A module for each document turns its record into blocks ([`view`] that of a run), [`page`] lays them out in each form,
 //! [`render`] has the templates, [`svg`] draws the figures. Nothing is measured or decided here, and no recording is needed.
 
+#[cfg(feature = "serve")]
+pub mod bench;
 pub mod compare;
 pub mod datasheet;
 mod day;

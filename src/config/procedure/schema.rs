@@ -13,6 +13,7 @@ use crate::config::model::tables::MODEL_FILE;
 use crate::config::proof::tables::PROOF_FILE;
 use crate::config::schedule::tables::SCHEDULE_FILE;
 use crate::config::sheet::tables::SHEET_FILE;
+use crate::config::serve::SERVE_FILE;
 use crate::config::watch::tables::WATCH_FILE;
 use crate::effect::EFFECTS;
 use crate::i18n::{EffectText, Lang, effect_text};
@@ -57,6 +58,11 @@ pub fn sheet() -> Value {
 /// The schema of a file of watch rules.
 pub fn watch() -> Value {
     document(&WATCH_FILE, "Sagnac watch rules")
+}
+
+/// The schema of a file of rules of a bench.
+pub fn serve() -> Value {
+    document(&SERVE_FILE, "Sagnac bench rules")
 }
 
 /// The schema of a proof file.
