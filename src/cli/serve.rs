@@ -111,8 +111,8 @@ mod server {
 
     fn setup(args: &ServeArgs, lang: Lang) -> Result<Setup, String> {
         let error = |note: Note| place::error(&note, lang);
-        let program = std::env::current_exe()
-            .map_err(|e| error(note!("serve.no_program", reason = io_reason(&e))))?;
+        let program =
+            std::env::current_exe().map_err(|e| error(note!("serve.no_program", reason = io_reason(&e))))?;
         let behind_proxy = args.behind_proxy.as_deref().map(|url| {
             PublicOrigin::parse(url).map_err(|why| {
                 error(match why {

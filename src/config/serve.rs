@@ -115,7 +115,10 @@ mod tests {
         let rules = read(text).unwrap_or_else(|e| panic!("{e}"));
         let [first, second] = rules.as_slice() else { panic!("{rules:?}") };
         assert!(Path::new(&first.procedure).is_absolute() && first.limits.is_none());
-        assert_eq!((second.procedure.as_str(), second.limits.as_deref()), ("static-bias", Some("sample-unit")));
+        assert_eq!(
+            (second.procedure.as_str(), second.limits.as_deref()),
+            ("static-bias", Some("sample-unit"))
+        );
     }
 
     #[test]

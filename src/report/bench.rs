@@ -73,7 +73,8 @@ fn quantity(m: &MeasurandRecord, several_channels: bool) -> Quantity {
         id: parts(m.id.clone(), m.channel.clone()),
         name: in_both(|words| parts(words.name("measurand", &m.id), words.channel(&m.channel, &m.id))),
         value: in_both(|words| {
-            let has_number = [m.value.is_some(), m.upper_limit.is_some(), m.lower_limit.is_some()].contains(&true);
+            let has_number =
+                [m.value.is_some(), m.upper_limit.is_some(), m.lower_limit.is_some()].contains(&true);
             words.quantity(&value(m, words), if has_number { &m.unit } else { "" })
         }),
         limit: in_both(|words| limit_text(m, words)),

@@ -44,6 +44,8 @@ mod recordings;
 mod registry;
 mod rehearse;
 mod report;
+#[cfg(feature = "serve")]
+mod serve;
 mod simulate;
 mod start_up;
 mod store;

@@ -201,7 +201,11 @@ async fn take(app: &Arc<App>, request: Request) -> Result<Job, Refusal> {
 ///
 /// # Errors
 /// What is refused.
-pub async fn place(app: &Arc<App>, given: Given, file: Option<crate::uploads::Upload>) -> Result<Job, Refusal> {
+pub async fn place(
+    app: &Arc<App>,
+    given: Given,
+    file: Option<crate::uploads::Upload>,
+) -> Result<Job, Refusal> {
     let app = Arc::clone(app);
     let placed = tokio::task::spawn_blocking(move || {
         let test = intake::test(&given, file, &app.recordings, &app.catalogue)?;
@@ -325,14 +329,8 @@ pub async fn events(State(app): Shared, headers: HeaderMap, Path(id): Path<Strin
     let changes = job.events.follow();
     // A number that was never given is of a server before its restart.
     let last = if last > *changes.borrow() { 0 } else { last };
-    let following = Following {
-        changes,
-        events: job.events,
-        ready: VecDeque::new(),
-        last,
-        is_over: false,
-        _slot: slot,
-    };
+    let following =
+        Following { changes, events: job.events, ready: VecDeque::new(), last, is_over: false, _slot: slot };
     let events = stream::unfold(following, Following::next);
     Sse::new(events).keep_alive(KeepAlive::new().interval(STREAM_SIGN)).into_response()
 }

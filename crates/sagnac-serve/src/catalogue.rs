@@ -2,7 +2,7 @@
 
 use crate::recordings::Roots;
 use crate::setup::{Rule, Shipped};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Most own files that are listed.
 const MAX_LISTED: usize = 500;
@@ -40,6 +40,11 @@ impl Catalogue {
             return Some(PathBuf::from(name));
         }
         self.own.resolve(name).ok().filter(|path| path.extension().is_some_and(|e| e == "toml"))
+    }
+
+    /// The name of a procedure or of limits, as it is offered; the path of one that a rule names.
+    pub fn name(&self, path: &Path) -> String {
+        self.own.name_of(path).unwrap_or_else(|| path.to_string_lossy().into_owned())
     }
 
     /// The test of a part number.
@@ -91,7 +96,9 @@ mod tests {
 
     #[test]
     fn a_pattern_fits_the_whole_of_a_part_number() {
-        for (pattern, part) in [("OIUS-*", "OIUS-501"), ("*", ""), ("A?C", "ABC"), ("*-R2", "A-R2-R2"), ("A", "A")] {
+        for (pattern, part) in
+            [("OIUS-*", "OIUS-501"), ("*", ""), ("A?C", "ABC"), ("*-R2", "A-R2-R2"), ("A", "A")]
+        {
             assert!(fits(pattern, part), "{pattern} {part}");
         }
         for (pattern, part) in [("OIUS-*", "XOIUS-1"), ("A?", "A"), ("A", "AB"), ("", "A"), ("*a*b", "abc")] {

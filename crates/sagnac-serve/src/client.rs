@@ -28,7 +28,10 @@ mod tests {
         let mut headers = HeaderMap::new();
         headers.append(header::COOKIE, HeaderValue::from_static("xa=1; a=2;b=3"));
         headers.append(header::COOKIE, HeaderValue::from_static("sagnac_language=ru"));
-        assert_eq!((cookie(&headers, "a"), cookie(&headers, "b"), cookie(&headers, "c")), (Some("2"), Some("3"), None));
+        assert_eq!(
+            (cookie(&headers, "a"), cookie(&headers, "b"), cookie(&headers, "c")),
+            (Some("2"), Some("3"), None)
+        );
         assert_eq!(language(&headers, Lang::En), Lang::Ru);
         assert_eq!(language(&HeaderMap::new(), Lang::En), Lang::En);
     }

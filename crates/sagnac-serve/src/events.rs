@@ -5,10 +5,8 @@ use std::collections::VecDeque;
 use std::sync::{Mutex, PoisonError};
 use tokio::sync::watch;
 
-/// Most events of a running test that are kept.
-const MAX_RUNNING_EVENTS: usize = 256;
-/// Most events of a test that has ended.
-const MAX_ENDED_EVENTS: usize = 8;
+/// Most events of a test that are kept.
+const MAX_EVENTS: usize = 256;
 
 /// An event.
 #[derive(Debug, Clone, PartialEq)]
@@ -48,8 +46,7 @@ impl Events {
         kept.is_over = is_over;
         let event = Event { number: kept.last, name, data };
         kept.events.push_back(event);
-        let most = if is_over { MAX_ENDED_EVENTS } else { MAX_RUNNING_EVENTS };
-        while kept.events.len() > most {
+        while kept.events.len() > MAX_EVENTS {
             kept.events.pop_front();
         }
         self.last.send_replace(kept.last);
@@ -68,6 +65,14 @@ impl Events {
     /// Tells of the end. Nothing follows.
     pub fn ended(&self, data: Value) {
         self.add("ended", data, true);
+    }
+
+    /// Forgets all but the last event.
+    pub fn shorten(&self) {
+        let mut kept = self.kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let more = kept.events.len().saturating_sub(1);
+        kept.events.drain(..more);
+        kept.events.shrink_to_fit();
     }
 
     /// The events after a number, and whether nothing follows. A number that was never given, as that of a server before its
@@ -102,13 +107,14 @@ mod tests {
             events.progress(&i.to_string());
         }
         let (all, over) = events.after(0);
-        assert_eq!((all.len(), all[0].number, over), (MAX_RUNNING_EVENTS, 45, false));
+        assert_eq!((all.len(), all[0].number, over), (MAX_EVENTS, 45, false));
         assert_eq!(events.after(299).0.len(), 1);
         assert_eq!(events.after(300).0.len(), 0);
-        assert_eq!(events.after(5000).0.len(), MAX_RUNNING_EVENTS);
+        assert_eq!(events.after(5000).0.len(), MAX_EVENTS);
         assert_eq!(events.last_progress().unwrap(), "299");
         events.ended(json!({ "state": "done" }));
+        events.shorten();
         let (all, over) = events.after(0);
-        assert_eq!((all.len(), all.last().unwrap().name, over), (MAX_ENDED_EVENTS, "ended", true));
+        assert_eq!((all.len(), all[0].name, all[0].number, over), (1, "ended", 301, true));
     }
 }

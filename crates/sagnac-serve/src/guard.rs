@@ -159,7 +159,14 @@ mod tests {
         for host in ["127.0.0.1:8643", "localhost:8643", "LOCALHOST:8643", "[::1]:8643"] {
             assert!(own.check(&head("/", &[("host", host)])).is_ok(), "{host}");
         }
-        for host in ["evil.example", "127.0.0.1", "127.0.0.1:80", "localhost.evil.example:8643", "", "127.0.0.1:8643@evil"] {
+        for host in [
+            "evil.example",
+            "127.0.0.1",
+            "127.0.0.1:80",
+            "localhost.evil.example:8643",
+            "",
+            "127.0.0.1:8643@evil",
+        ] {
             assert!(own.check(&head("/", &[("host", host)])).is_err(), "{host}");
         }
         assert!(own.check(&head("/", &[])).is_err());
@@ -177,9 +184,18 @@ mod tests {
     fn foreign_pages_are_told_by_origin_and_site() {
         let own = hosts(None, "127.0.0.1:8643");
         let allowed = |headers: &[(&str, &str)]| own.same_origin(&head("/", headers).headers).is_ok();
-        assert!(allowed(&[]) && allowed(&[("origin", "http://localhost:8643"), ("sec-fetch-site", "same-origin")]));
+        assert!(
+            allowed(&[])
+                && allowed(&[("origin", "http://localhost:8643"), ("sec-fetch-site", "same-origin")])
+        );
         assert!(allowed(&[("sec-fetch-site", "none")]));
-        for origin in ["null", "http://evil.example", "https://localhost:8643", "http://localhost", "http://localhost:86430"] {
+        for origin in [
+            "null",
+            "http://evil.example",
+            "https://localhost:8643",
+            "http://localhost",
+            "http://localhost:86430",
+        ] {
             assert!(!allowed(&[("origin", origin)]), "{origin}");
         }
         for site in ["cross-site", "same-site", ""] {

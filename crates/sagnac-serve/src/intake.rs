@@ -85,7 +85,8 @@ impl Form {
             };
             tokio::time::timeout(MAX_FIELD_TIME, all).await.map_err(slow)??;
             let text = String::from_utf8(text);
-            form.fields.push((name.clone(), text.map_err(|_| Refusal::of(StatusCode::BAD_REQUEST, "text", &name))?));
+            form.fields
+                .push((name.clone(), text.map_err(|_| Refusal::of(StatusCode::BAD_REQUEST, "text", &name))?));
         }
         Err(Refusal::new(StatusCode::BAD_REQUEST, "malformed"))
     }
@@ -182,7 +183,10 @@ mod tests {
         };
         let names = |names: &[&str]| names.iter().map(|n| (*n).to_owned()).collect();
         let tests = Catalogue {
-            shipped: Shipped { procedures: names(&["static-bias", "warm-up"]), limits: names(&["one", "two"]) },
+            shipped: Shipped {
+                procedures: names(&["static-bias", "warm-up"]),
+                limits: names(&["one", "two"]),
+            },
             own: Roots::default(),
             rules: vec![rule("A-*", "one"), rule("*", "two")],
         };
@@ -194,7 +198,10 @@ mod tests {
         };
         let of = |given: &Given| test(given, None, &roots, &tests);
         let test = of(&given).unwrap();
-        assert_eq!((test.serial.as_str(), test.procedure_name(), test.limits_name()), ("SN-1", "static-bias".into(), "one".into()));
+        assert_eq!(
+            (test.serial.as_str(), test.procedure_name(), test.limits_name()),
+            ("SN-1", "static-bias".into(), "one".into())
+        );
         let other = Given { part: Some("B".to_owned()), ..given.clone() };
         assert_eq!(of(&other).unwrap().limits_name(), "two");
         let chosen = Given { procedure: Some("warm-up".to_owned()), ..given.clone() };
@@ -207,7 +214,10 @@ mod tests {
         assert_eq!(code(Given { procedure: Some("none".to_owned()), ..given.clone() }), "procedure");
         assert_eq!(code(Given { limits: Some("none".to_owned()), ..given.clone() }), "limits");
         assert_eq!(code(Given { recording: None, ..given.clone() }), "no_recording");
-        assert_eq!(code(Given { recording: Some("../a.csv".to_owned()), ..given.clone() }), "recording_outside");
+        assert_eq!(
+            code(Given { recording: Some("../a.csv".to_owned()), ..given.clone() }),
+            "recording_outside"
+        );
         assert_eq!(code(Given { recording: Some("b.csv".to_owned()), ..given }), "recording_missing");
     }
 }

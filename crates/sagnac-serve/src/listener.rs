@@ -99,9 +99,9 @@ impl Moving {
             self.stuck = None;
             return written;
         }
-        let stuck = self.stuck.get_or_insert_with(|| {
-            Box::pin(tokio::time::sleep_until(Instant::now() + MAX_WRITE_PAUSE))
-        });
+        let stuck = self
+            .stuck
+            .get_or_insert_with(|| Box::pin(tokio::time::sleep_until(Instant::now() + MAX_WRITE_PAUSE)));
         match stuck.as_mut().poll(context) {
             Poll::Ready(()) => Poll::Ready(Err(Error::from(ErrorKind::TimedOut))),
             Poll::Pending => Poll::Pending,
@@ -110,7 +110,11 @@ impl Moving {
 }
 
 impl AsyncRead for Moving {
-    fn poll_read(mut self: Pin<&mut Self>, context: &mut Context<'_>, into: &mut ReadBuf<'_>) -> Poll<Result<()>> {
+    fn poll_read(
+        mut self: Pin<&mut Self>,
+        context: &mut Context<'_>,
+        into: &mut ReadBuf<'_>,
+    ) -> Poll<Result<()>> {
         Pin::new(&mut self.stream).poll_read(context, into)
     }
 }

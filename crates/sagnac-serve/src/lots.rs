@@ -105,7 +105,9 @@ impl Matrix {
         let mut shown = vec![];
         for key in order {
             let Some(of_unit) = attempts.get(&key) else { continue };
-            let (Some((_, first)), Some((last, outcome))) = (of_unit.first(), of_unit.last()) else { continue };
+            let (Some((_, first)), Some((last, outcome))) = (of_unit.first(), of_unit.last()) else {
+                continue;
+            };
             matrix.units += 1;
             matrix.passed_first += usize::from(first.verdict == Verdict::Pass);
             matrix.passed += usize::from(outcome.verdict == Verdict::Pass);
@@ -202,11 +204,17 @@ mod tests {
         assert!(all.rows[2].cells[0].is_none() && all.rows[2].cells[1].is_some());
         assert!((all.first_pass_yield().unwrap() - 200.0 / 3.0).abs() < 1e-9);
         let first_day = of(&Selection { day: "1970-01-01".to_owned(), ..Selection::default() });
-        assert_eq!((first_day.units, first_day.passed_first, first_day.rows[0].verdict), (2, 1, Verdict::Fail));
+        assert_eq!(
+            (first_day.units, first_day.passed_first, first_day.rows[0].verdict),
+            (2, 1, Verdict::Fail)
+        );
         let lot = of(&Selection { lot: "L2".to_owned(), ..Selection::default() });
         assert_eq!((lot.units, lot.lots.len()), (1, 2));
         let failed = of(&Selection { verdict: "fail".to_owned(), ..Selection::default() });
         assert_eq!((failed.units, failed.rows.len()), (3, 0));
-        assert_eq!(of(&Selection { lot: "none".to_owned(), ..Selection::default() }).first_pass_yield(), None);
+        assert_eq!(
+            of(&Selection { lot: "none".to_owned(), ..Selection::default() }).first_pass_yield(),
+            None
+        );
     }
 }

@@ -58,13 +58,16 @@ fn operation(route: &Route) -> Value {
         members.insert("security".to_owned(), json!([]));
     }
     if route.takes == Takes::Upload {
-        members.insert("requestBody".to_owned(), json!({
-            "required": true,
-            "content": {
-                "application/json": { "schema": { "$ref": "#/components/schemas/Order" } },
-                "multipart/form-data": { "schema": { "$ref": "#/components/schemas/Upload" } },
-            },
-        }));
+        members.insert(
+            "requestBody".to_owned(),
+            json!({
+                "required": true,
+                "content": {
+                    "application/json": { "schema": { "$ref": "#/components/schemas/Order" } },
+                    "multipart/form-data": { "schema": { "$ref": "#/components/schemas/Upload" } },
+                },
+            }),
+        );
     }
     operation
 }
@@ -87,7 +90,11 @@ fn responses(route: &Route) -> Value {
         "run" => ("200", "The test", body("Run")),
         "list" => ("200", "Tests", body("Runs")),
         "unit" => ("200", "Attempts", body("Unit")),
-        "events" => ("200", "Events `state`, `progress` and `ended`, each with a number", json!({ "text/event-stream": { "schema": { "type": "string" } } })),
+        "events" => (
+            "200",
+            "Events `state`, `progress` and `ended`, each with a number",
+            json!({ "text/event-stream": { "schema": { "type": "string" } } }),
+        ),
         "result" => ("200", "The file", json!({ "*/*": { "schema": {} } })),
         _ => ("200", "Done", json!({ "application/json": { "schema": { "type": "object" } } })),
     };
@@ -133,7 +140,10 @@ fn schemas() -> Value {
     let mut upload = order.clone();
     if let Some(members) = upload.as_object_mut() {
         members.remove("recording");
-        members.insert("file".to_owned(), json!({ "type": "string", "contentMediaType": "application/octet-stream" }));
+        members.insert(
+            "file".to_owned(),
+            json!({ "type": "string", "contentMediaType": "application/octet-stream" }),
+        );
     }
     let optional = json!({ "type": ["string", "null"] });
     let words = json!({ "type": "array", "items": { "type": "string" } });

@@ -16,6 +16,8 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 
 /// Most tests that wait.
 pub const MAX_WAITING: usize = 1000;
+/// Tests that have ended of which every event is kept.
+const MAX_WHOLE: usize = 64;
 /// Random bytes of an id.
 const ID_RANDOM_BYTES: usize = 4;
 
@@ -77,6 +79,7 @@ struct Jobs {
     jobs: BTreeMap<String, Job>,
     waiting: VecDeque<String>,
     ordered: u64,
+    ended: VecDeque<String>,
 }
 
 /// The queue.
@@ -259,6 +262,12 @@ impl Jobs {
         };
         job.events.ended(json!({ "state": job.state.id(), "verdict": verdict }));
         job.end = Some((at, end));
+        self.ended.push_back(id.to_owned());
+        if self.ended.len() > MAX_WHOLE
+            && let Some(job) = self.ended.pop_front().and_then(|id| self.jobs.get(&id))
+        {
+            job.events.shorten();
+        }
     }
 }
 

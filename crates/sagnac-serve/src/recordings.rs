@@ -79,6 +79,14 @@ impl Roots {
         Err(if outside { NotFound::Outside } else { NotFound::Missing })
     }
 
+    /// The name of a file below the folders, as [`Roots::newest`] names it.
+    pub fn name_of(&self, path: &Path) -> Option<String> {
+        self.0.iter().find_map(|root| {
+            let below = path.strip_prefix(root).ok()?;
+            Some(Path::new(root.file_name()?).join(below).to_string_lossy().into_owned())
+        })
+    }
+
     fn inside(&self, path: &Path) -> std::result::Result<PathBuf, NotFound> {
         // Nothing is told of a file that lies elsewhere, not even whether it is there.
         let Ok(real) = path.canonicalize() else {
@@ -172,7 +180,9 @@ mod tests {
         }
         assert_eq!(roots.resolve("bench/deep/b.csv"), Ok(real.join("deep/b.csv")));
         let climbing = format!("{}/../secret.csv", real.display());
-        for name in ["../secret.csv", "bench/../../secret.csv", "/etc/passwd", "/etc/none", &climbing, "", "./a.csv"] {
+        for name in
+            ["../secret.csv", "bench/../../secret.csv", "/etc/passwd", "/etc/none", &climbing, "", "./a.csv"]
+        {
             assert_eq!(roots.resolve(name), Err(NotFound::Outside), "{name}");
         }
         for name in ["none.csv", "deep", "bench", "a.csv/b"] {
@@ -185,6 +195,7 @@ mod tests {
             assert_eq!(roots.resolve("link.csv"), Err(NotFound::Outside));
             assert_eq!(roots.resolve("out/secret.csv"), Err(NotFound::Outside));
         }
+        assert_eq!(roots.name_of(&real.join("deep/b.csv")).as_deref(), Some("bench/deep/b.csv"));
         let names: Vec<String> = roots.newest(10).into_iter().map(|f| f.name).collect();
         assert_eq!(names.len(), 2, "{names:?}");
         assert!(Roots::new(&[root.join("none")]).is_err());

@@ -49,6 +49,7 @@ impl Refusal {
 
 /// A text from outside on one line: without what steers, of bounded length.
 pub fn shown(text: &str) -> String {
-    let is_shown = |c: &char| !c.is_control() && !matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let is_shown =
+        |c: &char| !c.is_control() && !matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     text.chars().filter(is_shown).take(MAX_DETAIL_CHARACTERS).collect()
 }

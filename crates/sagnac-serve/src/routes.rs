@@ -168,7 +168,9 @@ pub fn router(app: &Arc<App>) -> Router {
         let handler = match route.takes {
             Takes::Little => {
                 let in_time = TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, MAX_ANSWER_TIME);
-                handler.layer::<_, Infallible>(in_time).layer::<_, Infallible>(DefaultBodyLimit::max(MAX_BODY_BYTES))
+                handler
+                    .layer::<_, Infallible>(in_time)
+                    .layer::<_, Infallible>(DefaultBodyLimit::max(MAX_BODY_BYTES))
             }
             Takes::Upload => {
                 let in_time = TimeoutLayer::with_status_code(StatusCode::REQUEST_TIMEOUT, MAX_UPLOAD_TIME);
@@ -223,7 +225,10 @@ async fn guard(State(app): Shared, request: Request, next: Next) -> Response {
         Err(refusal) => refused(&app, &path, &parts.headers, &refusal),
     };
     let status = response.status();
-    if !is_safe(&method) || (status.is_client_error() && status != StatusCode::NOT_FOUND) || status.is_server_error() {
+    if !is_safe(&method)
+        || (status.is_client_error() && status != StatusCode::NOT_FOUND)
+        || status.is_server_error()
+    {
         let path = crate::refusal::shown(&path);
         app.bench.harness.log(&format!("{method} {path} {}", status.as_u16()));
     }
@@ -249,11 +254,14 @@ mod tests {
             assert!([Method::GET, Method::POST, Method::DELETE].contains(&route.method));
             assert_eq!(!route.operation.is_empty(), route.path.starts_with(API), "{}", route.path);
         }
-        let open: Vec<&str> =
-            ROUTES.iter().filter(|r| r.access == Access::Open).map(|r| r.path).collect();
-        let expected =
-            ["/language", "/session", "/assets/{file}", "/healthz", "/api/v1/healthz"];
+        let open: Vec<&str> = ROUTES.iter().filter(|r| r.access == Access::Open).map(|r| r.path).collect();
+        let expected = ["/language", "/session", "/assets/{file}", "/healthz", "/api/v1/healthz"];
         assert_eq!(open, expected);
-        assert!(is_open("/assets/bench.css") && !is_open("/assets/../x") && !is_open("/") && !is_open("/api/v1/runs"));
+        assert!(
+            is_open("/assets/bench.css")
+                && !is_open("/assets/../x")
+                && !is_open("/")
+                && !is_open("/api/v1/runs")
+        );
     }
 }

@@ -54,7 +54,9 @@ mod tests {
     fn a_secret_has_256_bits_is_new_each_time_and_never_printed() {
         let (one, other) = (Token::new().unwrap(), Token::new().unwrap());
         assert_eq!(one.reveal().len(), 64);
-        assert!(one.is(one.reveal()) && !one.is(other.reveal()) && !one.is("") && !one.is(&one.reveal()[1..]));
+        assert!(
+            one.is(one.reveal()) && !one.is(other.reveal()) && !one.is("") && !one.is(&one.reveal()[1..])
+        );
         assert!(!format!("{one:?}").contains(one.reveal()));
     }
 }

@@ -78,7 +78,12 @@ impl Uploads {
     ///
     /// # Errors
     /// A folder that cannot be made or read.
-    pub fn open(data: &Path, max_bytes: u64, quota: u64, is_ordered: impl Fn(&Path) -> bool) -> Result<Uploads> {
+    pub fn open(
+        data: &Path,
+        max_bytes: u64,
+        quota: u64,
+        is_ordered: impl Fn(&Path) -> bool,
+    ) -> Result<Uploads> {
         let folder = data.join(UPLOADS_FOLDER);
         std::fs::create_dir_all(&folder)?;
         let mut used = 0;

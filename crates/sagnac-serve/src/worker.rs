@@ -211,6 +211,12 @@ fn ask_to_end(child: &mut Child) -> Result<()> {
     child.kill()
 }
 
+/// A line of progress without the sign that turns while nothing else changes.
+fn without_spinner(line: &str) -> String {
+    let is_word = |word: &&str| !word.chars().all(|c| ('\u{2800}'..='\u{28ff}').contains(&c));
+    line.split_whitespace().filter(is_word).collect::<Vec<_>>().join(" ")
+}
+
 /// What a process says, as a file.
 struct Said {
     path: PathBuf,
@@ -236,9 +242,9 @@ impl Said {
         self.rest.extend(new);
         while let Some(end) = self.rest.iter().position(|b| *b == b'\n') {
             let line: Vec<u8> = self.rest.drain(..=end).collect();
-            let line = shown(&String::from_utf8_lossy(&line));
-            if !line.trim().is_empty() {
-                task.events.progress(line.trim());
+            let line = without_spinner(&shown(&String::from_utf8_lossy(&line)));
+            if !line.is_empty() && task.events.last_progress().as_ref() != Some(&line) {
+                task.events.progress(&line);
             }
         }
         // A line without an end is no message.

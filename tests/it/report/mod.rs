@@ -1,6 +1,6 @@
 //! Reports: what they say, in which language, and how they look in a browser.
 
-mod browser;
+pub mod browser;
 mod explain_fixture;
 mod explained;
 mod fixture;

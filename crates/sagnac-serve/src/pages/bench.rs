@@ -2,6 +2,7 @@
 
 use super::{page, refused, see_other, value};
 use crate::api::{self, Listed, Run};
+use crate::catalogue::Catalogue;
 use crate::harness::Verdict;
 use crate::intake::{Form, Given};
 use crate::order::State as RunState;
@@ -38,7 +39,7 @@ struct Filled {
 
 impl Filled {
     /// What the last order had, but not its serial number.
-    fn by(job: Option<&Job>) -> Filled {
+    fn by(job: Option<&Job>, tests: &Catalogue) -> Filled {
         let Some(test) = job.map(|job| &job.order.test) else { return Filled::default() };
         let text = |text: &Option<String>| text.clone().unwrap_or_default();
         Filled {
@@ -46,8 +47,8 @@ impl Filled {
             part: text(&test.part),
             lot: text(&test.lot),
             operator: text(&test.operator),
-            procedure: test.procedure.display().to_string(),
-            limits: test.limits.as_ref().map(|l| l.display().to_string()).unwrap_or_default(),
+            procedure: tests.name(&test.procedure),
+            limits: test.limits.as_deref().map(|limits| tests.name(limits)).unwrap_or_default(),
         }
     }
 
@@ -93,7 +94,14 @@ impl Shown {
             (_, None) => Verdict::Error.id(),
         };
         let unit = super::encoded(&run.serial);
-        Shown { is_active: run.state.is_active(), run, tone, signatures, folder: place.display().to_string(), unit }
+        Shown {
+            is_active: run.state.is_active(),
+            run,
+            tone,
+            signatures,
+            folder: place.display().to_string(),
+            unit,
+        }
     }
 }
 
@@ -107,7 +115,7 @@ pub async fn show(State(app): Shared, Query(query): Query<BenchQuery>, request: 
     let lang = app.language(request.headers());
     let run = query.run.and_then(|id| app.bench.queue.get(&id));
     let last = last(&app);
-    let filled = Filled::by(run.as_ref().or(last.as_ref()));
+    let filled = Filled::by(run.as_ref().or(last.as_ref()), &app.catalogue);
     let recordings = api::newest(&app, MAX_OFFERED).await;
     bench(&app, lang, run.as_ref(), &filled, &recordings, None)
 }
@@ -156,11 +164,13 @@ async fn take(app: &Arc<App>, request: Request, given: &mut Given) -> Result<Job
     let mut form = Form::read(parts, Some(&app.uploads)).await?;
     let file = form.file.take();
     *given = form.given()?;
-    let asked = given.clone();
-    let mut order = asked.clone();
+    let mut order = given.clone();
     let has_rule = order.part.as_deref().is_some_and(|part| app.catalogue.of_part(part).is_some());
-    if order.procedure.is_none() && !has_rule && let Some(last) = last(app) {
-        let used = Filled::by(Some(&last));
+    if order.procedure.is_none()
+        && !has_rule
+        && let Some(last) = last(app)
+    {
+        let used = Filled::by(Some(&last), &app.catalogue);
         order.procedure = Some(used.procedure);
         order.limits = order.limits.or(Some(used.limits)).filter(|limits| !limits.is_empty());
     }
@@ -169,7 +179,11 @@ async fn take(app: &Arc<App>, request: Request, given: &mut Given) -> Result<Job
         let found = tokio::task::spawn_blocking(move || owned.recordings.of_serial(&serial)).await;
         order.recording = found.ok().flatten().map(|found| found.name);
         if order.recording.is_none() {
-            return Err(Refusal::of(StatusCode::UNPROCESSABLE_ENTITY, "no_recording_of_serial", &order.serial));
+            return Err(Refusal::of(
+                StatusCode::UNPROCESSABLE_ENTITY,
+                "no_recording_of_serial",
+                &order.serial,
+            ));
         }
     }
     api::place(app, order, file).await

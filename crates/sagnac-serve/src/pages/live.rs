@@ -23,7 +23,8 @@ pub async fn show(State(app): Shared, headers: HeaderMap) -> Response {
     active.sort_by_key(|job| job.state == RunState::Queued);
     active.truncate(MAX_SHOWN);
     let ended = app.bench.queue.list(10, |job| !job.state.is_active());
-    let show = |jobs: &[Job]| value(&jobs.iter().map(|job| Shown::of(job, &app, lang, false)).collect::<Vec<_>>());
+    let show =
+        |jobs: &[Job]| value(&jobs.iter().map(|job| Shown::of(job, &app, lang, false)).collect::<Vec<_>>());
     let values = context! {
         active => show(&active), ended => show(&ended), waiting, jobs => app.bench.setup.jobs, back => "/live",
     };

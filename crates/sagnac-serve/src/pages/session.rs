@@ -81,7 +81,9 @@ mod tests {
     #[test]
     fn a_form_leads_to_no_other_server() {
         assert!(is_own_page("/") && is_own_page("/units/a?b=c"));
-        for back in ["", "//evil.example", "/\\evil.example", "/\t/evil.example", "https://evil.example", "evil"] {
+        for back in
+            ["", "//evil.example", "/\\evil.example", "/\t/evil.example", "https://evil.example", "evil"]
+        {
             assert!(!is_own_page(back), "{back:?}");
         }
     }

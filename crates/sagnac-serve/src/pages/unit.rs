@@ -48,7 +48,8 @@ pub async fn find(State(app): Shared, headers: HeaderMap, Query(query): Query<Fi
     let lang = app.language(&headers);
     let units = jobs.iter().filter(|job| seen.insert(job.order.test.serial.clone())).take(MAX_UNITS);
     let units: Vec<Shown> = units.map(|job| Shown::of(job, &app, lang, false)).collect();
-    page(&app, lang, "units.html", context! { units => value(&units), serial, back => "/units" }).into_response()
+    page(&app, lang, "units.html", context! { units => value(&units), serial, back => "/units" })
+        .into_response()
 }
 
 /// `GET /units/SERIAL`
