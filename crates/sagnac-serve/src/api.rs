@@ -5,7 +5,7 @@ use crate::harness::Verdict;
 use crate::intake::{self, Form, Given};
 use crate::openapi;
 use crate::order::{End, State as RunState};
-use crate::queue::{Job, MAX_WAITING, NotTaken};
+use crate::queue::{Job, MAX_WAITING, NotTaken, now};
 use crate::refusal::Refusal;
 use crate::results;
 use crate::routes::{API, App, MAX_BODY_BYTES, Shared, refused};
@@ -17,7 +17,6 @@ use axum::extract::{FromRequest, Multipart, Path, Query, Request, State};
 use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::sse::{self, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
-use chrono::Utc;
 use futures_util::stream;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
@@ -209,7 +208,7 @@ pub async fn place(
     let app = Arc::clone(app);
     let placed = tokio::task::spawn_blocking(move || {
         let test = intake::test(&given, file, &app.recordings, &app.catalogue)?;
-        app.bench.queue.order(test, Utc::now()).map_err(|why| match why {
+        app.bench.queue.order(test, now()).map_err(|why| match why {
             NotTaken::Full => {
                 Refusal::of(StatusCode::SERVICE_UNAVAILABLE, "queue_full", &MAX_WAITING.to_string())
             }
@@ -271,7 +270,7 @@ pub async fn cancel(State(app): Shared, headers: HeaderMap, Path(id): Path<Strin
 /// One that is not known or has ended.
 pub async fn cancelled(app: &Arc<App>, id: &str) -> Result<(), Refusal> {
     let (owned, id) = (Arc::clone(app), id.to_owned());
-    let done = tokio::task::spawn_blocking(move || owned.bench.queue.cancel(&id, Utc::now())).await;
+    let done = tokio::task::spawn_blocking(move || owned.bench.queue.cancel(&id, now())).await;
     match done {
         Ok(Ok(Some(true))) => Ok(()),
         Ok(Ok(Some(false))) => Err(Refusal::new(StatusCode::CONFLICT, "has_ended")),

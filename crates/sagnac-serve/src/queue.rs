@@ -100,6 +100,11 @@ pub enum NotTaken {
     NotWritten(std::io::Error),
 }
 
+/// The moment by the clock of the computer, which may be set to a time before 1970.
+pub fn now() -> DateTime<Utc> {
+    std::time::SystemTime::now().into()
+}
+
 /// A moment as it is kept.
 pub fn moment(at: DateTime<Utc>) -> String {
     at.to_rfc3339_opts(SecondsFormat::Secs, true)

@@ -5,10 +5,9 @@
 
 use crate::harness::Harness;
 use crate::order::{End, Test};
-use crate::queue::{Queue, Task};
+use crate::queue::{Queue, Task, now};
 use crate::refusal::shown;
 use crate::setup::Setup;
-use chrono::Utc;
 use std::fs::{File, OpenOptions, TryLockError};
 use std::io::{Read, Result, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -71,7 +70,7 @@ fn work(bench: &Bench) {
             Ok(None) => return,
             Err(e) => End::Failed { said: e.to_string() },
         };
-        if let Err(e) = bench.queue.end(id, end, Utc::now()) {
+        if let Err(e) = bench.queue.end(id, end, now()) {
             bench.harness.log(&format!("queue.jsonl: {e}"));
         }
         // Nothing is in it that anybody needs: the end has what was said.

@@ -2,12 +2,11 @@
 
 use super::{encoded, page, value};
 use crate::lots::{Matrix, Selection};
-use crate::queue::moment;
+use crate::queue::{moment, now};
 use crate::routes::Shared;
 use axum::extract::{Query, State};
 use axum::http::HeaderMap;
 use axum::response::{IntoResponse, Response};
-use chrono::Utc;
 use minijinja::context;
 use serde::Deserialize;
 
@@ -24,7 +23,7 @@ pub struct LotsQuery {
 pub async fn show(State(app): Shared, headers: HeaderMap, Query(query): Query<LotsQuery>) -> Response {
     let lang = app.language(&headers);
     let is_asked = query.lot.is_some() || query.day.is_some() || query.procedure.is_some();
-    let today = moment(Utc::now()).chars().take(10).collect::<String>();
+    let today = moment(now()).chars().take(10).collect::<String>();
     let selection = Selection {
         lot: query.lot.unwrap_or_default(),
         day: query.day.unwrap_or_else(|| if is_asked { String::new() } else { today }),
