@@ -20,7 +20,7 @@ pub(super) fn table(list: &[HistoryStability], several: bool, words: Translator)
     let of_day = |s: &HistoryStability| match s.day_deviation_at_most {
         Some(most) => {
             let most = words.quantity(&digits(most, words), &s.quantity.unit);
-            words.with("history.stability.at_most", &[("most", &most)])
+            words.with("report.at_most", &[("value", &most), ("coverage", "95")])
         }
         None => known(s, s.day_deviation),
     };
