@@ -33,6 +33,9 @@ pub fn page(whole: &Part<'_>, phases: &[Phase<'_>]) -> Page {
             blocks.extend(shown(part));
         }
     }
+    if !phases.is_empty() {
+        blocks.extend(evidence::clauses(whole));
+    }
     blocks.extend(file_table(record, words));
     blocks.push(method_list(record, words));
     let verdict = is_judged.then(|| words.verdict(record.verdict));
