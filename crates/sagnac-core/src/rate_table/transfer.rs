@@ -268,8 +268,9 @@ impl Transfer {
     fn largest(&self, up_to_hz: f64, of_band: impl Fn(&Band) -> f64) -> Shown {
         let gain = self.best().and_then(|f| Some(f.standard(|m| Some(m.gain()))? / f.model.gain()));
         let common = gain.unwrap_or(0.0).abs();
-        let bands = || self.bands.iter().filter(|b| b.frequency_hz <= up_to_hz);
-        let count = bands().count().max(1) as f64;
+        let count = self.bands.iter().filter(|b| b.frequency_hz <= up_to_hz).count().max(1) as f64;
+        let followed = self.followed(up_to_hz);
+        let bands = || followed.iter();
         let for_all = crate::estimate::normal_quantile(1.0 - 0.025 / count);
         let largest = |score: f64| {
             bands().map(|b| of_band(b) + score * b.standard.hypot(common)).fold(f64::NEG_INFINITY, f64::max)
@@ -285,6 +286,41 @@ impl Transfer {
         // The largest of many values is too large by about what the bands scatter.
         let middle = largest(0.0).min(0.5 * (low + high)).max(low);
         Shown::Value(decibel(middle), between(low, middle, high, decibel))
+    }
+
+    /// The bands up to a frequency, with points between them and at that frequency: there the best model is followed, and what it leaves of the bands
+    /// on either side is interpolated. Without a model that fits, the bands alone.
+    fn followed(&self, up_to_hz: f64) -> Vec<Band> {
+        let within = |b: &Band| b.frequency_hz <= up_to_hz;
+        let Some(model) = self.best().map(|f| &f.model).filter(|_| !self.misfits()) else {
+            return self.bands.iter().copied().filter(within).collect();
+        };
+        let of_model = |f: f64| model.shape(f).norm().ln();
+        let left = |b: &Band| b.log_gain - of_model(b.frequency_hz);
+        let between = |a: &Band, b: &Band, frequency_hz: f64| {
+            let share = ((frequency_hz / a.frequency_hz).ln() / (b.frequency_hz / a.frequency_hz).ln())
+                .clamp(0.0, 1.0);
+            let log_gain = of_model(frequency_hz) + (1.0 - share) * left(a) + share * left(b);
+            Band { frequency_hz, log_gain, standard: a.standard.max(b.standard), ..*a }
+        };
+        let mut all: Vec<Band> = self.bands.iter().copied().filter(within).collect();
+        for pair in self.bands.windows(2) {
+            let [a, b] = pair else { continue };
+            let octaves = (b.frequency_hz / a.frequency_hz).log2();
+            let points = (BANDS_PER_OCTAVE * octaves).ceil().max(1.0) as usize;
+            let at = |i: usize| a.frequency_hz * 2f64.powf(octaves * i as f64 / points as f64);
+            all.extend((1..points).map(|i| between(a, b, at(i))).filter(within));
+        }
+        let above = self.bands.iter().position(|b| b.frequency_hz > up_to_hz);
+        let edge = match above {
+            Some(i) => i.checked_sub(1).and_then(|k| self.bands.get(k)).zip(self.bands.get(i)),
+            None => self.bands.last().zip(self.bands.last()),
+        };
+        all.extend(edge.filter(|_| up_to_hz.is_finite()).map(|(a, b)| match above {
+            Some(_) => between(a, b, up_to_hz),
+            None => Band { frequency_hz: up_to_hz, log_gain: of_model(up_to_hz) + left(a), ..*a },
+        }));
+        all
     }
 
     /// What the best model is, for the reader.
