@@ -65,7 +65,7 @@ pub use server::main;
 
 #[cfg(feature = "serve")]
 mod server {
-    use super::ServeArgs;
+    use crate::cli::serve::ServeArgs;
     use crate::cli::{ending, exit, place};
     use crate::config::serve as rules_file;
     use crate::config::shipped::{SHIPPED_LIMITS, SHIPPED_PROCEDURES, Shipped};

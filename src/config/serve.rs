@@ -78,10 +78,6 @@ pub fn parse(name: &str, bytes: &[u8], folder: &Path) -> Result<Vec<PartRule>, P
 
 fn rule(keys: PartKeys, folder: &Path, reader: &mut Reader<'_>) -> PartRule {
     let section = &keys.section;
-    if section.entry("part").is_some() && keys.part.trim().is_empty() {
-        let help = Some("serve_file.help.part".into());
-        reader.error(&section.span_of("part"), note!("serve_file.part"), help);
-    }
     let mut file = |key: &'static str, text: &str| {
         if let Ok(path) = joined(folder, text).canonicalize()
             && path.is_file()

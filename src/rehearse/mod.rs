@@ -7,7 +7,7 @@ use crate::config::model::ModelFile;
 use crate::config::procedure::{EffectiveLimits, LimitsFile, Loaded, Procedure};
 use crate::estimate::Verdict;
 use crate::i18n::{Note, note};
-use crate::ingest::{IngestError, Source};
+use crate::ingest::Source;
 use crate::lot::share::Share;
 use crate::record::{
     HistoryShare, Message, NeededLength, Program, REHEARSAL_FORMAT, RehearsalRecord, RehearsedLength,
@@ -297,9 +297,4 @@ fn summed<'t>(length_h: f64, levels: &[Level], trials: impl Iterator<Item = &'t 
         producers_risk: Share::of(counts.total() - counts.pass, counts.total()).map(Into::into),
         nominal: counts,
     }
-}
-
-/// Why a recording in memory was refused.
-fn refused(error: IngestError) -> Note {
-    error.note()
 }

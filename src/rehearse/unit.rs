@@ -1,6 +1,5 @@
 //! The bench of a rehearsal: simulated units and their recordings with the columns of the procedure.
 
-use super::refused;
 use crate::acceptance::power::Situation;
 use crate::claim::{Claim, Uncertainty};
 use crate::config::model::{ModelFile, Profile};
@@ -163,7 +162,7 @@ impl<'a> Bench<'a> {
             }
             columns.push(MemoryColumn::new(rate_column(place), rate));
         }
-        Source::from_columns("rehearsal", columns, BLOCK_ROWS).map_err(refused)
+        Source::from_columns("rehearsal", columns, BLOCK_ROWS).map_err(|e| e.note())
     }
 
     /// Rate ramp of a unit, deg/h/h. The simulation of noise has none.
