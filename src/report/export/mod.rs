@@ -3,6 +3,7 @@
 mod atml;
 mod csv;
 mod dcc;
+mod docx;
 mod exporter;
 mod html;
 mod json;
@@ -15,6 +16,7 @@ mod xml;
 pub use atml::Atml;
 pub use csv::Csv;
 pub use dcc::{CERTIFICATE_FORM, Dcc, missing};
+pub use docx::Docx;
 pub use exporter::{ExportedFile, Exporter};
 pub use html::Html;
 pub use json::{Json, record_bytes};
@@ -30,7 +32,7 @@ use std::collections::BTreeMap;
 pub static EXPORTERS: &[&dyn Exporter] = &[&Html, &Markdown, &Csv, &Json, &Svg, &Junit];
 
 /// Forms that are written where they are asked for by name.
-pub static FURTHER: &[&dyn Exporter] = &[&Parquet, &Atml];
+pub static FURTHER: &[&dyn Exporter] = &[&Docx, &Parquet, &Atml];
 
 /// The files of a document in some forms: contents by name.
 ///
