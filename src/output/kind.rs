@@ -164,7 +164,7 @@ impl Kind {
                         || matches!(name, "junit.xml" | "dcc.xml" | "atml.xml")
                 }
                 Kind::Joint => name == "recordings",
-                Kind::Lot => name == "junit.xml",
+                Kind::Lot => matches!(name, "junit.xml" | "index.xlsx"),
                 Kind::Comparison
                 | Kind::Explanation
                 | Kind::Plan

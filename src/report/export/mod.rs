@@ -11,6 +11,7 @@ mod junit;
 mod markdown;
 mod measurands;
 mod svg;
+mod xlsx;
 mod xml;
 
 pub use atml::Atml;
@@ -24,6 +25,7 @@ pub use junit::Junit;
 pub use markdown::Markdown;
 pub use measurands::Parquet;
 pub use svg::Svg;
+pub use xlsx::Xlsx;
 
 use super::{Document, Renderer, ReportError};
 use std::collections::BTreeMap;
@@ -32,7 +34,7 @@ use std::collections::BTreeMap;
 pub static EXPORTERS: &[&dyn Exporter] = &[&Html, &Markdown, &Csv, &Json, &Svg, &Junit];
 
 /// Forms that are written where they are asked for by name.
-pub static FURTHER: &[&dyn Exporter] = &[&Docx, &Parquet, &Atml];
+pub static FURTHER: &[&dyn Exporter] = &[&Docx, &Xlsx, &Parquet, &Atml];
 
 /// The files of a document in some forms: contents by name.
 ///
