@@ -7,6 +7,7 @@
 //! inputs, and only files that the earlier one lists are ever removed.
 
 mod addressed;
+mod archive;
 mod checksums;
 mod contained;
 mod csv;
@@ -21,6 +22,7 @@ mod stores;
 mod transfer;
 
 pub use addressed::AddressedFolder;
+pub use archive::archive;
 pub use checksums::{
     CHECKSUMS_FILE, UNREAD_HASH, checksums, read_checksums, sha256, sha256_of_file, sha256_of_several,
 };
@@ -28,7 +30,7 @@ pub use contained::{Found, NotRead, found_below, open_below, read_below, sha256_
 pub use csv::csv_line;
 pub use error::OutputError;
 pub use file::StagedFile;
-pub use kind::{Kind, LIMITS_FILE, MAX_RECORD_BYTES, PROCEDURE_FILE, SIGNATURES_FOLDER};
+pub use kind::{CERTIFICATE_STEM, Kind, LIMITS_FILE, MAX_RECORD_BYTES, PROCEDURE_FILE, SIGNATURES_FOLDER};
 pub use parquet::{Column, write_table};
 pub use part::StagedPart;
 pub use partial::{abandon_all, is_partial, remove_abandoned};

@@ -28,6 +28,7 @@ mod length;
 mod model;
 mod next_step;
 mod options;
+mod pack;
 mod part;
 mod phased_test;
 mod place;
@@ -138,6 +139,9 @@ enum Verb {
     #[command(after_help = "Examples:\n  sagnac export reports/SN-0042 --for kalibr --out imu0.yaml\n  \
         sagnac export reports/SN-0042 --for gazebo --channels gyro_x,gyro_y,gyro_z")]
     Export(export::ExportArgs),
+    /// Pack everything that goes with a unit into one archive: report, certificate, model, parameters, hashes, signatures
+    #[command(after_help = "Example:\n  sagnac pack reports/SN-0042 --out SN-0042.zip")]
+    Pack(pack::PackArgs),
     /// Draw a figure of results for a paper: of several records in one, with few layers, at the width of a column
     #[command(
         after_help = "Examples:\n  sagnac figure reports/SN-0042 sigma-tau --out allan.pdf --width 85mm\n  \
@@ -275,6 +279,7 @@ pub fn main() -> ExitCode {
         Verb::Analyze(args) => analyze::main(&args, lang),
         Verb::Report(args) => report::main(&args, lang),
         Verb::Export(args) => export::main(&args, lang),
+        Verb::Pack(args) => pack::main(&args, lang),
         Verb::Figure(args) => figure::main(&args, lang),
         Verb::Compare(args) => compare::main(&args, lang),
         Verb::Datasheet(args) => datasheet::main(&args, lang),

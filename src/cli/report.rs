@@ -4,7 +4,7 @@ use super::inputs::Inputs;
 use super::options::FormArgs;
 use super::printer::record;
 use super::progress::{Display, Progress};
-use super::writer::Writer;
+use super::writer::{Paper, Writer};
 use super::{exit, place};
 use crate::config::laboratory;
 use crate::i18n::{Lang, Note, note};
@@ -23,6 +23,9 @@ use std::path::{Component, Path, PathBuf};
 pub struct ReportArgs {
     /// Result: a result.json, explain.json, comparison.json, index.json or plan.json, or the folder that holds one
     result: PathBuf,
+    /// Document to write; a certificate states the conformity of a unit that passed
+    #[arg(long, value_name = "DOCUMENT", value_enum, default_value_t)]
+    document: Paper,
     #[command(flatten)]
     forms: FormArgs,
     /// Laboratory, customer and persons, for the form dcc (laboratory.toml)
@@ -38,11 +41,13 @@ pub struct ReportArgs {
 
 pub fn main(args: &ReportArgs, lang: Lang) -> Result<u8, String> {
     let signatures = signatures_of(&args.result);
-    let writer = args.forms.writer(lang)?.with_signatures(signatures.clone());
+    let writer = args.forms.writer(lang)?.with_signatures(signatures.clone()).of(args.document);
     let laboratory = args.laboratory.as_deref().map(laboratory::load).transpose().map_err(|p| p.say(lang))?;
     let writer =
         if args.forms.names(CERTIFICATE_FORM) { writer.with_certificate(Dcc { laboratory }) } else { writer };
     let stored = StoredResults::open(&args.result).map_err(|note| place::error(&note, lang))?;
+    // Refused before anything is begun.
+    writer.whole(&stored.results)?;
     let out = place::OutputPlace::new(args.out.as_deref(), "report", stored.results.subject(), moment::now());
     let folder = Inputs::new(args.force)
         .of_result(stored.inputs)

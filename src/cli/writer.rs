@@ -7,6 +7,7 @@ use crate::report::export::{Dcc, EXPORTERS, Exporter, FURTHER, export, record_by
 use crate::report::pdf::{MAKES_PDF, PdfPages};
 use crate::report::signatures::Signature;
 use crate::report::{Document, Renderer, ReportError, Results};
+use clap::ValueEnum;
 use std::path::PathBuf;
 
 /// Writes results in some forms.
@@ -16,7 +17,18 @@ pub struct Writer {
     exporters: Vec<&'static dyn Exporter>,
     certificate: Option<Dcc>,
     pdf: Option<PdfPages>,
+    paper: Paper,
     lang: Lang,
+}
+
+/// What a result is written as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, ValueEnum)]
+pub enum Paper {
+    /// The report.
+    #[default]
+    Report,
+    /// The certificate of conformity.
+    Certificate,
 }
 
 impl Writer {
@@ -28,7 +40,14 @@ impl Writer {
         if pdf.is_some() && !MAKES_PDF {
             return Err(place::error(&ReportError::NoPdf.note(), lang));
         }
-        Ok(Writer { renderer, exporters: EXPORTERS.to_vec(), certificate: None, pdf, lang })
+        Ok(Writer {
+            renderer,
+            exporters: EXPORTERS.to_vec(),
+            certificate: None,
+            pdf,
+            paper: Paper::Report,
+            lang,
+        })
     }
 
     /// A writer of the forms that are named; of those that are written unasked where none is.
@@ -55,12 +74,30 @@ impl Writer {
         self
     }
 
+    /// The same, of another document.
+    #[must_use]
+    pub fn of(mut self, paper: Paper) -> Writer {
+        self.paper = paper;
+        self
+    }
+
+    /// The document of the whole.
+    ///
+    /// # Errors
+    /// The diagnostic, in words, where there is no such document.
+    pub fn whole<'r>(&self, results: &'r Results) -> Result<Document<'r>, String> {
+        match self.paper {
+            Paper::Report => Ok(results.whole(self.lang)),
+            Paper::Certificate => results.certificate(self.lang).map_err(|note| self.said(&note)),
+        }
+    }
+
     /// Writes the files of results, all but the record of the whole.
     ///
     /// # Errors
     /// The diagnostic, in words.
     pub fn files(&self, results: &Results, folder: &StagedPart<'_>) -> Result<(), String> {
-        let whole = results.whole(self.lang);
+        let whole = self.whole(results)?;
         self.part(&whole, "", folder)?;
         for (below, part) in results.parts(self.lang) {
             self.part(&part, &format!("{below}/"), folder)?;

@@ -11,6 +11,9 @@ pub const LIMITS_FILE: &str = "limits.toml";
 /// Folder of the signatures in a folder of results.
 pub const SIGNATURES_FOLDER: &str = "signatures";
 
+/// Name of the pages of a certificate of conformity, without the ending.
+pub const CERTIFICATE_STEM: &str = "certificate";
+
 /// Largest record of a folder that is read, bytes; results of shipped samples take about a tenth of a megabyte.
 pub const MAX_RECORD_BYTES: u64 = 256 << 20;
 
@@ -155,10 +158,16 @@ impl Kind {
         }
     }
 
+    /// True for the name, without its ending, of a certificate of conformity in a folder of this kind.
+    fn has_certificate(self, stem: &str) -> bool {
+        self == Kind::Result && stem == CERTIFICATE_STEM
+    }
+
     /// True for a name that stands in a folder of this kind.
     pub(super) fn owns(self, name: &str) -> bool {
-        let stem = name.rsplit_once('.').filter(|(_, ending)| matches!(*ending, "html" | "md" | "pdf"));
-        let page = stem.is_some_and(|(stem, _)| stem == self.page_stem())
+        let stem =
+            name.rsplit_once('.').filter(|(_, ending)| matches!(*ending, "html" | "md" | "pdf" | "docx"));
+        let page = stem.is_some_and(|(stem, _)| stem == self.page_stem() || self.has_certificate(stem))
             || match self {
                 Kind::Result => {
                     matches!(name, "explain" | "phases" | SIGNATURES_FOLDER)
@@ -166,7 +175,7 @@ impl Kind {
                         || matches!(name, "junit.xml" | "dcc.xml" | "atml.xml")
                 }
                 Kind::Joint => name == "recordings",
-                Kind::Lot => name == "junit.xml",
+                Kind::Lot => matches!(name, "junit.xml" | "index.xlsx"),
                 Kind::Comparison
                 | Kind::Explanation
                 | Kind::Plan

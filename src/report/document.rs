@@ -10,8 +10,8 @@ use crate::acceptance::Outcome;
 use crate::acceptance::compare::Comparison;
 use crate::acceptance::phases::figures as phase_figures;
 use crate::figure::Figure;
-use crate::i18n::Lang;
-use crate::output::Kind;
+use crate::i18n::{Lang, Note};
+use crate::output::{CERTIFICATE_STEM, Kind};
 use crate::record::{DataSheet, DayRecord, LotRecord, ProofRecord, RehearsalRecord, RunRecord};
 use minijinja::value::Value;
 use serde::Serialize;
@@ -131,6 +131,7 @@ pub struct Document<'a> {
     pub tables: &'a [(String, String)],
     of: &'a dyn Documented,
     shown: Page,
+    stem: &'static str,
 }
 
 impl<'a> Document<'a> {
@@ -141,7 +142,8 @@ impl<'a> Document<'a> {
         tables: &'a [(String, String)],
         lang: Lang,
     ) -> Document<'a> {
-        Document { lang, shown: of.page(figures, lang), figures: figures.into(), tables, of }
+        let (shown, stem) = (of.page(figures, lang), of.kind().page_stem());
+        Document { lang, shown, stem, figures: figures.into(), tables, of }
     }
 
     /// The document of a run or an analysis.
@@ -152,6 +154,16 @@ impl<'a> Document<'a> {
     /// The document of a test of several phases, whose outcomes stand in the order of the phases of `record`; `None` for
     /// one that was not recorded.
     pub fn of_phases(record: &'a RunRecord, phases: &[Option<Outcome>], lang: Lang) -> Document<'a> {
+        Document::phased(record, phases, lang, view::page)
+    }
+
+    /// A page of a test of several phases.
+    fn phased(
+        record: &'a RunRecord,
+        phases: &[Option<Outcome>],
+        lang: Lang,
+        page: impl Fn(&Part<'_>, &[Phase<'_>]) -> Page,
+    ) -> Document<'a> {
         let figures: Vec<Vec<Figure>> =
             record.phases.iter().zip(phases).map(|(p, o)| phase_figures(&p.id, o.as_ref())).collect();
         let words = Translator { lang };
@@ -162,8 +174,31 @@ impl<'a> Document<'a> {
                 Phase { phase, number, part }
             })
             .collect();
-        let shown = view::page(&Part::new(record, &[], words), &parts);
-        Document { lang, shown, figures: figures.concat().into(), tables: &[], of: record }
+        let shown = page(&Part::new(record, &[], words), &parts);
+        let stem = Kind::Result.page_stem();
+        Document { lang, shown, stem, figures: figures.concat().into(), tables: &[], of: record }
+    }
+
+    /// The certificate of conformity of a run; of a test of several phases with their outcomes.
+    ///
+    /// # Errors
+    /// Why the record states no conformity.
+    pub fn certificate(
+        outcome: &'a Outcome,
+        phases: &[Option<Outcome>],
+        lang: Lang,
+    ) -> Result<Document<'a>, Note> {
+        let record = &outcome.record;
+        if let Some(note) = view::refusal(record) {
+            return Err(note);
+        }
+        let document = if record.phases.is_empty() {
+            let part = Part::new(record, &outcome.figures, Translator { lang });
+            Document { shown: view::certificate(&part, &[]), ..Document::of_run(outcome, lang) }
+        } else {
+            Document::phased(record, phases, lang, view::certificate)
+        };
+        Ok(Document { stem: CERTIFICATE_STEM, ..document })
     }
 
     /// The lot that the document is of.
@@ -187,9 +222,14 @@ impl<'a> Document<'a> {
         self.of.kind()
     }
 
+    /// The blocks of the page.
+    pub(super) fn shown(&self) -> &Page {
+        &self.shown
+    }
+
     /// Name of a page, such as `report.html`, by the ending of its file.
     pub fn page(&self, ending: &str) -> String {
-        format!("{}.{ending}", self.kind().page_stem())
+        format!("{}.{ending}", self.stem)
     }
 
     /// The text of the page in a form.

@@ -254,6 +254,11 @@ impl Renderer {
         }
     }
 
+    /// The signatures that pages show.
+    pub(super) fn signatures(&self) -> &[Signature] {
+        &self.signatures
+    }
+
     /// The same templates, which show signatures.
     #[must_use]
     pub fn with_signatures(mut self, signatures: Vec<Signature>) -> Renderer {

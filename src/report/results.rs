@@ -213,6 +213,19 @@ impl Results {
         }
     }
 
+    /// The certificate of conformity of a test that is passed.
+    ///
+    /// # Errors
+    /// Why there is none.
+    pub fn certificate(&self, lang: Lang) -> Result<Document<'_>, Note> {
+        match self {
+            Results::Run(results) => Document::certificate(&results.outcome, &results.phases, lang),
+            Results::Explanation(_) | Results::Joint(_) | Results::Other(_) => {
+                Err("certificate.no_test".into())
+            }
+        }
+    }
+
     /// The documents that stand in folders below that of the whole, each with its folder, such as `phases/static`.
     pub fn parts(&self, lang: Lang) -> Vec<(String, Document<'_>)> {
         if let Results::Joint(results) = self {

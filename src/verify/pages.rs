@@ -6,7 +6,7 @@ use crate::acceptance::tables::{Follows, follows};
 use crate::i18n::{Lang, Note, note};
 use crate::output::{CHECKSUMS_FILE, Kind, NotRead, read_below};
 use crate::record::read::MAX_BYTES;
-use crate::report::export::{EXPORTERS, FURTHER, export};
+use crate::report::export::{Docx, EXPORTERS, Exporter, FURTHER, Html, Markdown, export};
 use crate::report::pdf::{MAKES_PDF, PdfPages};
 use crate::report::signatures::{SIGNATURES_SHOWN, shown};
 use crate::report::{Document, FIGURES_FILE, Renderer, StoredResults};
@@ -34,7 +34,7 @@ pub fn pages(folder: &Folder, renderer: &Renderer) -> Vec<Finding> {
     }
     // Without pages and drawings, the data of figures are not needed.
     let shows_figures =
-        |name: &String| [".html", ".md", ".svg", ".pdf"].iter().any(|end| name.ends_with(end));
+        |name: &String| [".html", ".md", ".svg", ".pdf", ".docx"].iter().any(|end| name.ends_with(end));
     if stored.lacks_figures() && stored.files.iter().any(shows_figures) {
         return vec![Finding::Undone("verify.no_figures".into())];
     }
@@ -77,6 +77,10 @@ fn compare(folder: &Folder, stored: &StoredResults, renderer: &Renderer, lang: L
         }
         findings.extend(pdf(folder, &below, &document, renderer));
     }
+    if let Ok(certificate) = stored.results.certificate(lang) {
+        made.extend(certificates(folder, &certificate, renderer));
+        findings.extend(pdf(folder, "", &certificate, renderer));
+    }
     let (mut same, mut not_made) = (0_usize, vec![]);
     for (name, bytes) in &made {
         // A form that was not chosen is not there.
@@ -98,6 +102,20 @@ fn compare(folder: &Folder, stored: &StoredResults, renderer: &Renderer, lang: L
         findings.push(Finding::Unchecked(note));
     }
     findings
+}
+
+/// The pages of a certificate of conformity that a folder has.
+fn certificates(folder: &Folder, certificate: &Document<'_>, renderer: &Renderer) -> Made {
+    let pages: [&dyn Exporter; 3] = [&Html, &Markdown, &Docx];
+    let mut made = Made::new();
+    for (exporter, ending) in pages.into_iter().zip(["html", "md", "docx"]) {
+        let name = certificate.page(ending);
+        if folder.path.join(&name).exists() {
+            let files = export(certificate, &[exporter], renderer).unwrap_or_default();
+            made.extend(files.into_iter().filter(|(made, _)| *made == name));
+        }
+    }
+    made
 }
 
 /// True for results whose tables and figures are read back from their folder: their record alone does not give them.

@@ -41,11 +41,15 @@ pub fn pdf(bytes: &[u8], scratch: &Path) -> Vec<Finding> {
     }
     let lang = Lang::from_code(&language).unwrap_or_default();
     let renderer = Renderer::new().with_signatures(shown(scratch));
-    let whole = stored.results.whole(lang);
+    // The same record is attached to its report and to its certificate.
+    let certificate = stored.results.certificate(lang).ok();
+    let documents: Vec<_> = std::iter::once(stored.results.whole(lang)).chain(certificate).collect();
     // An update, such as a signature within the PDF, stands behind what was typeset, and can change what is shown.
-    let appended = [PdfPages::All, PdfPages::Summary].into_iter().find_map(|pages| {
-        let made = whole.pdf(&renderer, record, pages).ok()?;
-        bytes.strip_prefix(made.as_slice()).map(<[u8]>::len)
+    let appended = documents.iter().find_map(|document| {
+        [PdfPages::All, PdfPages::Summary].into_iter().find_map(|pages| {
+            let made = document.pdf(&renderer, record, pages).ok()?;
+            bytes.strip_prefix(made.as_slice()).map(<[u8]>::len)
+        })
     });
     let mut findings = vec![match appended {
         Some(0) => Finding::Agrees("verify.pdf".into()),

@@ -1,5 +1,6 @@
 //! Commands for people who work on Sagnac.
 
+mod dist;
 mod features;
 mod long_studies;
 mod modules;
@@ -27,6 +28,8 @@ proofs DATA [WORD]...
     Run the proofs with the recordings of a folder, those whose path contains a word or all, and add a line a run to docs/PROOFS.md.
 schemas [--check]
     Write schemas/: JSON Schema of results, generated from the types of the records.
+dist [--profile PROFILE] [--out DIR] [--without-pdf]
+    Write target/dist: the program with PDF, completions, manual page, its packages (CycloneDX), hashes, and a Debian package.
 notices [--check]
     Write THIRD-PARTY.md: licences and notices of the packages that the program contains.
 tests COMMIT
@@ -49,6 +52,10 @@ fn main() -> ExitCode {
         Some((command, rest)) if command == "features" => features::check(root, rest),
         Some((command, [])) if command == "schemas" => schemas(root, &[]),
         Some((command, [check])) if command == "schemas" && check == "--check" => schemas(root, &[check]),
+        Some((command, rest)) if command == "dist" => match dist::Options::of(root, rest) {
+            Some(options) => dist::run(root, &options),
+            None => usage(),
+        },
         Some((command, [])) if command == "notices" => notices::run(root, false),
         Some((command, [check])) if command == "notices" && check == "--check" => notices::run(root, true),
         Some((command, [commit])) if command == "tests" => test_names::compare(root, commit),

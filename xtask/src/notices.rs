@@ -45,7 +45,8 @@ pub fn run(root: &Path, check: bool) -> ExitCode {
     }
 }
 
-fn notices(root: &Path) -> Result<String, String> {
+/// What cargo says of the packages, with those of the feature `pdf`.
+pub fn metadata(root: &Path) -> Result<Value, String> {
     let cargo = std::env::var_os("CARGO").unwrap_or_else(|| "cargo".into());
     let done = Command::new(cargo)
         .current_dir(root)
@@ -55,7 +56,11 @@ fn notices(root: &Path) -> Result<String, String> {
     if !done.status.success() {
         return Err(String::from_utf8_lossy(&done.stderr).into_owned());
     }
-    let metadata: Value = serde_json::from_slice(&done.stdout).map_err(|e| e.to_string())?;
+    serde_json::from_slice(&done.stdout).map_err(|e| e.to_string())
+}
+
+fn notices(root: &Path) -> Result<String, String> {
+    let metadata = metadata(root)?;
     let linked = linked(&metadata);
     let mut packages: Vec<&Value> = list(&metadata["packages"])
         .filter(|p| linked.contains(text(&p["id"])) && !p["source"].is_null())
@@ -91,7 +96,7 @@ fn list(value: &Value) -> impl Iterator<Item = &Value> {
 }
 
 /// Ids of the packages that are linked into the program: not those of tests and of building.
-fn linked(metadata: &Value) -> BTreeSet<String> {
+pub fn linked(metadata: &Value) -> BTreeSet<String> {
     let nodes: BTreeMap<&str, &Value> =
         list(&metadata["resolve"]["nodes"]).map(|n| (text(&n["id"]), n)).collect();
     let program = list(&metadata["packages"]).find(|p| text(&p["name"]) == "sagnac").map(|p| text(&p["id"]));

@@ -3,6 +3,7 @@
 mod atml;
 mod csv;
 mod dcc;
+mod docx;
 mod exporter;
 mod html;
 mod json;
@@ -10,11 +11,13 @@ mod junit;
 mod markdown;
 mod measurands;
 mod svg;
+mod xlsx;
 mod xml;
 
 pub use atml::Atml;
 pub use csv::Csv;
 pub use dcc::{CERTIFICATE_FORM, Dcc, missing};
+pub use docx::Docx;
 pub use exporter::{ExportedFile, Exporter};
 pub use html::Html;
 pub use json::{Json, record_bytes};
@@ -22,6 +25,7 @@ pub use junit::Junit;
 pub use markdown::Markdown;
 pub use measurands::Parquet;
 pub use svg::Svg;
+pub use xlsx::Xlsx;
 
 use super::{Document, Renderer, ReportError};
 use std::collections::BTreeMap;
@@ -30,7 +34,7 @@ use std::collections::BTreeMap;
 pub static EXPORTERS: &[&dyn Exporter] = &[&Html, &Markdown, &Csv, &Json, &Svg, &Junit];
 
 /// Forms that are written where they are asked for by name.
-pub static FURTHER: &[&dyn Exporter] = &[&Parquet, &Atml];
+pub static FURTHER: &[&dyn Exporter] = &[&Docx, &Xlsx, &Parquet, &Atml];
 
 /// The files of a document in some forms: contents by name.
 ///

@@ -1,8 +1,10 @@
 //! The document of a lot: which units pass, why others do not, and every quantity over all units.
 
+mod matrix;
 mod quantity;
 mod reasons;
 
+pub(super) use matrix::Matrix;
 pub(super) use reasons::{condition_reason, measurand_reason, reasons, several_channels};
 
 use super::document::{Documented, Record};
@@ -87,6 +89,8 @@ fn pages(lot: &LotRecord, words: Translator) -> Page {
     units.class = "units small cards";
     let units = vec![Block::Table(units), Block::Hint(serials(&lot.units, words))];
     let quantities = quantity::table(&lot.units, words);
+    let matrix = Matrix::new(&worst_first(&lot.units)).table(words);
+    let matrix = matrix.map(|table| Block::section("", words.t("lot.matrix"), vec![Block::Table(table)]));
     let over_all = [
         Block::SummaryEnd,
         Block::section("", words.t("lot.quantities"), vec![Block::Table(quantities.clone())]),
@@ -98,6 +102,7 @@ fn pages(lot: &LotRecord, words: Translator) -> Page {
         blocks: [Block::Head(head), Block::section("", words.t("lot.units"), units)]
             .into_iter()
             .chain(over_all.into_iter().filter(|_| !quantities.rows.is_empty()))
+            .chain(matrix)
             .chain([Block::section("identity", words.t("report.identity"), vec![identity])])
             .collect(),
         generator,

@@ -9,25 +9,25 @@ use std::collections::{BTreeMap, BTreeSet};
 
 /// What tells one quantity from another: phase, channel, id of the measurand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-struct Key<'a> {
+pub(super) struct Key<'a> {
     phase: Option<&'a str>,
-    channel: &'a str,
+    pub(super) channel: &'a str,
     id: &'a str,
 }
 
 impl Key<'_> {
-    fn of(m: &MeasurandRecord) -> Key<'_> {
+    pub(super) fn of(m: &MeasurandRecord) -> Key<'_> {
         Key { phase: m.phase.as_deref(), channel: &m.channel, id: &m.id }
     }
 }
 
 /// The quantities in the order in which they first appear, and whether they are of several channels.
-fn distinct<K: Ord + Copy>(of: impl Iterator<Item = K>) -> Vec<K> {
+pub(super) fn distinct<K: Ord + Copy>(of: impl Iterator<Item = K>) -> Vec<K> {
     let mut seen = BTreeSet::new();
     of.filter(|k| seen.insert(*k)).collect()
 }
 
-fn several<'a>(mut channels: impl Iterator<Item = &'a str>) -> bool {
+pub(super) fn several<'a>(mut channels: impl Iterator<Item = &'a str>) -> bool {
     let first = channels.next();
     channels.any(|c| Some(c) != first)
 }
@@ -47,7 +47,7 @@ pub(super) fn table(units: &[LotUnit], words: Translator) -> Table {
         .column(words.column("lot.undecided"), over.iter().map(|o| o.serials(Verdict::Indeterminate)))
 }
 
-fn name(key: Key<'_>, several_channels: bool, words: Translator) -> String {
+pub(super) fn name(key: Key<'_>, several_channels: bool, words: Translator) -> String {
     let parts = [Some(words.name("measurand", key.id)), key.phase.map(str::to_owned)];
     let channel = several_channels.then(|| words.channel(key.channel, key.id));
     parts.into_iter().flatten().chain(channel).collect::<Vec<_>>().join(" · ")
@@ -97,7 +97,7 @@ impl<'a> OverUnits<'a> {
     }
 }
 
-fn shown(m: &MeasurandRecord, value: f64, words: Translator) -> Value {
+pub(super) fn shown(m: &MeasurandRecord, value: f64, words: Translator) -> Value {
     let printed = rounding(m).show(value, words.lang);
     Value::Quantity(Quantity { number: Some(value), printed, unit: words.unit(&m.unit) })
 }

@@ -2,6 +2,7 @@
 //! in words and printed numbers.
 
 mod budget;
+mod certificate;
 mod checks;
 mod common;
 mod comparison;
@@ -23,6 +24,7 @@ mod phases;
 mod rows;
 mod table_steps;
 
+pub(super) use certificate::{certificate, refusal};
 pub(super) use conditions::{Condition, conditions, declared};
 pub(super) use faults::FaultKinds;
 pub use figures::FigureView;

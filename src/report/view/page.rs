@@ -85,7 +85,7 @@ fn opening(whole: &Part<'_>) -> Vec<Block> {
 /// The reason of a record without a limit, which tells nothing on a page without a verdict.
 const NO_LIMITS: &str = "summary.no_limits";
 
-fn identity_section(whole: &Part<'_>) -> Block {
+pub(super) fn identity_section(whole: &Part<'_>) -> Block {
     let identity = Block::identity(identity(whole.record, whole.words));
     Block::section("identity", whole.words.t("report.identity"), vec![identity])
 }
@@ -93,12 +93,8 @@ fn identity_section(whole: &Part<'_>) -> Block {
 fn head(whole: &Part<'_>) -> Head {
     let (record, words) = (whole.record, whole.words);
     let kind = if record.kind == RunKind::Run { "report.kind_run" } else { "report.kind_analyze" };
-    let organisation = record.procedure.as_ref().and_then(|p| p.organisation.as_ref());
-    let number = record.session.protocol.as_ref();
-    let numbered = number.map(|n| words.with("report.protocol_number", &[("number", n)]));
-    let kind = [organisation.map(|o| words.local(o)), Some(words.t(kind)), numbered];
     Head {
-        kind: kind.into_iter().flatten().collect::<Vec<_>>().join(" · "),
+        kind: self::kind(record, &words.t(kind), words),
         title: whole.title(),
         is_signed: true,
         label: words.t("report.verdict"),
@@ -109,6 +105,15 @@ fn head(whole: &Part<'_>) -> Head {
         },
         ..Head::default()
     }
+}
+
+/// Kind of a document, behind the organisation and before the number of the protocol where they are stated.
+pub(super) fn kind(record: &RunRecord, kind: &str, words: Translator) -> String {
+    let organisation = record.procedure.as_ref().and_then(|p| p.organisation.as_ref());
+    let number = record.session.protocol.as_ref();
+    let numbered = number.map(|n| words.with("report.protocol_number", &[("number", n)]));
+    let kind = [organisation.map(|o| words.local(o)), Some(kind.to_owned()), numbered];
+    kind.into_iter().flatten().collect::<Vec<_>>().join(" · ")
 }
 
 /// Errors, then the reasons for the verdict.
@@ -182,7 +187,7 @@ fn method_list(record: &RunRecord, words: Translator) -> Block {
     Block::Section("methods", vec![Block::Fold(heading, below)])
 }
 
-fn file_table(record: &RunRecord, words: Translator) -> Vec<Block> {
+pub(super) fn file_table(record: &RunRecord, words: Translator) -> Vec<Block> {
     let files = files(record, words);
     if files.is_empty() {
         return vec![];
@@ -323,7 +328,7 @@ fn files(record: &RunRecord, words: Translator) -> Vec<[Value; 3]> {
 }
 
 /// Line at the foot of every page.
-fn footer(record: &RunRecord, words: Translator) -> String {
+pub(super) fn footer(record: &RunRecord, words: Translator) -> String {
     let mut parts = vec![];
     if let Some(serial) = &record.unit_under_test.serial {
         parts.push(words.with("report.footer_serial", &[("serial", serial)]));

@@ -3,6 +3,7 @@
 mod changes;
 mod exports;
 pub mod forged;
+mod papers;
 mod pdf;
 mod signers;
 pub mod signing;
