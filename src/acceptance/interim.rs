@@ -47,6 +47,8 @@ pub(super) fn at_reached_look(
 struct Row {
     spec: LimitSpec,
     channel: String,
+    /// True where the record shows a value; a bound alone decides at the full duration only.
+    has_value: bool,
     risk: f64,
     information: Vec<f64>,
     dependence: Dependence,
@@ -153,6 +155,14 @@ impl<'p> Interim<'p> {
             spent_risk: rows.iter().map(|r| r.spent_risk).fold(0.0, f64::max),
             rows,
         };
+        if !self.is_full() {
+            // What a look cannot decide is told by the plan, not by the uncertainty of the row.
+            let is_open = |note: &Note| {
+                let names = note.id.starts_with("summary.row_indeterminate") || note.id.starts_with("summary.row_not_shown");
+                names && interim.rows.iter().any(|r| note.args.get("measurand") == Some(&Arg::key("measurand", &r.id)))
+            };
+            record.summary.retain(|message| !is_open(message));
+        }
         record.summary.extend(said(&interim).into_iter().map(Into::into));
         record.interim = Some(interim);
     }
@@ -194,19 +204,20 @@ impl Row {
             .filter(|_| spec.limit.rule == Rule::GuardBand)
             .and_then(|s| power::variances(spec.measurand, &spec.limit, &s, &plan.looks_s));
         let bounds = predicted.and_then(|(variances, dependence)| {
-            let least = *variances.last()?;
-            let information: Vec<f64> = variances.iter().map(|v| least / v).collect();
+            let (information, dependence) = shares(plan, &variances, dependence)?;
             let scores = deciding_scores(risk, &information, dependence)?;
             Some((information, dependence, scores))
         });
         let (information, dependence, scores) =
             bounds.unwrap_or_else(|| (vec![], Dependence::Unknown, at_the_end(plan, risk)));
-        Row { spec: spec.clone(), channel: estimate.channel.clone(), risk, information, dependence, scores }
+        let (spec, channel, has_value) = (spec.clone(), estimate.channel.clone(), estimate.value.is_some());
+        Row { spec, channel, has_value, risk, information, dependence, scores }
     }
 
     /// Risk of the decision at a look; before the first, where nothing is decided, that of the whole.
     fn risk_at(&self, at: Option<usize>) -> f64 {
-        let score = at.and_then(|at| self.scores.get(at)).filter(|score| score.is_finite());
+        // A bound stands for a score of its own, above that of the last look.
+        let score = at.and_then(|at| self.scores.get(at)).filter(|score| self.has_value && score.is_finite());
         score.map_or(self.risk, |score| normal_probability(-score))
     }
 
@@ -224,6 +235,21 @@ impl Row {
         let expected = score * t.sqrt() + trend * (1.0 - t);
         normal_probability((expected - last) / (1.0 - t).sqrt()) < HARDLY
     }
+}
+
+/// Shares of the information at the looks. Where a predicted variance does not fall with time, as that of a mean under a random walk,
+/// the risk is spent by time, and nothing is assumed of how the looks hang together.
+fn shares(plan: &InterimPlan, variances: &[f64], dependence: Dependence) -> Option<(Vec<f64>, Dependence)> {
+    let of = |all: &[f64], last: f64| all.iter().map(|one| one / last).collect::<Vec<f64>>();
+    let information: Vec<f64> = of(&variances.iter().map(|v| 1.0 / v).collect::<Vec<_>>(), 1.0 / variances.last()?);
+    let rises = information.windows(2).all(|pair| matches!(pair, [a, b] if a < b));
+    if rises {
+        return Some((information, dependence));
+    }
+    (dependence == Dependence::Unknown).then(|| {
+        let full_s = plan.looks_s.last().copied().unwrap_or(1.0);
+        (of(&plan.looks_s, full_s), Dependence::Unknown)
+    })
 }
 
 /// The scores of a row that is decided at the full duration only.
@@ -248,10 +274,16 @@ fn said(interim: &InterimRecord) -> Vec<Note> {
         ),
         None => note!("interim.before_first", looks, recorded = Arg::span(interim.recorded_s.round())),
     };
-    let open = interim.rows.iter().filter(|r| r.state == InterimState::Open).count();
+    let mut open: Vec<Arg> = vec![];
+    for row in interim.rows.iter().filter(|r| r.state == InterimState::Open) {
+        let name = Arg::key("measurand", &row.id);
+        if !open.contains(&name) {
+            open.push(name);
+        }
+    }
     let state = match (interim.state, interim.next_look_s) {
         (InterimState::Open, Some(next_s)) => {
-            Some(note!("interim.open", n = open, next = Arg::span(next_s)))
+            Some(note!("interim.open", names = Arg::Several(open, "; ".into()), next = Arg::span(next_s)))
         }
         (InterimState::CannotPass, _) => Some(note!("interim.cannot_pass")),
         _ => None,
