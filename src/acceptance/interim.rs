@@ -4,8 +4,8 @@ use super::power::{self, Situation};
 use super::reading;
 use super::request::Request;
 use super::test_kind::{Evidence, Progress, Reading, Run};
-use crate::config::procedure::tables::interim::{InterimPlan, Reached};
 use crate::config::procedure::limits::LimitSpec;
+use crate::config::procedure::tables::interim::{InterimPlan, Reached};
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::estimate::{
     Dependence, Estimate, Rule, Verdict, deciding_scores, normal_probability, normal_quantile, spent,
@@ -134,7 +134,8 @@ impl<'p> Interim<'p> {
         let rows: Vec<InterimRow> = limited.map(|m| self.row(m)).collect();
         let has = |state| rows.iter().any(|r: &InterimRow| r.state == state);
         let is_failed = record.measurands.iter().any(|m| m.verdict == Verdict::Fail);
-        let state = if is_failed || !rows.is_empty() && rows.iter().all(|r| r.state == InterimState::Decided) {
+        let state = if is_failed || !rows.is_empty() && rows.iter().all(|r| r.state == InterimState::Decided)
+        {
             InterimState::Decided
         } else if has(InterimState::CannotPass) {
             InterimState::CannotPass
@@ -158,8 +159,13 @@ impl<'p> Interim<'p> {
         if !self.is_full() {
             // What a look cannot decide is told by the plan, not by the uncertainty of the row.
             let is_open = |note: &Note| {
-                let names = note.id.starts_with("summary.row_indeterminate") || note.id.starts_with("summary.row_not_shown");
-                names && interim.rows.iter().any(|r| note.args.get("measurand") == Some(&Arg::key("measurand", &r.id)))
+                let names = note.id.starts_with("summary.row_indeterminate")
+                    || note.id.starts_with("summary.row_not_shown");
+                names
+                    && interim
+                        .rows
+                        .iter()
+                        .any(|r| note.args.get("measurand") == Some(&Arg::key("measurand", &r.id)))
             };
             record.summary.retain(|message| !is_open(message));
         }
@@ -241,7 +247,8 @@ impl Row {
 /// the risk is spent by time, and nothing is assumed of how the looks hang together.
 fn shares(plan: &InterimPlan, variances: &[f64], dependence: Dependence) -> Option<(Vec<f64>, Dependence)> {
     let of = |all: &[f64], last: f64| all.iter().map(|one| one / last).collect::<Vec<f64>>();
-    let information: Vec<f64> = of(&variances.iter().map(|v| 1.0 / v).collect::<Vec<_>>(), 1.0 / variances.last()?);
+    let information: Vec<f64> =
+        of(&variances.iter().map(|v| 1.0 / v).collect::<Vec<_>>(), 1.0 / variances.last()?);
     let rises = information.windows(2).all(|pair| matches!(pair, [a, b] if a < b));
     if rises {
         return Some((information, dependence));
@@ -286,6 +293,7 @@ fn said(interim: &InterimRecord) -> Vec<Note> {
             Some(note!("interim.open", names = Arg::Several(open, "; ".into()), next = Arg::span(next_s)))
         }
         (InterimState::CannotPass, _) => Some(note!("interim.cannot_pass")),
+        (InterimState::Decided, _) if interim.look < looks => Some(note!("interim.decided")),
         _ => None,
     };
     std::iter::once(reached).chain(state).collect()

@@ -40,7 +40,8 @@ impl<K: TestKind> Test for K {
 
     fn run(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Outcome> {
         let at_look = interim::at_reached_look(request, self.pauses(), &mut *progress)?;
-        let request = &Request { procedure: at_look.as_ref().unwrap_or(request.procedure), ..request.clone() };
+        let request =
+            &Request { procedure: at_look.as_ref().unwrap_or(request.procedure), ..request.clone() };
         let options = self.options(request);
         let (reading, evidence) = collect(*self, request, &mut *progress)?;
         let conditions = judge(&reading, &evidence);

@@ -53,7 +53,8 @@ fn looked_before(earlier: &[Attempt], entry: &Entry) -> Option<Note> {
             && before.bytes < recording.bytes
             && sha256_of_beginning(Path::new(&recording.path), before.bytes).as_ref() == Some(&before.sha256)
     };
-    let looked = earlier.iter().rev().find(|a| matches!(a.entry.recordings.as_slice(), [one] if is_beginning(one)))?;
+    let looked =
+        earlier.iter().rev().find(|a| matches!(a.entry.recordings.as_slice(), [one] if is_beginning(one)))?;
     Some(note!("interim.looked_before", number = looked.number))
 }
 

@@ -12,12 +12,12 @@ use sagnac::estimate::{
 pub static STUDY: Study = Study {
     id: "interim",
     title: "Looks at a growing test",
-    method: "A test of 100 h grows hour by hour. The mean is that of white samples with known scatter; the deviation is that of 50 \
+    method: "A test of 100 h grows hour by hour. The mean is that of white samples with known scatter; the deviation is that of 10 \
              white samples an hour; the unrelated estimates are drawn anew at every look. Each look judges the whole of what there \
              is by the limit, at the risk that the plan leaves to it, and the test ends with the first pass or fail. \
              Units lie exactly at the limit, or inside by a number of standard errors of the full test. The generator adds up \
              samples and uses no formula of the plan.",
-    records: 40_000,
+    records: 20_000,
     cases,
 };
 
@@ -26,7 +26,7 @@ const RISK: f64 = 0.05;
 /// Length of the full test, h.
 const FULL_H: usize = 100;
 /// Samples an hour of the process whose deviation is judged.
-const SAMPLES_AN_HOUR: usize = 50;
+const SAMPLES_AN_HOUR: usize = 10;
 /// Limit of every quantity.
 const LIMIT: f64 = 1.0;
 /// Standard error of the mean of the full test.
@@ -94,8 +94,20 @@ fn rows(plan: &Plan, quantity: Quantity, records: u64, first: u64) -> Vec<Row> {
     let at_limit = run(0.0);
     let asked = if plan.spends { Asked::AtMost(RISK) } else { Asked::Nothing };
     let mut rows = vec![
-        Row::share("unit exactly at its limit", "passes, of 5 % stated", asked, count(&at_limit, Verdict::Pass), records),
-        Row::share("unit exactly at its limit", "fails, of 5 % stated", asked, count(&at_limit, Verdict::Fail), records),
+        Row::share(
+            "unit exactly at its limit",
+            "passes, of 5 % stated",
+            asked,
+            count(&at_limit, Verdict::Pass),
+            records,
+        ),
+        Row::share(
+            "unit exactly at its limit",
+            "fails, of 5 % stated",
+            asked,
+            count(&at_limit, Verdict::Fail),
+            records,
+        ),
     ];
     if !plan.spends || plan.looks_h.len() == 1 || quantity == Quantity::Unrelated {
         return rows;

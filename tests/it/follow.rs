@@ -23,7 +23,17 @@ fn beginning(text: &str, lines: usize) -> String {
 fn follow(folder: &Path, procedure: &str, serial: &str, still: &str) -> Child {
     Command::new(program())
         .current_dir(folder)
-        .args(["run", procedure, "growing.csv", "--limits", &limits(), "--serial", serial, "--out", "followed"])
+        .args([
+            "run",
+            procedure,
+            "growing.csv",
+            "--limits",
+            &limits(),
+            "--serial",
+            serial,
+            "--out",
+            "followed",
+        ])
         .args(["--no-store", "--follow", "--poll", "0.2s", "--still", still])
         .env("SAGNAC_LANG", "en")
         .stdout(Stdio::piped())
@@ -66,7 +76,18 @@ fn a_followed_recording_gives_the_numbers_of_a_plain_run_and_no_verdict_before()
     assert!(!interim.contains("decided: ") && !interim.contains("PASS"), "{interim}");
     sagnac(
         folder,
-        &["run", &procedure, "growing.csv", "--limits", &limits(), "--serial", "SN-0001", "--out", "plain", "--no-store"],
+        &[
+            "run",
+            &procedure,
+            "growing.csv",
+            "--limits",
+            &limits(),
+            "--serial",
+            "SN-0001",
+            "--out",
+            "plain",
+            "--no-store",
+        ],
     );
     let (mut followed, mut plain) = (result(&folder.join("followed")), result(&folder.join("plain")));
     for record in [&mut followed, &mut plain] {
@@ -94,7 +115,11 @@ fn a_test_that_its_plan_decides_ends_before_the_recording_stands_still_for_long(
     assert!(out.contains("open, can be decided at"), "{out} {err}");
     assert!(out.contains("decided: fail") && out.contains("decided by its plan"), "{out} {err}");
     let found = result(&folder.join("followed"));
-    assert_eq!((found["verdict"].as_str(), found["interim"]["look"].as_u64()), (Some("fail"), Some(2)), "{code}");
+    assert_eq!(
+        (found["verdict"].as_str(), found["interim"]["look"].as_u64()),
+        (Some("fail"), Some(2)),
+        "{code}"
+    );
 }
 
 #[test]

@@ -30,7 +30,18 @@ fn run(folder: &Path, procedure: &str, recording: &str, serial: &str) -> Value {
     let out = format!("{recording}.out");
     let said = sagnac(
         folder,
-        &["run", procedure, recording, "--limits", &limits(), "--serial", serial, "--out", &out, "--no-store"],
+        &[
+            "run",
+            procedure,
+            recording,
+            "--limits",
+            &limits(),
+            "--serial",
+            serial,
+            "--out",
+            &out,
+            "--no-store",
+        ],
     );
     assert!(said.code < 4, "{}", said.err);
     result(&folder.join(PathBuf::from(out)))
@@ -49,7 +60,8 @@ fn a_look_decides_by_its_own_bound_and_leaves_the_rest_open() {
     assert!((found["window"]["to_s"].as_f64().unwrap() - 91_790.0).abs() < 20.0, "{}", found["window"]);
     let noise = measurand(&found, "angle_random_walk");
     let row = interim["rows"].as_array().unwrap().iter().find(|r| r["id"] == "angle_random_walk").unwrap();
-    let shares: Vec<f64> = row["information"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
+    let shares: Vec<f64> =
+        row["information"].as_array().unwrap().iter().map(|t| t.as_f64().unwrap()).collect();
     // White noise: information goes with time.
     assert!((shares[1] - 0.25).abs() < 0.01 && shares[3] == 1.0, "{shares:?}");
     let risk = noise["limit"]["risk"].as_f64().unwrap();
@@ -103,10 +115,22 @@ fn a_growing_recording_without_a_plan_is_told_to_have_been_looked_at() {
     let folder = folder.path();
     let whole = shipped("procedures/static-bias.toml");
     let args = |recording: &str, out: &str| -> Vec<String> {
-        ["run", &whole, recording, "--limits", &limits(), "--serial", "SN-0001", "--out", out, "--store", "store"]
-            .iter()
-            .map(ToString::to_string)
-            .collect()
+        [
+            "run",
+            &whole,
+            recording,
+            "--limits",
+            &limits(),
+            "--serial",
+            "SN-0001",
+            "--out",
+            out,
+            "--store",
+            "store",
+        ]
+        .iter()
+        .map(ToString::to_string)
+        .collect()
     };
     for hours in [11.0, 12.0] {
         let recording = beginning(folder, "unit-pass", hours);

@@ -6,11 +6,11 @@ pub use super::instrument::Instrument;
 use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
-use super::tables::interim::InterimPlan;
 use super::spec::Word;
 pub use super::tables::conditions::{
     Bounds, Conditions, FaultBudget, RangeCondition, StatusCondition, SupplyCondition, TemperatureCondition,
 };
+use super::tables::interim::InterimPlan;
 use super::unit_facts::UnitFact;
 use crate::config::external::ExternalSpec;
 use crate::config::table::{Table, words};

@@ -154,8 +154,7 @@ mod tests {
     fn published_bounds_are_found() {
         // Lan and DeMets, two-sided 5 % as one side at 2.5 %: five equal looks, O'Brien-Fleming type.
         let published = [4.8769, 3.3569, 2.6803, 2.2898, 2.0310];
-        let found =
-            deciding_scores(0.025, &[0.2, 0.4, 0.6, 0.8, 1.0], Dependence::IndependentGains).unwrap();
+        let found = deciding_scores(0.025, &[0.2, 0.4, 0.6, 0.8, 1.0], Dependence::IndependentGains).unwrap();
         for (p, f) in published.iter().zip(&found) {
             assert!((p - f).abs() < 2e-3, "{found:?}");
         }

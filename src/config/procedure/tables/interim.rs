@@ -86,8 +86,7 @@ pub(in crate::config::procedure) fn validate(procedure: &Procedure, root: &Secti
         reader.error(&at, message, Some("interim_check.help.last".into()));
     }
     if let Some(least_s) = procedure.conditions.minimum_duration_s.filter(|least| first < least) {
-        let message =
-            note!("interim_check.too_early", first = Arg::span(*first), least = Arg::span(least_s));
+        let message = note!("interim_check.too_early", first = Arg::span(*first), least = Arg::span(least_s));
         reader.error(&at, message, Some("interim_check.help.too_early".into()));
     }
     if !procedure.is_at_rest() {
