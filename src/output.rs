@@ -24,7 +24,8 @@ mod transfer;
 pub use addressed::AddressedFolder;
 pub use archive::archive;
 pub use checksums::{
-    CHECKSUMS_FILE, UNREAD_HASH, checksums, read_checksums, sha256, sha256_of_file, sha256_of_several,
+    CHECKSUMS_FILE, UNREAD_HASH, checksums, read_checksums, sha256, sha256_of_beginning, sha256_of_file,
+    sha256_of_several,
 };
 pub use contained::{Found, NotRead, found_below, open_below, read_below, sha256_below};
 pub use csv::csv_line;

@@ -6,6 +6,7 @@
 //! | `analysis`, `column_choice` | what stands in for a procedure where there is none |
 //! | `kinds` | what each kind of test adds to that way; one file or folder a kind, one list |
 //! | `clock_component` | what the clocks of files beside the recording add to uncertainties |
+//! | `interim` | a growing recording by a plan of looks |
 //! | `derived` | rows by a formula over others |
 //! | `condition` | whether the test was done as required; one condition a file |
 //! | `figures` | plots as data |
@@ -30,6 +31,7 @@ mod external;
 pub mod figures;
 pub mod history;
 pub mod inspect;
+mod interim;
 mod interval_means;
 mod kinds;
 pub mod lot;

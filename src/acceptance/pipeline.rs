@@ -7,6 +7,7 @@ use super::condition::thermometer::Thermometer;
 use super::condition::{ColumnFact, Facts, judge_all};
 use super::derived;
 use super::external;
+use super::interim::{self, Interim};
 use super::missing_rows;
 use super::reading::{self, tidy};
 use super::request::{Outcome, Request};
@@ -38,6 +39,9 @@ impl<K: TestKind> Test for K {
     }
 
     fn run(self: Box<Self>, request: &Request<'_>, progress: Progress<'_>) -> Run<Outcome> {
+        let at_look = interim::at_reached_look(request, self.pauses(), &mut *progress)?;
+        let request =
+            &Request { procedure: at_look.as_ref().unwrap_or(request.procedure), ..request.clone() };
         let options = self.options(request);
         let (reading, evidence) = collect(*self, request, &mut *progress)?;
         let conditions = judge(&reading, &evidence);
@@ -47,9 +51,13 @@ impl<K: TestKind> Test for K {
             let (reading, evidence) = collect(kind, moved, &mut *progress)?;
             Ok(estimates(&reading, &evidence))
         })?;
-        let rows = rows(&reading, &evidence, &found, K::MISSING_REASON);
+        let looks = Interim::of(&reading, &evidence, &found);
+        let rows = rows(&reading, &evidence, &found, looks.as_ref(), K::MISSING_REASON);
         let figures = evidence.figures(&reading);
         let mut record = build_record(&reading, K::OWN_CHECKS, conditions, rows, &figures, options);
+        if let Some(looks) = &looks {
+            looks.complete(&mut record, &externals(request));
+        }
         let tables = evidence.complete(&reading, &mut record);
         Ok(Outcome { record, figures, tables })
     }
@@ -154,9 +162,12 @@ fn rows(
     reading: &Reading<'_>,
     evidence: &dyn Evidence,
     estimates: &[Estimate],
+    looks: Option<&Interim<'_>>,
     missing: &'static str,
 ) -> Vec<MeasurandRecord> {
+    let limits = looks.map(|looks| looks.limits(reading.request.limits));
     let request = reading.request;
+    let request = &Request { limits: limits.as_ref().unwrap_or(request.limits), ..request.clone() };
     let procedure = request.procedure;
     let rows = estimates.iter().map(|e| verdict::row(e, request.limits, procedure)).collect();
     // An analysis shows what the recording has; nobody asked for one value by name.
@@ -170,7 +181,15 @@ fn rows(
     let correlation = |one: &_, other: &_| evidence.correlation(one, other);
     rows.extend(derived::rows(procedure, request.limits, &gyros, estimates, &correlation));
     rows.extend(external::rows(procedure, request.limits, &request.unit));
+    if let Some(looks) = looks {
+        looks.settle(&mut rows, &externals(request));
+    }
     rows
+}
+
+/// Ids of the rows that come from other tests.
+fn externals(request: &Request<'_>) -> Vec<String> {
+    request.procedure.externals.iter().map(|e| e.id.clone()).collect()
 }
 
 /// The longest gap in what was evaluated, s.

@@ -4,10 +4,10 @@
 
 use crate::config::procedure::EffectiveLimits;
 use crate::config::procedure::power::{PowerQuestion, TypicalNoise};
-use crate::estimate::Limit;
+use crate::estimate::{Dependence, Limit};
 use crate::i18n::{Arg, Note, note};
 use crate::measurand::{GyroEvidence, Measurand, PowerModel};
-use crate::noise::expected::{Power, bias_power, decision_power, deviation_power};
+use crate::noise::expected::{Power, bias_power, decision_power, deviation_power, term_variance};
 use crate::noise::model::NoiseModel;
 use crate::noise::static_bias::BiasUncertainty;
 use crate::noise::windows::edf_of_window_std;
@@ -56,6 +56,58 @@ pub fn of_limit(measurand: &Measurand, limit: &Limit, situation: &Situation) -> 
     }
 }
 
+/// The situation that a channel was found in.
+pub fn situation(gyro: &GyroEvidence) -> Situation {
+    Situation {
+        background: gyro.identification.supported,
+        duration_s: gyro.usable_s(),
+        tau0_s: gyro.tau0_s,
+        earth_uncertainty_deg_h: gyro.earth.map_or(0.0, |e| e.uncertainty_deg_h),
+    }
+}
+
+/// Share of the variance of a mean that correlated noise has where the gains of its information still count as independent.
+const INDEPENDENT_SHARE: f64 = 0.01;
+
+/// Predicted variances of the estimate of a quantity at its limit in records of several lengths, up to a common factor, and how the
+/// estimates hang together; `None` for quantities whose variance nothing predicts.
+pub fn variances(
+    measurand: &Measurand,
+    limit: &Limit,
+    situation: &Situation,
+    lengths_s: &[f64],
+) -> Option<(Vec<f64>, Dependence)> {
+    let s = situation;
+    let samples = |length_s: f64| (length_s / s.tau0_s).floor() as u64;
+    match measurand.power? {
+        PowerModel::NoiseTerm(term) => {
+            let value = limit.largest_magnitude().filter(|v| *v > 0.0)?;
+            let background = s.background.with(term, 0.0);
+            let at = |length_s: &f64| term_variance(term, value, &background, samples(*length_s), s.tau0_s);
+            Some((lengths_s.iter().map(at).collect::<Option<_>>()?, Dependence::IndependentGains))
+        }
+        PowerModel::WindowMeans { window_s } => {
+            let mut model = s.background;
+            model.r = 0.0;
+            let at = |length_s: &f64| {
+                let windows = (length_s / window_s).floor() as u64;
+                Some(1.0 / edf_of_window_std(windows, window_s, |t| model.mean_variance(t))?)
+            };
+            Some((lengths_s.iter().map(at).collect::<Option<_>>()?, Dependence::IndependentGains))
+        }
+        PowerModel::Mean => {
+            let others = [("earth_rate", s.earth_uncertainty_deg_h)];
+            let of = |length_s: f64| BiasUncertainty::of_mean(&s.background.into(), length_s, None, &others);
+            let full = of(*lengths_s.last()?);
+            // The mean of white noise and a constant error gain independently; the mean of flicker or of a random walk does not.
+            let correlated = full.flicker + full.rate_random_walk + full.rate_ramp;
+            let is_white = correlated <= INDEPENDENT_SHARE * full.variance();
+            let dependence = if is_white { Dependence::IndependentGains } else { Dependence::Unknown };
+            Some((lengths_s.iter().map(|l| of(*l).variance()).collect(), dependence))
+        }
+    }
+}
+
 /// The power rows of a report, one for each limit and channel.
 pub fn records(limits: &EffectiveLimits, gyros: &[GyroEvidence]) -> Vec<PowerRecord> {
     let mut rows = Vec::new();
@@ -64,13 +116,7 @@ pub fn records(limits: &EffectiveLimits, gyros: &[GyroEvidence]) -> Vec<PowerRec
             if limits.limit(spec.measurand.id, &gyro.channel) != Some(spec) {
                 continue;
             }
-            let situation = Situation {
-                background: gyro.identification.supported,
-                duration_s: gyro.usable_s(),
-                tau0_s: gyro.tau0_s,
-                earth_uncertainty_deg_h: gyro.earth.map_or(0.0, |e| e.uncertainty_deg_h),
-            };
-            let Some(power) = of_limit(spec.measurand, &spec.limit, &situation) else { continue };
+            let Some(power) = of_limit(spec.measurand, &spec.limit, &situation(gyro)) else { continue };
             let Some(limit) = spec.limit.max else { continue };
             rows.push(PowerRecord {
                 id: spec.measurand.id.to_owned(),

@@ -72,7 +72,10 @@ pub(super) fn name_pauses(window: &mut Window, report: &StreamReport) {
 pub(super) fn window(procedure: &Procedure) -> WindowSpec {
     WindowSpec {
         from_s: procedure.conditions.warm_up_s,
-        to_s: None,
+        to_s: procedure
+            .interim
+            .as_ref()
+            .and_then(|plan| Some(procedure.conditions.warm_up_s + plan.evaluated_s()?)),
         exclusions: procedure
             .exclusions
             .iter()

@@ -4,6 +4,7 @@ use super::condition::checks::CheckLog;
 use super::condition::stability_track::{StabilityFacts, StabilityKey};
 use super::condition::status_track::StatusTrack;
 use super::condition::{GyroFact, WarmUpFact};
+use super::power::Situation;
 use super::request::{Request, RunError, Table};
 use crate::config::procedure::Procedure;
 use crate::config::procedure::model::MeasurandSpec;
@@ -164,6 +165,11 @@ pub(super) trait Evidence {
 
     /// The estimates of a measurand on every channel; channels asked for and limits are applied by the pipeline.
     fn estimates(&self, reading: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate>;
+
+    /// What the predicted variance of a channel's quantities follows from; `None` where nothing predicts it.
+    fn situation(&self, _channel: &str) -> Option<Situation> {
+        None
+    }
 
     /// The correlation of two estimates from one fit; `None` where they are not of one, or where it is not known.
     fn correlation(&self, _one: &Estimate, _other: &Estimate) -> Option<f64> {

@@ -1,5 +1,6 @@
 //! `sagnac demo`: the main job on a recording that the program carries.
 
+use super::follow::FollowArgs;
 use super::join::JoinArgs;
 use super::keep::StoreArgs;
 use super::options::OutputArgs;
@@ -40,6 +41,7 @@ pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
         recording: vec![recording],
         join: JoinArgs::default(),
         each: EachArgs::default(),
+        follow: FollowArgs::default(),
         sources: SourceArgs::default(),
         limits: Some("sample-unit".into()),
         require_limits: false,

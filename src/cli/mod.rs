@@ -16,6 +16,7 @@ mod explain_args;
 mod explain_jointly;
 mod export;
 mod figure;
+mod follow;
 mod help;
 mod history;
 mod init;

@@ -1,5 +1,6 @@
 //! `sagnac run`: a procedure on a recording.
 
+use super::follow;
 use super::inputs::Serial;
 use super::job::{Frame, Job, Made, execute};
 use super::keep::Keeper;
@@ -12,6 +13,7 @@ use crate::config::shipped::find;
 use crate::estimate::Verdict;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{Recording, RecordingError};
+use crate::moment;
 use crate::output::{Kind, StagedFolder};
 use crate::report::Results;
 use std::path::Path;
@@ -21,7 +23,19 @@ use std::path::Path;
 /// # Errors
 /// The diagnostic, in words.
 pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
-    execute(&args.output, lang, |frame| Run::load(args, frame))
+    if !args.follow.follow {
+        return execute(&args.output, lang, |frame| {
+            args.join.check(&args.recording, "join.help.run", lang)?;
+            let test = SingleTest::load(args, frame.now, lang)?;
+            Run::load(args, test, frame)
+        });
+    }
+    let mut test = SingleTest::load(args, moment::now(), lang)?;
+    follow::until_complete(args, &test, lang)?;
+    execute(&args.output, lang, |frame| {
+        test.setup.now = frame.now;
+        Run::load(args, test, frame)
+    })
 }
 
 /// A test of one recording.
@@ -34,10 +48,8 @@ struct Run<'a> {
 }
 
 impl<'a> Run<'a> {
-    fn load(args: &'a RunArgs, frame: &mut Frame<'_>) -> Result<Run<'a>, String> {
+    fn load(args: &'a RunArgs, test: SingleTest<'a>, frame: &mut Frame<'_>) -> Result<Run<'a>, String> {
         let lang = frame.lang;
-        args.join.check(&args.recording, "join.help.run", lang)?;
-        let test = SingleTest::load(args, frame.now, lang)?;
         let keeper = Keeper::new(&args.store, lang)?;
         frame.progress.stage("progress.inputs");
         // A recording that is there and cannot be opened still gets its report: the verdict is an error, and says why. A

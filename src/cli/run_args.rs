@@ -1,6 +1,7 @@
 //! The arguments of `sagnac run`.
 
 use super::exit;
+use super::follow::FollowArgs;
 use super::join::JoinArgs;
 use super::keep::StoreArgs;
 use super::options::{GridArgs, OutputArgs};
@@ -23,6 +24,8 @@ pub struct RunArgs {
     pub join: JoinArgs,
     #[command(flatten)]
     pub each: EachArgs,
+    #[command(flatten)]
+    pub follow: FollowArgs,
     #[command(flatten)]
     pub sources: SourceArgs,
     /// Limits file; overrides the procedure's limits for the same measurand

@@ -19,6 +19,9 @@ use std::path::Path;
 /// # Errors
 /// The diagnostic, in words.
 pub fn main(args: &RunArgs, lang: Lang) -> Result<u8, String> {
+    if args.follow.follow {
+        return Err(place::error(&note!("follow.phases"), lang));
+    }
     execute(&args.output, lang, |frame| RunOfPhases::load(args, frame))
 }
 

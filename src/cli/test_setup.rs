@@ -64,7 +64,8 @@ pub struct Setup<'a> {
     args: &'a RunArgs,
     taus: Option<TauGrid>,
     units: UnitData,
-    now: DateTime<Utc>,
+    /// When the evaluation runs.
+    pub now: DateTime<Utc>,
 }
 
 impl<'a> Setup<'a> {

@@ -26,6 +26,7 @@ pub(crate) enum Entry {
     Unit(Unit),
     Column(ColumnRef),
     Taus(Taus),
+    Looks(Vec<Look>),
     Allowance(Allowance),
     Measurand(&'static Measurand),
     Quantities(Vec<(&'static Measurand, f64, Span)>),
@@ -50,6 +51,15 @@ pub(crate) enum Given {
     Number(f64),
     List(Vec<f64>),
     Text(String),
+}
+
+/// A moment at which a growing test is looked at.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Look {
+    /// After this much of the evaluated time, s.
+    Time(f64),
+    /// After this share of the full duration.
+    Share(f64),
 }
 
 /// Averaging times asked for.

@@ -159,6 +159,8 @@ pub enum Kind {
     Column,
     /// Averaging times: `"octave"`, `"decade"`, `"all"` or a list such as `["1 s", "10 s"]`.
     Taus,
+    /// Moments of a growing test: `["10 h", "50 h"]`, or shares of its length such as `["10 %", 0.5, 1.0]`.
+    Looks,
     /// A count such as `10`, or a share such as `"0.1 %"`.
     Allowance,
     /// The id of a measurand.
@@ -212,6 +214,7 @@ impl Kind {
             Kind::UnitText => note!("keyed.kind.unit"),
             Kind::Column => note!("keyed.kind.column"),
             Kind::Taus => note!("keyed.kind.taus"),
+            Kind::Looks => note!("keyed.kind.looks"),
             Kind::Allowance => note!("keyed.kind.allowance"),
             Kind::Measurand => note!("keyed.kind.measurand"),
             Kind::Table(_) => note!("keyed.kind.table"),

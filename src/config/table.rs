@@ -5,7 +5,7 @@
 
 use super::diagnostics::Span;
 use super::read_tables::entry_of_default;
-use super::section::{Allowance, Entry, Named, Section, Taus};
+use super::section::{Allowance, Entry, Look, Named, Section, Taus};
 use super::spec::{KeySpec, Kind, Need, Range, TableSpec};
 use crate::i18n::LocalText;
 use crate::measurand::Measurand;
@@ -118,6 +118,7 @@ entries! {
     Unit: Kind::UnitText, Entry::Unit(unit) => unit.clone();
     ColumnRef: Kind::Column, Entry::Column(column) => column.clone();
     Taus: Kind::Taus, Entry::Taus(taus) => taus.clone();
+    Vec<Look>: Kind::Looks, Entry::Looks(looks) => looks.clone();
     Allowance: Kind::Allowance, Entry::Allowance(allowance) => *allowance;
     &'static Measurand: Kind::Measurand, Entry::Measurand(measurand) => measurand;
     Vec<(&'static Measurand, f64, Span)>: Kind::QuantityMap, Entry::Quantities(list) => list.clone();

@@ -4,7 +4,7 @@ use super::diagnostics::Span;
 use super::quantity::{self, QuantityError};
 use super::reader::{Reader, Value, for_example, shorten};
 use super::role_words;
-use super::section::{Allowance, Entry, Given, Named, Taus};
+use super::section::{Allowance, Entry, Given, Look, Named, Taus};
 use super::spec::{KeySpec, Kind, Range, Word};
 use super::texts::{Blank, local, text};
 use crate::effect::EFFECTS;
@@ -17,6 +17,12 @@ use toml::de::DeValue;
 
 /// Most averaging times in a list.
 const MAX_TAUS: usize = 1000;
+
+/// Most looks at a growing test.
+const MAX_LOOKS: usize = 100;
+
+/// Shares of a length that a look may be at.
+const LOOK_SHARES: Range = Range { low: 0.0, high: 1.0, open: true };
 
 /// Most numbers in a list.
 const MAX_NUMBERS: usize = 100_000;
@@ -94,6 +100,7 @@ pub(crate) fn scalar(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Entry>
         Kind::UnitText => unit(reader, value).map(Entry::Unit),
         Kind::Column => column(reader, value).map(Entry::Column),
         Kind::Taus => taus(reader, value).map(Entry::Taus),
+        Kind::Looks => looks(reader, value).map(Entry::Looks),
         Kind::Allowance => allowance(reader, value).map(Entry::Allowance),
         Kind::Measurand => {
             let name = text(reader, value, Blank::Refused)?;
@@ -289,6 +296,25 @@ fn taus(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Taus> {
         }
         _ => reader.wrong(value),
     }
+}
+
+/// Looks of a growing test; each item that is none is reported.
+fn looks(reader: &mut Reader<'_>, value: Value<'_>) -> Option<Vec<Look>> {
+    let DeValue::Array(items) = value.toml else { return reader.wrong(value) };
+    if items.is_empty() || items.len() > MAX_LOOKS {
+        return reader.wrong(value);
+    }
+    let one = |item: Value<'_>, reader: &mut Reader<'_>| {
+        let is_percent = matches!(item.toml, DeValue::String(text) if text.trim_end().ends_with('%'));
+        if is_percent {
+            return quantity_in(reader, item, "1", false, LOOK_SHARES).map(Look::Share);
+        }
+        match number(item.toml) {
+            Some(share) => in_range(reader, item, share, LOOK_SHARES, "").then_some(Look::Share(share)),
+            None => quantity_in(reader, item, "s", false, Range::POSITIVE).map(Look::Time),
+        }
+    };
+    Some(items.iter().filter_map(|v| one(value.with(v.get_ref(), &v.span()), reader)).collect())
 }
 
 fn quantity_in(

@@ -23,6 +23,13 @@ pub fn sha256_of_file(path: &Path) -> Option<String> {
     sha256_of_reader(file).ok()
 }
 
+/// SHA-256 of the first bytes of a file; `None` for what is no file, is shorter, or cannot be read.
+pub fn sha256_of_beginning(path: &Path, bytes: u64) -> Option<String> {
+    let file = path.is_file().then(|| File::open(path).ok()).flatten()?;
+    let is_long = file.metadata().is_ok_and(|m| m.len() >= bytes);
+    is_long.then(|| sha256_of_reader(file.take(bytes)).ok()).flatten()
+}
+
 /// SHA-256 of everything that can be read.
 pub(super) fn sha256_of_reader(mut from: impl Read) -> std::io::Result<String> {
     let (mut hash, mut block) = (Sha256::new(), vec![0; 1 << 16]);

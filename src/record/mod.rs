@@ -16,6 +16,7 @@ mod explained;
 mod goodness;
 mod history;
 pub mod integrity;
+mod interim;
 mod interval_mean;
 pub(crate) mod local;
 mod lot;
@@ -54,6 +55,7 @@ pub use history::{
     HistoryStation, HistoryYield,
 };
 pub use integrity::{FaultRecord, FaultText, Integrity};
+pub use interim::{InterimRecord, InterimRow, InterimState};
 pub use interval_mean::IntervalMeanRecord;
 pub use lot::{LOT_FORMAT, LotCondition, LotFile, LotRecord, LotUnit, SerialSource, VerdictCounts};
 pub use message::Message;
@@ -129,6 +131,9 @@ pub struct RunRecord {
     pub conditions: Vec<ConditionRecord>,
     /// Checks that a test of this kind could make, and whether they were made.
     pub checks: Vec<CheckRecord>,
+    /// The plan of looks that the test may end at, and the look that was evaluated; absent without a plan.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub interim: Option<InterimRecord>,
     /// Faults of the recording.
     pub integrity: Integrity,
     /// The part of the recording that was evaluated, and what was left out of it.

@@ -1,12 +1,13 @@
 //! Which test of a unit a result is, and what came of those before it.
 
-use super::entry::{Entry, EntryTest, Reason, ReasonKind};
+use super::entry::{Entry, EntryRecording, EntryTest, Reason, ReasonKind};
 use super::error::StoreError;
 use super::index::{Attempt, Filter};
 use super::opened::Store;
 use super::reservation::Reservation;
 use crate::estimate::Verdict;
 use crate::i18n::{Arg, Note, note};
+use crate::output::sha256_of_beginning;
 use crate::record::{AttemptRecord, EarlierAttempt, Message, RunRecord};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -40,15 +41,29 @@ pub fn attempt_of(
     let earlier = store.attempts(&filter)?;
     let before = earlier.iter().map(|a| a.number).max().unwrap_or(0).max(taken);
     let reservation = store.reserve(&unit, procedure, before + 1)?;
-    Ok(Some((record_of(&earlier, reservation.number, &entry.test), reservation)))
+    let looked = record.interim.is_none().then(|| looked_before(&earlier, &entry)).flatten();
+    Ok(Some((record_of(&earlier, reservation.number, &entry.test, looked), reservation)))
+}
+
+/// That an earlier attempt evaluated the beginning of the same growing recording.
+fn looked_before(earlier: &[Attempt], entry: &Entry) -> Option<Note> {
+    let [recording] = entry.recordings.as_slice() else { return None };
+    let is_beginning = |before: &EntryRecording| {
+        before.bytes > 0
+            && before.bytes < recording.bytes
+            && sha256_of_beginning(Path::new(&recording.path), before.bytes).as_ref() == Some(&before.sha256)
+    };
+    let looked =
+        earlier.iter().rev().find(|a| matches!(a.entry.recordings.as_slice(), [one] if is_beginning(one)))?;
+    Some(note!("interim.looked_before", number = looked.number))
 }
 
 /// The record of an attempt after others.
-fn record_of(earlier: &[Attempt], number: u64, test: &EntryTest) -> AttemptRecord {
+fn record_of(earlier: &[Attempt], number: u64, test: &EntryTest, looked: Option<Note>) -> AttemptRecord {
     AttemptRecord {
         number,
         earlier: earlier.iter().map(one).collect(),
-        summary: summary(earlier, number, test).into_iter().map(Message::from).collect(),
+        summary: summary(earlier, number, test).into_iter().chain(looked).map(Message::from).collect(),
     }
 }
 
@@ -139,7 +154,7 @@ mod tests {
         let earlier =
             [attempt(1, "fail", "angle_random_walk", "a"), attempt(2, "indeterminate", "static_bias", "a")];
         let test = attempt(3, "pass", "static_bias", "b").entry.test;
-        let record = record_of(&earlier, 3, &test);
+        let record = record_of(&earlier, 3, &test, None);
         assert_eq!(record.number, 3);
         let said: Vec<String> = record.summary.iter().map(|m| m.say(Lang::En)).collect();
         assert!(said[0].contains('3') && said[0].contains("1: fail"), "{said:?}");
@@ -150,7 +165,7 @@ mod tests {
 
     #[test]
     fn a_first_attempt_says_nothing() {
-        let record = record_of(&[], 1, &attempt(1, "pass", "static_bias", "a").entry.test);
+        let record = record_of(&[], 1, &attempt(1, "pass", "static_bias", "a").entry.test, None);
         assert_eq!((record.number, record.earlier.len(), record.summary.len()), (1, 0, 0));
     }
 }

@@ -14,6 +14,7 @@ pub mod goodness_of_fit;
 pub mod identification;
 pub mod index;
 pub mod influence;
+pub mod interim;
 pub mod joint;
 pub mod laboratory;
 pub mod lot_bounds;
@@ -75,4 +76,5 @@ pub static STUDIES: &[&Study] = &[
     &joint::STUDY,
     &lot_bounds::STUDY,
     &sibling_alarms::STUDY,
+    &interim::STUDY,
 ];

@@ -14,6 +14,7 @@ mod component;
 mod decision;
 mod distribution;
 mod objection;
+mod sequential;
 mod tail;
 
 pub use component::{CommonTo, Component, ComponentLaw, InputQuantity, UncertaintySource, spread_of};
@@ -21,6 +22,7 @@ pub use decision::{Judgement, Limit, Limits, Rule, Verdict, judge};
 pub use distribution::student_quantile;
 pub use distribution::{chi_square_quantile, normal_probability, normal_quantile};
 pub use objection::{Finding, Holds, Objection};
+pub use sequential::{Dependence, deciding_scores, spent};
 pub use tail::{
     chi_square_tail, chi_square_two_sided, ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided,
     normal_two_sided,

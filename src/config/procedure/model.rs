@@ -10,6 +10,7 @@ use super::spec::Word;
 pub use super::tables::conditions::{
     Bounds, Conditions, FaultBudget, RangeCondition, StatusCondition, SupplyCondition, TemperatureCondition,
 };
+use super::tables::interim::InterimPlan;
 use super::unit_facts::UnitFact;
 use crate::config::external::ExternalSpec;
 use crate::config::table::{Table, words};
@@ -72,6 +73,8 @@ pub struct Procedure {
     pub channels: Vec<ChannelSpec>,
     /// Conditions of the test.
     pub conditions: Conditions,
+    /// Looks at a growing recording; `None`: it is decided at its full duration.
+    pub interim: Option<InterimPlan>,
     /// Spans left out, declared beforehand.
     pub exclusions: Vec<ExclusionRecord>,
     /// Where the unit stands and its axes point.
@@ -419,6 +422,18 @@ impl Procedure {
     /// The channels that deliver a gyro output, in the order of the file.
     pub fn gyro_channels(&self) -> impl Iterator<Item = &ChannelSpec> {
         self.channels.iter().filter(|c| c.channel.role.is_gyro())
+    }
+
+    /// True for a test of a unit at rest under constant conditions.
+    pub fn is_at_rest(&self) -> bool {
+        self.rate_table.is_none()
+            && self.temperature_test.is_none()
+            && self.warm_up_test.is_none()
+            && self.acceleration_test.is_none()
+            && self.transfer_test.is_none()
+            && self.start_up_test.is_none()
+            && self.repeatability_test.is_none()
+            && self.comparison_test.is_none()
     }
 
     /// The result of another test of an id.

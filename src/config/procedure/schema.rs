@@ -195,6 +195,11 @@ fn value(kind: Kind) -> Value {
             {"enum": ["octave", "decade", "all"]},
             {"type": "array", "items": quantity(), "minItems": 1},
         ]}),
+        Kind::Looks => json!({
+            "type": "array",
+            "items": {"oneOf": [{"type": "number", "exclusiveMinimum": 0, "maximum": 1}, quantity()]},
+            "minItems": 1,
+        }),
         Kind::Allowance => json!({"oneOf": [{"type": "integer", "minimum": 0}, quantity()]}),
         Kind::Measurand => json!({"enum": available().collect::<Vec<_>>()}),
         Kind::Table(spec) => table(spec),

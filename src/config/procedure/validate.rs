@@ -30,6 +30,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     super::tables::noise::validate(procedure, root, reader);
     super::tables::rate_table::validate(procedure, root, reader);
     super::tables::influence::validate(procedure, root, reader);
+    super::tables::interim::validate(procedure, root, reader);
 }
 
 /// Remarks on a procedure that can be used.

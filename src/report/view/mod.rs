@@ -14,6 +14,7 @@ mod faults;
 mod figures;
 mod further;
 mod instruments;
+mod interim;
 mod interval_means;
 mod limits;
 mod lines;

@@ -3,7 +3,7 @@
 use super::part::{Part, Phase};
 use super::{
     budget, checks, comparison, conditions, evidence, explained, faults, figures, further, instruments,
-    interval_means, limits, lines, models, phases, table_steps,
+    interim, interval_means, limits, lines, models, phases, table_steps,
 };
 use crate::i18n::LocalText;
 use crate::record::{RunKind, RunRecord};
@@ -145,7 +145,8 @@ fn conventions(part: &Part<'_>) -> Vec<Block> {
 
 /// What the verdict rests on.
 fn shown(part: &Part<'_>) -> Vec<Block> {
-    let sections: [fn(&Part<'_>) -> Vec<Block>; 14] = [
+    let sections: [fn(&Part<'_>) -> Vec<Block>; 15] = [
+        interim::section,
         explained::section,
         conditions::remarks,
         checks::section,

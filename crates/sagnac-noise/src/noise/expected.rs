@@ -16,6 +16,8 @@ use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Probability that both decisions must reach before a record counts as long enough.
 pub const MIN_POWER: f64 = 0.8;
+/// Fewest samples that are analysed.
+const MIN_SAMPLES: u64 = 64;
 /// Longest record considered, h.
 const MAX_HOURS: f64 = 1000.0;
 
@@ -52,7 +54,7 @@ pub fn decision_power(
     tau0_s: f64,
     risk: f64,
 ) -> Option<Power> {
-    if limit.is_nan() || limit <= 0.0 || samples < 64 || tau0_s.is_nan() || tau0_s <= 0.0 {
+    if limit.is_nan() || limit <= 0.0 || samples < MIN_SAMPLES || tau0_s.is_nan() || tau0_s <= 0.0 {
         return None;
     }
     let at = |samples: u64| {
@@ -70,6 +72,23 @@ pub fn decision_power(
         expected_upper_limit_at_zero: expected_upper_limit(term, background, samples, tau0_s),
         needed_duration_h: shortest(samples as f64 * tau0_s / 3600.0, enough),
     })
+}
+
+/// Relative variance that the estimate of the coefficient of `term` is predicted to have in a record of a unit with this `value` and the
+/// other terms of `background`. `None` for a record too short to be analysed.
+pub fn term_variance(
+    term: NoiseType,
+    value: f64,
+    background: &NoiseModel,
+    samples: u64,
+    tau0_s: f64,
+) -> Option<f64> {
+    if samples < MIN_SAMPLES || tau0_s.is_nan() || tau0_s <= 0.0 {
+        return None;
+    }
+    let case = Case::new(term, value, background, samples, tau0_s)?;
+    let relative = case.relative_sigma(&case.structure);
+    (relative.is_finite() && relative > 0.0).then_some(relative * relative)
 }
 
 /// Power of an upper limit on a standard deviation whose square is χ² with `edf(hours)` degrees of freedom.

@@ -119,6 +119,11 @@ impl Evidence for RestEvidence {
         self.gyros.iter().flat_map(of).collect()
     }
 
+    fn situation(&self, channel: &str) -> Option<power::Situation> {
+        let gyro = self.gyros.iter().find(|g| g.channel == channel && !g.motion.is_motion())?;
+        self.is_constant().then(|| power::situation(gyro))
+    }
+
     fn correlation(&self, one: &Estimate, other: &Estimate) -> Option<f64> {
         let gyro = self.gyros.iter().find(|g| g.channel == one.channel && g.channel == other.channel)?;
         let fitted = |e: &Estimate| match measurand::find(e.id)?.power? {

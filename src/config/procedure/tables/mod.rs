@@ -4,6 +4,7 @@ pub(crate) mod acceleration;
 pub(crate) mod conditions;
 pub(crate) mod derived;
 pub(crate) mod influence;
+pub mod interim;
 pub mod limits;
 pub(crate) mod noise;
 pub mod phases;
@@ -27,6 +28,7 @@ use acceleration::AccelerationKeys;
 use conditions::{Conditions, Exclusion};
 use derived::{DerivedKeys, DerivedLimitKeys};
 use influence::{MagneticKeys, RepeatabilityKeys, SupplyKeys, VibrationKeys};
+use interim::InterimKeys;
 use limits::{LimitKeys, ReferenceKeys, TypicalValues};
 use noise::NoiseKeys;
 use rate_table::RateTableKeys;
@@ -84,6 +86,8 @@ pub(in crate::config::procedure) struct ProcedureFile {
     /// Conditions under which the test is valid.
     #[key(optional)]
     pub conditions: Conditions,
+    /// Looks at a growing recording, at which the test may end.
+    pub interim: Option<InterimKeys>,
     /// Spans excluded from the evaluation, declared beforehand.
     #[key(name = "exclude")]
     pub exclusions: Vec<Exclusion>,
