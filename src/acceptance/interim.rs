@@ -279,7 +279,7 @@ fn said(interim: &InterimRecord) -> Vec<Note> {
             after = Arg::span(*after_s),
             spent = Arg::Number(100.0 * interim.spent_risk)
         ),
-        None => note!("interim.before_first", looks, recorded = Arg::span(interim.recorded_s.round())),
+        None => note!("interim.before_first", looks, recorded_h = interim.recorded_s / 3600.0),
     };
     let mut open: Vec<Arg> = vec![];
     for row in interim.rows.iter().filter(|r| r.state == InterimState::Open) {

@@ -159,7 +159,7 @@ fn copy_whole_lines(from: &Path, to: &Path, bytes: u64) -> std::io::Result<()> {
 /// How far the recording has come, and the state of every row with a limit. Without a plan of looks nothing is decided before the end.
 fn rows(record: &RunRecord) -> Vec<Note> {
     let recorded_s = record.recording.iter().map(|f| f.duration_s).sum::<f64>();
-    let mut notes = vec![note!("follow.so_far", recorded = Arg::span(recorded_s.round()))];
+    let mut notes = vec![note!("follow.so_far", recorded_h = recorded_s / 3600.0)];
     let limited = record.measurands.iter().filter(|m| m.limit.is_some());
     notes.extend(limited.map(|m| {
         let plan = record.interim.as_ref();

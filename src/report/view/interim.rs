@@ -5,7 +5,7 @@ use super::rows::Row;
 use crate::i18n::Arg;
 use crate::i18n::note;
 use crate::record::{InterimRecord, InterimRow};
-use crate::report::number::{NOTHING, decimals, percent};
+use crate::report::number::{NOTHING, decimals, duration, percent};
 use crate::report::page::{Block, Table, Value};
 use crate::report::translator::Translator;
 
@@ -66,7 +66,7 @@ fn hint(interim: &InterimRecord, words: Translator) -> String {
         &[
             ("looks", &looks.join("; ")),
             ("look", &interim.look.to_string()),
-            ("recorded", &span(interim.recorded_s.round(), words)),
+            ("recorded", &duration(interim.recorded_s, words.lang)),
         ],
     )
 }
