@@ -210,7 +210,7 @@ impl Row {
             .filter(|_| spec.limit.rule == Rule::GuardBand)
             .and_then(|s| power::variances(spec.measurand, &spec.limit, &s, &plan.looks_s));
         let bounds = predicted.and_then(|(variances, dependence)| {
-            let (information, dependence) = shares(plan, &variances, dependence)?;
+            let information = shares(plan, &variances, dependence)?;
             let scores = deciding_scores(risk, &information, dependence)?;
             Some((information, dependence, scores))
         });
@@ -243,20 +243,16 @@ impl Row {
     }
 }
 
-/// Shares of the information at the looks. Where a predicted variance does not fall with time, as that of a mean under a random walk,
-/// the risk is spent by time, and nothing is assumed of how the looks hang together.
-fn shares(plan: &InterimPlan, variances: &[f64], dependence: Dependence) -> Option<(Vec<f64>, Dependence)> {
-    let of = |all: &[f64], last: f64| all.iter().map(|one| one / last).collect::<Vec<f64>>();
-    let information: Vec<f64> =
-        of(&variances.iter().map(|v| 1.0 / v).collect::<Vec<_>>(), 1.0 / variances.last()?);
-    let rises = information.windows(2).all(|pair| matches!(pair, [a, b] if a < b));
-    if rises {
-        return Some((information, dependence));
+/// Shares of the information at the looks; `None` where a predicted variance does not fall with time. Where nothing is known of how the
+/// looks hang together, the risk is spent by time, which leaves most of it to the full duration.
+fn shares(plan: &InterimPlan, variances: &[f64], dependence: Dependence) -> Option<Vec<f64>> {
+    let full_s = plan.looks_s.last()?;
+    if dependence == Dependence::Unknown {
+        return Some(plan.looks_s.iter().map(|look| look / full_s).collect());
     }
-    (dependence == Dependence::Unknown).then(|| {
-        let full_s = plan.looks_s.last().copied().unwrap_or(1.0);
-        (of(&plan.looks_s, full_s), Dependence::Unknown)
-    })
+    let least = variances.last()?;
+    let information: Vec<f64> = variances.iter().map(|variance| least / variance).collect();
+    information.windows(2).all(|pair| matches!(pair, [a, b] if a < b)).then_some(information)
 }
 
 /// The scores of a row that is decided at the full duration only.
