@@ -122,7 +122,7 @@ mod tests {
         near(row.lower_limit.unwrap().value, 2.0);
         let row = POWER_PEAK.evaluate_start_up(&found()).remove(0);
         withholds(&row, None, SUPPLY_POWER);
-        near(row.lower_limit.unwrap().value, 10.0 - 0.164_485_4);
+        near(row.lower_limit.unwrap().value, 10.0 - 0.1 * SCORE_ONE_SIDED_95);
         assert_eq!(notes(&row), ["start_up.began_later", "start_up.sampled"]);
     }
 
