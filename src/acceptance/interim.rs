@@ -4,8 +4,8 @@ use super::power::{self, Situation};
 use super::reading;
 use super::request::Request;
 use super::test_kind::{Evidence, Progress, Reading, Run};
+use crate::config::procedure::interim_plan::{InterimPlan, Reached};
 use crate::config::procedure::limits::LimitSpec;
-use crate::config::procedure::tables::interim::{InterimPlan, Reached};
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::estimate::{
     Dependence, Estimate, Rule, Verdict, deciding_scores, normal_probability, normal_quantile, spent,

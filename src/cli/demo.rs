@@ -1,6 +1,6 @@
 //! `sagnac demo`: the main job on a recording that the program carries.
 
-use super::follow::FollowArgs;
+use super::follow_args::FollowArgs;
 use super::join::JoinArgs;
 use super::keep::StoreArgs;
 use super::options::OutputArgs;

@@ -3,7 +3,7 @@
 //! A look evaluates a copy of what there is, up to the last complete line. The numbers of the report are those of a plain run, which is
 //! what follows: nothing of a look enters them.
 
-use super::length::{self, Length};
+use super::length::Length;
 use super::printer::Printer;
 use super::progress::Progress;
 use super::run_args::RunArgs;
@@ -13,7 +13,6 @@ use crate::estimate::Verdict;
 use crate::i18n::{Arg, Lang, Localize, Note, io_reason, note};
 use crate::record::{InterimRow, InterimState, MeasurandRecord, RunRecord};
 use crate::watch::folder::Stamp;
-use clap::Args;
 use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
@@ -24,26 +23,6 @@ const REQUEST_POLL: Duration = Duration::from_millis(50);
 
 /// Size of the blocks that a recording is copied in, bytes.
 const COPY_BLOCK: usize = 1 << 20;
-
-/// Following a recording that is being written.
-#[derive(Debug, Args)]
-pub struct FollowArgs {
-    /// Follow a recording that is still being written; report when it stands still, the test is decided, or on Ctrl-C
-    #[arg(long, conflicts_with_all = ["each", "join"])]
-    pub follow: bool,
-    /// Time between two looks at the recording
-    #[arg(long, value_name = "LENGTH", requires = "follow", default_value = "10s", value_parser = length::above_zero)]
-    pub poll: Length,
-    /// Time without change after which the recording is complete
-    #[arg(long, value_name = "LENGTH", requires = "follow", default_value = "60s", value_parser = length::above_zero)]
-    pub still: Length,
-}
-
-impl Default for FollowArgs {
-    fn default() -> FollowArgs {
-        FollowArgs { follow: false, poll: Length { seconds: 10.0 }, still: Length { seconds: 60.0 } }
-    }
-}
 
 /// Looks at the recording of a test until it is complete, the test is decided, or a request to end comes.
 ///

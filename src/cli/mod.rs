@@ -17,6 +17,7 @@ mod explain_jointly;
 mod export;
 mod figure;
 mod follow;
+mod follow_args;
 mod help;
 mod history;
 mod init;
@@ -125,11 +126,9 @@ enum Verb {
     )]
     Watch(watch::WatchArgs),
     /// Serve the pages of a bench: scan a serial number, see the verdict; with an interface for programs
-    #[command(
-        after_help = "Exit codes: 0 ended when asked, 2 could not start.\n\n\
+    #[command(after_help = "Exit codes: 0 ended when asked, 2 could not start.\n\n\
         Examples:\n  sagnac serve --data /srv/bench --recordings /data/bench-2\n  \
-        sagnac serve --rules serve.toml --store /srv/sagnac --station \"bench 2\""
-    )]
+        sagnac serve --rules serve.toml --store /srv/sagnac --station \"bench 2\"")]
     Serve(serve::ServeArgs),
     /// Render the report of a result again, without its recording: in another language, with other templates
     #[command(after_help = "Exit codes: 0 written, 2 could not.\n\n\

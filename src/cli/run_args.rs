@@ -1,7 +1,7 @@
 //! The arguments of `sagnac run`.
 
 use super::exit;
-use super::follow::FollowArgs;
+use super::follow_args::FollowArgs;
 use super::join::JoinArgs;
 use super::keep::StoreArgs;
 use super::options::{GridArgs, OutputArgs};

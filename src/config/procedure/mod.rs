@@ -7,6 +7,7 @@ pub mod derived;
 pub mod derived_rows;
 pub mod guide;
 mod instrument;
+pub mod interim_plan;
 pub mod limit_set;
 pub mod limits;
 mod load;

@@ -3,6 +3,7 @@
 use super::derived_rows::DerivedSpec;
 use super::diagnostics::{Problem, SourceText, Span};
 pub use super::instrument::Instrument;
+use super::interim_plan::InterimPlan;
 use super::limit_set::{LimitSet, LimitsFile};
 pub use super::section::{Allowance, Taus};
 use super::site::Site;
@@ -10,7 +11,6 @@ use super::spec::Word;
 pub use super::tables::conditions::{
     Bounds, Conditions, FaultBudget, RangeCondition, StatusCondition, SupplyCondition, TemperatureCondition,
 };
-use super::tables::interim::InterimPlan;
 use super::unit_facts::UnitFact;
 use crate::config::external::ExternalSpec;
 use crate::config::table::{Table, words};

@@ -5,7 +5,6 @@ use super::limits::{self, LimitsFile};
 use super::model::{ChannelSpec, MeasurandKeys, Procedure, RecordingSpec};
 use super::reader::Reader;
 use super::section::Section;
-use super::tables::interim::InterimPlan;
 use super::tables::limits::{LIMITS_FILE, LimitsTables};
 use super::tables::{ChannelKeys, PROCEDURE_FILE, ProcedureFile};
 use super::{channel, derived, recording_options, validate};
@@ -97,7 +96,7 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         sample_rate_hz,
         sample_rate_tolerance,
         channels: file.channels.iter().filter_map(|keys| one_channel(keys, reader)).collect(),
-        interim: file.interim.map(|keys| InterimPlan::of(keys, file.conditions.planned_duration_s)),
+        interim: file.interim.map(|keys| keys.plan(file.conditions.planned_duration_s)),
         conditions: file.conditions,
         exclusions: file.exclusions.into_iter().map(Into::into).collect(),
         site: file.site,

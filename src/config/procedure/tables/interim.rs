@@ -1,5 +1,6 @@
 //! The table of a procedure that may be decided before its full duration.
 
+use crate::config::procedure::interim_plan::InterimPlan;
 use crate::config::procedure::model::Procedure;
 use crate::config::reader::Reader;
 use crate::config::section::{Look, Section};
@@ -24,42 +25,16 @@ pub(in crate::config::procedure) struct InterimKeys {
     pub risk: Option<f64>,
 }
 
-/// Looks at a growing recording, as times.
-#[derive(Debug, Clone, PartialEq)]
-pub struct InterimPlan {
-    /// Evaluated time after the warm-up at each look, s, ascending; the last is the full duration.
-    pub looks_s: Vec<f64>,
-    /// Risk of every limit over all looks; `None`: that of each limit.
-    pub risk: Option<f64>,
-    /// How far a recording has come, once its length is known.
-    pub reached: Option<Reached>,
-}
-
-/// How far a recording has come in its plan.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Reached {
-    /// Number of looks that lie in it.
-    pub looks: usize,
-    /// Its length after the warm-up, s.
-    pub recorded_s: f64,
-}
-
-impl InterimPlan {
+impl InterimKeys {
     /// The plan of a procedure with a planned duration; shares of an unknown duration, which validation refuses, are left out.
-    pub(in crate::config::procedure) fn of(keys: InterimKeys, planned_s: Option<f64>) -> InterimPlan {
-        let full_s = keys.full_duration_s.or(planned_s);
+    pub(in crate::config::procedure) fn plan(self, planned_s: Option<f64>) -> InterimPlan {
+        let full_s = self.full_duration_s.or(planned_s);
         let time = |look: &Look| match look {
             Look::Time(seconds) => Some(*seconds),
             Look::Share(share) => full_s.map(|full| share * full),
         };
-        let looks_s = keys.looks.iter().filter_map(time).collect();
-        InterimPlan { looks_s, risk: keys.risk, reached: None }
-    }
-
-    /// The look that the recording is evaluated at, s; `None` before the first.
-    pub fn evaluated_s(&self) -> Option<f64> {
-        let looks = self.reached?.looks;
-        self.looks_s.get(looks.checked_sub(1)?).copied()
+        let looks_s = self.looks.iter().filter_map(time).collect();
+        InterimPlan { looks_s, risk: self.risk, reached: None }
     }
 }
 
