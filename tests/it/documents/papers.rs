@@ -62,7 +62,7 @@ fn tested(end: &str) -> TempDir {
 fn a_document_for_word_processors_has_the_report_with_its_figures() {
     let dir = tested("pass");
     let at = dir.path();
-    let said = sagnac(at, &["report", "r", "--format", "docx,html", "--out", "d"]);
+    let said = sagnac(at, &["report", "r", "--format", "docx,html,json", "--out", "d"]);
     assert_eq!(said.code, 0, "{said:?}");
     let parts = unpacked(&at.join("d/report.docx"));
     let body = paragraphs(&parts["word/document.xml"]);
@@ -110,7 +110,7 @@ fn a_certificate_states_conformity_of_a_unit_that_passed() {
     let dir = tested("pass");
     let at = dir.path();
     let asked = ["report", "r", "--document", "certificate"];
-    let said = sagnac(at, &[&asked[..], &["--format", "html,md,docx", "--out", "c"]].concat());
+    let said = sagnac(at, &[&asked[..], &["--format", "html,md,docx,json", "--out", "c"]].concat());
     assert_eq!(said.code, 0, "{said:?}");
     let page = fs::read_to_string(at.join("c/certificate.md")).unwrap();
     for text in [
