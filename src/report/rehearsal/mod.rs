@@ -127,13 +127,23 @@ fn shares(counts: &VerdictCounts, words: Translator) -> [String; 3] {
     [of(counts.pass), of(counts.fail), of(counts.indeterminate + counts.error + counts.none)]
 }
 
+/// Headings of the shares of pass, fail and neither.
+const OF_TEST: [&str; 3] = ["rehearsal.column.pass", "rehearsal.column.fail", "rehearsal.column.open"];
+const OF_WHOLE: [&str; 3] =
+    ["rehearsal.column.whole_pass", "rehearsal.column.whole_fail", "rehearsal.column.whole_open"];
+const OF_ROW: [&str; 3] =
+    ["rehearsal.column.row_pass", "rehearsal.column.row_fail", "rehearsal.column.row_open"];
+
 /// A table with the shares of verdicts behind its own columns.
-fn with_shares(table: Table, prefix: &str, counts: &[VerdictCounts], words: Translator) -> Table {
-    let columns = ["pass", "fail", "open"].map(|id| format!("rehearsal.column.{prefix}{id}"));
-    columns.iter().enumerate().fold(table, |table, (i, key)| {
-        // Three columns of the row stand beside those of the test on a page; a terminal has no room for them.
-        let shown = if prefix == "row_" { OnTerminal::Hidden } else { OnTerminal::Shown };
-        let column = words.number_column(key).on_terminal(shown);
+fn with_shares(
+    table: Table,
+    headings: [&str; 3],
+    on_terminal: OnTerminal,
+    counts: &[VerdictCounts],
+    words: Translator,
+) -> Table {
+    headings.into_iter().enumerate().fold(table, |table, (i, key)| {
+        let column = words.number_column(key).on_terminal(on_terminal);
         table.column(column, counts.iter().map(|c| shares(c, words).into_iter().nth(i).unwrap_or_default()))
     })
 }
@@ -144,7 +154,7 @@ fn lengths(record: &RehearsalRecord, words: Translator) -> Table {
     let table = Table::new("cards", record.lengths.len())
         .column(words.number_column("rehearsal.column.length"), all().map(|l| hours(l.length_h, words)));
     let counts: Vec<VerdictCounts> = all().map(|l| l.nominal).collect();
-    with_shares(table, "", &counts, words)
+    with_shares(table, OF_TEST, OnTerminal::Shown, &counts, words)
         .column(words.column("rehearsal.column.producer"), all().map(|l| risk(&l.producers_risk)))
         .column(words.column("rehearsal.column.consumer"), all().map(|l| risk(&l.consumers_risk)))
 }
@@ -172,7 +182,7 @@ fn rows(length: &RehearsedLength, words: Translator) -> Table {
     let table = Table::new("cards", length.rows.len())
         .column(words.column("rehearsal.column.quantity"), all().map(|r| named(&r.id, words)))
         .column(words.column("rehearsal.column.channel"), all().map(|r| words.channel(&r.channel, &r.id)));
-    with_shares(table, "", &all().map(|r| r.counts).collect::<Vec<_>>(), words)
+    with_shares(table, OF_TEST, OnTerminal::Shown, &all().map(|r| r.counts).collect::<Vec<_>>(), words)
 }
 
 fn levels(length: &RehearsedLength, words: Translator) -> Table {
@@ -187,8 +197,10 @@ fn levels(length: &RehearsedLength, words: Translator) -> Table {
             words.number_column("rehearsal.column.value").on_terminal(OnTerminal::Hidden),
             all().map(|l| words.quantity(&digits(l.value, 3, words.lang), &l.unit)),
         );
-    let table = with_shares(table, "whole_", &all().map(|l| l.whole).collect::<Vec<_>>(), words);
-    with_shares(table, "row_", &all().map(|l| l.row).collect::<Vec<_>>(), words)
+    let table =
+        with_shares(table, OF_WHOLE, OnTerminal::Shown, &all().map(|l| l.whole).collect::<Vec<_>>(), words);
+    // A terminal has no room for the shares of the row beside those of the test.
+    with_shares(table, OF_ROW, OnTerminal::Hidden, &all().map(|l| l.row).collect::<Vec<_>>(), words)
 }
 
 fn nominal(record: &RehearsalRecord, words: Translator) -> Table {

@@ -352,6 +352,7 @@ fn every_example_is_accepted_by_its_own_key() {
                 "exclude each other",
                 "needs a channel with the role",
                 "no channel has the role",
+                "Looks are for tests of a unit at rest",
             ];
             assert!(whole.iter().any(|w| p.message.say(Lang::En).contains(w)), "{p}");
         }

@@ -12,6 +12,8 @@ use std::path::Path;
 /// Ids that a record may hold where its documentation lists them.
 const LISTED: &[(&str, &[&str])] = &[
     ("day", &["hook.pending", "hook.told"]),
+    ("interim", &["state.cannot_pass", "state.decided", "state.open", "state.undecided"]),
+    ("rehearsal", &["from.expected", "from.limit", "from.model", "from.nothing"]),
     ("signer", &["approved", "reviewed", "tested"]),
     (
         "prove",
@@ -142,6 +144,8 @@ const NO_KEYS: &[&str] = &[
     "budget.law_name",
     "budget.source_name",
     "day.hook",
+    "interim.state",
+    "rehearsal.from",
     "measurand.options",
     "attempt.number",
     "attempt.earlier.result",

@@ -24,7 +24,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("crates/sagnac-core/src/evidence/test_evidence.rs", "evidence for tests"),
     ("crates/sagnac-ingest/src/named_file.rs", "the fault as the library says it; the program translates it"),
     ("src/config/syntax.rs", "what the TOML parser says, to be recognised"),
-    ("crates/sagnac-core/src/temperature/compensation.rs", "declarations of a header in C"),
+    ("crates/sagnac-core/src/c_header.rs", "declarations of a header in C"),
     ("src/report/methods.rs", "formulas and names of sources"),
     ("src/cli/mod.rs", "the help in English, which other languages translate"),
     ("src/lib.rs", "documentation"),
