@@ -15,6 +15,22 @@ use std::process::Command;
 /// file's and is not looked at.
 const LATIN: &[&str] = &[
     // Verbs, options and their words.
+    "Ctrl",
+    "follow",
+    "length",
+    "port",
+    "behind",
+    "proxy",
+    "https",
+    "bench",
+    "example",
+    "com",
+    "ZIP",
+    "recordings",
+    "HOST",
+    "PORT",
+    "allow",
+    "root",
     "proof",
     "approved",
     "dcc",
@@ -278,6 +294,10 @@ fn english_of_key(key: &str) -> Option<&str> {
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "follow.row",
+    "follow.row_state",
+    "follow.value",
+    "interim.span",
     "acceleration.deviation",
     "figure.legend.minus_90",
     "figure_paper.axis_times_root",
