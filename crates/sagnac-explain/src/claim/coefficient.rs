@@ -49,10 +49,10 @@ mod tests {
     #[test]
     fn the_longer_side_of_an_interval_counts() {
         let near = Coefficient::found(1.0, Some((0.9, 1.05)));
-        assert!((near.relative - (1.0f64 / 0.9).ln() / 1.96).abs() < 1e-12, "{near:?}");
+        assert!((near.relative - (1.0f64 / 0.9).ln() / SCORE_TWO_SIDED_95).abs() < 1e-12, "{near:?}");
         // An interval that reaches nothing is as wide as any that counts.
         let open = Coefficient::found(1.0, Some((0.0, 1.1)));
-        assert!((open.relative - 3.0 / 1.96).abs() < 1e-12, "{open:?}");
+        assert!((open.relative - 3.0 / SCORE_TWO_SIDED_95).abs() < 1e-12, "{open:?}");
         assert_eq!(Coefficient::found(1.0, None).relative, 0.0);
         assert_eq!(Coefficient::at_most(6.0), Coefficient { at_most: 6.0, ..Coefficient::default() });
         assert_eq!(Coefficient::at_most(f64::INFINITY).at_most, 0.0);
