@@ -136,7 +136,7 @@ def test_results_go_into_frames_files_and_notebooks(samples: Path, tmp_path: Pat
     assert again.to_dict()["measurands"] == result.to_dict()["measurands"]
     assert {f.id for f in result.figures()} >= {"sigma_tau", "time_series"}
     with pytest.raises(sagnac.ArgumentError, match="form"):
-        result.write(tmp_path / "other", forms=["docx"])
+        result.write(tmp_path / "other", forms=["odt"])
 
 
 def test_a_simulation_is_explained(samples: Path) -> None:
