@@ -13,6 +13,7 @@ use crate::record::{
     HistoryShare, Message, NeededLength, Program, REHEARSAL_FORMAT, RehearsalRecord, RehearsedLength,
     RehearsedLevel, RehearsedRow, RunKind, RunRecord, UnitUnderTest, VerdictCounts,
 };
+use crate::simulate::stream;
 use chrono::{DateTime, SecondsFormat, Utc};
 use rayon::prelude::*;
 use std::sync::Mutex;
@@ -213,7 +214,7 @@ fn trials(
             let level = kind.checked_sub(1).and_then(|k| levels.get(k));
             let place = ((length * kinds + kind) * order.units + unit) as u64;
             let length_s = lengths_s.get(length).copied().unwrap_or_default();
-            let source = bench.recording(length_s, level, seed_of(order.seed, place))?;
+            let source = bench.recording(length_s, level, stream(order.seed, place))?;
             let record = tested(order, bench, &source);
             if let Ok(mut done) = done.lock() {
                 *done += 1;
@@ -230,11 +231,6 @@ fn trials(
             })
         })
         .collect()
-}
-
-/// A seed of its own for each place (Weyl sequence of SplitMix64).
-fn seed_of(seed: u64, place: u64) -> u64 {
-    seed.wrapping_add(0x9e37_79b9_7f4a_7c15_u64.wrapping_mul(place + 1))
 }
 
 /// The record of a run on a simulated recording; `None` where it could not be evaluated.

@@ -16,7 +16,7 @@ use crate::noise::data::NoiseType;
 use crate::noise::model::NoiseModel;
 use crate::record::{NominalSource, NominalValue};
 use crate::recording::{ColumnRef, Role};
-use crate::simulate::{Order, Over, Simulation};
+use crate::simulate::{Order, Over, Simulation, stream};
 use crate::units::Unit;
 use std::collections::BTreeMap;
 
@@ -25,6 +25,9 @@ const NOMINAL_SHARE_OF_LIMIT: f64 = 0.5;
 
 /// Noise of a simulated thermometer, degC, and of a simulated supply, V: far within any tolerance.
 const SENSOR_NOISE: f64 = 0.002;
+
+/// Tag of the stream that draws how far the Earth rate of a unit's position is from the stated one.
+const ORIENTATION_STREAM: u64 = u64::MAX;
 
 /// Rows that are handed on at a time.
 const BLOCK_ROWS: usize = 1 << 14;
@@ -143,8 +146,8 @@ impl<'a> Bench<'a> {
         for (place, spec) in self.procedure.gyro_channels().enumerate() {
             let channel = spec.channel.id.as_str();
             let own = level.filter(|l| l.channel == channel);
-            let own_seed = mixed(seed ^ (place as u64).rotate_left(48));
-            let claim = self.claim(channel, own, normal_deviate(mixed(own_seed)));
+            let own_seed = stream(seed, place as u64);
+            let claim = self.claim(channel, own, normal_deviate(stream(own_seed, ORIENTATION_STREAM)));
             let over = Over::Duration { duration_s, start_s: 0.0, drivers: &self.drivers };
             let order = Order { claim: &claim, seed: own_seed, over };
             let rows = Simulation::begin(order).and_then(Simulation::all).map_err(|e| e.note().clone())?;
@@ -211,13 +214,6 @@ impl<'a> Bench<'a> {
             },
         }
     }
-}
-
-/// The bits of a number mixed, so that neighbours have nothing in common (SplitMix64; Steele, Lea and Flood 2014).
-fn mixed(mut bits: u64) -> u64 {
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ (bits >> 31)
 }
 
 /// A standard normal deviate made of random bits.

@@ -14,4 +14,5 @@ mod shape;
 
 pub use error::SimulateError;
 pub use run::{Order, Over, Rows, Simulation};
+pub use seed::stream;
 pub use shape::claimed_density;

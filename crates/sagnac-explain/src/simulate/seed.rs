@@ -4,7 +4,7 @@ use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 /// The seed of one use of a simulation. Different tags give independent streams of the same seed.
-pub(super) fn stream(seed: u64, tag: u64) -> u64 {
+pub fn stream(seed: u64, tag: u64) -> u64 {
     let mut mixed = SplitMix64::seed_from_u64(seed);
     let base = mixed.next_u64();
     SplitMix64::seed_from_u64(base ^ tag.wrapping_mul(0x9e37_79b9_7f4a_7c15)).next_u64()
