@@ -23,22 +23,12 @@ pub fn outcome(record: &RunRecord) -> Outcome {
     let reasons = reasons(&unit, en).into_iter().zip(reasons(&unit, ru));
     let several = several_channels(&unit);
     Outcome {
-        verdict: verdict(record.verdict),
+        verdict: record.verdict,
         procedure: record.procedure.as_ref().map(|p| p.id.clone()).unwrap_or_default(),
         lot: record.unit_under_test.lot.clone(),
         reasons: reasons.take(MAX_REASONS).map(|(en, ru)| LocalText { en, ru }).collect(),
         next: next(record, &unit),
         quantities: unit.measurands.iter().map(|m| quantity(m, several)).collect(),
-    }
-}
-
-fn verdict(of: Verdict) -> sagnac_serve::Verdict {
-    match of {
-        Verdict::None => sagnac_serve::Verdict::None,
-        Verdict::Pass => sagnac_serve::Verdict::Pass,
-        Verdict::Indeterminate => sagnac_serve::Verdict::Indeterminate,
-        Verdict::Fail => sagnac_serve::Verdict::Fail,
-        Verdict::Error => sagnac_serve::Verdict::Error,
     }
 }
 
@@ -78,7 +68,7 @@ fn quantity(m: &MeasurandRecord, several_channels: bool) -> Quantity {
             words.quantity(&value(m, words), if has_number { &m.unit } else { "" })
         }),
         limit: in_both(|words| limit_text(m, words)),
-        verdict: verdict(m.verdict),
+        verdict: m.verdict,
     }
 }
 

@@ -21,7 +21,6 @@ if (token) {
 // A scanner types like a keyboard: what is typed outside of a field belongs to the serial number.
 const field = document.querySelector("[data-focus]");
 if (field) {
-  field.focus();
   document.addEventListener("keydown", (event) => {
     const typed = event.key.length === 1 && !event.ctrlKey && !event.altKey && !event.metaKey && event.key !== " ";
     if (typed && !event.target.closest("input, select, textarea")) {

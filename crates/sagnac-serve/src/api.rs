@@ -1,7 +1,7 @@
 //! The programming interface: JSON, and streams of events.
 
 use crate::events::{Event, Events};
-use crate::harness::Verdict;
+use sagnac_base::estimate::Verdict;
 use crate::intake::{self, Form, Given};
 use crate::openapi;
 use crate::order::{End, State as RunState};

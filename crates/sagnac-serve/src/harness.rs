@@ -1,6 +1,7 @@
 //! What the program tells of a finished result: the only place where results are understood.
 
 use crate::texts::Lang;
+use sagnac_base::estimate::Verdict;
 use serde::{Deserialize, Serialize};
 use std::path::Path;
 
@@ -19,35 +20,6 @@ impl LocalText {
         match lang {
             Lang::En => &self.en,
             Lang::Ru => &self.ru,
-        }
-    }
-}
-
-/// A verdict on a unit or a quantity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// Nothing was judged.
-    None,
-    /// Meets every limit.
-    Pass,
-    /// Not decided.
-    Indeterminate,
-    /// Violates a limit.
-    Fail,
-    /// The test could not be made.
-    Error,
-}
-
-impl Verdict {
-    /// Its id in results and texts.
-    pub fn id(self) -> &'static str {
-        match self {
-            Verdict::None => "none",
-            Verdict::Pass => "pass",
-            Verdict::Indeterminate => "indeterminate",
-            Verdict::Fail => "fail",
-            Verdict::Error => "error",
         }
     }
 }

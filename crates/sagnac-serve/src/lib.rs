@@ -48,7 +48,7 @@ mod token;
 mod uploads;
 mod worker;
 
-pub use harness::{Harness, LocalText, Next, Outcome, Quantity, Verdict};
+pub use harness::{Harness, LocalText, Next, Outcome, Quantity};
 pub use serve::{Server, StartError};
 pub use setup::{Listen, ProxyError, PublicOrigin, Rule, Setup, Shipped};
 pub use texts::Lang;

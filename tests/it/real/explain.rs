@@ -74,15 +74,15 @@ fn a_micromechanical_unit_is_told_to_have_a_filter() {
 }
 
 /// LN-100, x down, against N, B and the mean of the set.
-fn ring_laser() -> Option<Value> {
+fn ring_laser(more: &[&str]) -> Option<Value> {
     let folder = set("rlg_ln100_two_position")?;
     let model = claim(64.055, 0.0016, 0.05, 0.0, -11.98);
-    Some(explained(&folder.join("x_down.parquet"), "rate_x_deg_h", "deg/h", &model, &[]))
+    Some(explained(&folder.join("x_down.parquet"), "rate_x_deg_h", "deg/h", &model, more))
 }
 
 #[test]
 fn a_ring_laser_unit_is_told_where_its_lines_are() {
-    let Some(report) = ring_laser() else { return };
+    let Some(report) = ring_laser(&[]) else { return };
     // Quantisation and lines at 9.195, 19.08, 20.7 and 29.93 Hz: the strongest is named, and the small rest is placed.
     let spans = places(&report, "frequency");
     assert!(spans.iter().any(|(from, to)| *from < 29.95 && *to > 29.93), "{spans:?}");
@@ -91,6 +91,26 @@ fn a_ring_laser_unit_is_told_where_its_lines_are() {
     let mut ends = lines.map(|p| (p["from"].as_f64().unwrap(), p["to"].as_f64().unwrap()));
     assert!(ends.any(|(from, to)| from < 20.75 && to > 20.65), "{rest:?}");
     assert!(heldout_gain(&report) > 1000.0);
+}
+
+#[test]
+#[ignore = "a miss since named laws come first: docs/validation/explanation.md"]
+fn a_ring_laser_unit_has_its_lines_and_its_quantisation_named_where_more_effects_are_allowed() {
+    let Some(report) = ring_laser(&["--max-effects", "5"]) else { return };
+    let effects = report["effects"].as_array().unwrap();
+    // The digits of the output are a step as well, of 0.007 arcsec, which the values show and the spectrum does not.
+    let in_spectrum = |e: &&Value| e["where"].as_array().unwrap().iter().any(|w| w["domain"] == "frequency");
+    let mut quantised = effects.iter().filter(|e| e["kind"] == "quantization");
+    let steps = quantised.find(in_spectrum).expect("quantisation");
+    // Noise of the angle that is white up to 32 Hz: 400 to 500 (deg/h)²/Hz there is a Q of 0.8 arcsec, a step of 2.6.
+    let arcsec = steps["parameters"]["lsb_arcsec"]["value"].as_f64().unwrap();
+    assert!((2.0..3.2).contains(&arcsec), "{arcsec}");
+    let spans = places(&report, "frequency");
+    for line_hz in [9.2, 19.08, 20.7, 29.94] {
+        let near = |(from, to): &(f64, f64)| to - from < 1.0 && from - 0.1 < line_hz && line_hz < to + 0.1;
+        assert!(spans.iter().any(near), "{line_hz} Hz: {spans:?}");
+    }
+    assert!(heldout_gain(&report) > 10_000.0);
 }
 
 #[test]

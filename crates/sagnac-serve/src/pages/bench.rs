@@ -3,7 +3,7 @@
 use super::{page, refused, see_other, value};
 use crate::api::{self, Listed, Run};
 use crate::catalogue::Catalogue;
-use crate::harness::Verdict;
+use sagnac_base::estimate::Verdict;
 use crate::intake::{Form, Given};
 use crate::order::State as RunState;
 use crate::queue::Job;
