@@ -140,7 +140,8 @@ pub(crate) const WHITE_INDEX: usize = 0;
 pub(crate) const FLICKER_INDEX: usize = 1;
 pub(crate) const WALK_INDEX: usize = 2;
 pub(crate) const QUANTIZATION_INDEX: usize = 3;
-/// 2 Δ ln L from which a term that is not claimed widens the interval of N.
+/// 2 Δ ln L from which a slow term that is not claimed widens the interval of N, and quantisation that is not claimed
+/// the prediction of averages.
 pub(crate) const MIN_SUSPICION_RATIO: f64 = 1.0;
 /// 2 Δ ln L from which a rival that is not claimed widens the interval of a slow term.
 pub(crate) const MIN_RIVAL_RATIO: f64 = 0.5;
@@ -175,13 +176,27 @@ pub(crate) fn low_frequency_note() -> Note {
     note!("note.low_frequency_ambiguous")
 }
 
-/// Terms that may hold a part of this one while too weak to be claimed.
-pub(crate) fn suspects(term: usize) -> &'static [usize] {
-    match term {
+/// Positions of the terms that may hold a part of this one while too weak to be claimed and absent from a structure, by
+/// their 2 Δ ln L.
+///
+/// Slow terms touch a few dozen modes only: one that shows nothing moves the level of the others by nothing.
+/// Quantisation stands in the frequencies that N is read from. One of two thirds of its own standard deviation raises N
+/// by one of N's, and every second such record shows none: it counts whether it shows or not.
+pub(crate) fn suspects<'a>(
+    term: usize,
+    present: &'a [bool],
+    ratios: &'a [f64],
+) -> impl Iterator<Item = usize> + use<'a> {
+    let all: &[usize] = match term {
         WHITE_INDEX => &[FLICKER_INDEX, WALK_INDEX, QUANTIZATION_INDEX],
         QUANTIZATION_INDEX => &[FLICKER_INDEX, WALK_INDEX],
         _ => &[],
-    }
+    };
+    let absent = |other: usize| present.get(other) == Some(&false);
+    let counts = |other: usize| {
+        other == QUANTIZATION_INDEX || ratios.get(other).is_some_and(|r| *r > MIN_SUSPICION_RATIO)
+    };
+    all.iter().copied().filter(move |other| absent(*other) && counts(*other))
 }
 
 /// The term that can stand for this one at the lowest frequencies.

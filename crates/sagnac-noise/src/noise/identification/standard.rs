@@ -120,11 +120,8 @@ fn estimate(
     {
         let mut spread = profile.spread();
         // A part too weak to be named may still hold a part of the level of the white noise.
-        for other in suspects(term) {
-            if !structure[*other]
-                && ratios[*other] > MIN_SUSPICION_RATIO
-                && let Some(wide) = Profile::new(likelihood, &toggled(&structure, *other, true), term)
-            {
+        for other in suspects(term, &structure, ratios) {
+            if let Some(wide) = Profile::new(likelihood, &toggled(&structure, other, true), term) {
                 spread = wider(profile.value(), &spread, &wide.spread());
             }
         }

@@ -1,7 +1,7 @@
 //! Identification with every kind of term.
 
 use super::super::claims::{
-    B, K, LIMIT_COVERAGE, LIMIT_RISE, MIN_RIVAL_RATIO, MIN_SUSPICION_RATIO, R, TERM_PRICE, WHITTLE_METHOD,
+    B, K, LIMIT_COVERAGE, LIMIT_RISE, MIN_RIVAL_RATIO, R, TERM_PRICE, WHITE_INDEX, WHITTLE_METHOD,
     contains_term, is_claimable, low_frequency_note, rival_of, suspects, with_rivals,
 };
 use super::super::linear_fit::RAMP_INDEX;
@@ -233,13 +233,11 @@ impl ShapeFits {
         let value = plateau.level(&model);
         let mut spread = plateau.spread(joint, &self.supported, &self.free);
         // A part too weak to be named may still hold a part of the level.
-        for other in suspects(0) {
-            if !self.free.variance[*other] && self.ratios[*other] > MIN_SUSPICION_RATIO {
-                let mut wide = self.free.clone();
-                wide.variance[*other] = true;
-                let point = joint.maximise(&self.supported, &wide);
-                spread = wider(value, &spread, &plateau.spread(joint, &point, &wide));
-            }
+        for other in suspects(WHITE_INDEX, &self.free.variance, &self.ratios) {
+            let mut wide = self.free.clone();
+            wide.variance[other] = true;
+            let point = joint.maximise(&self.supported, &wide);
+            spread = wider(value, &spread, &plateau.spread(joint, &point, &wide));
         }
         let (id, unit) = IDS[0];
         let estimate =
@@ -256,12 +254,10 @@ impl ShapeFits {
             let (best, mut spread) = self.profile(joint, variable, &free);
             let value = best.reported(variable);
             // A part too weak to be named may still hold a part of the level of the white noise.
-            for other in suspects(term) {
-                if !free.variance[*other] && self.ratios[*other] > MIN_SUSPICION_RATIO {
-                    let mut wide = free.clone();
-                    wide.variance[*other] = true;
-                    spread = wider(value, &spread, &self.profile(joint, variable, &wide).1);
-                }
+            for other in suspects(term, &free.variance, &self.ratios) {
+                let mut wide = free.clone();
+                wide.variance[other] = true;
+                spread = wider(value, &spread, &self.profile(joint, variable, &wide).1);
             }
             let rival = rival_of(term).filter(|r| !free.variance[*r] && self.ratios[*r] > MIN_RIVAL_RATIO);
             if let Some(rival) = rival {
