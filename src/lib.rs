@@ -47,6 +47,7 @@
 //! | [`watch`] | a watched folder: what is complete, what was tested |
 //! | [`store`] | results that are kept, and their index |
 //! | [`i18n`] | sentences in English and Russian |
+//! | [`executable`] | the file that starts this program |
 //! | [`output`] | folders that appear complete or not at all |
 //! | [`cli`] | the program |
 #![forbid(unsafe_code)]
@@ -54,6 +55,7 @@
 pub mod acceptance;
 pub mod cli;
 pub mod config;
+pub mod executable;
 pub mod i18n;
 pub mod ingest;
 mod library;

@@ -10,7 +10,6 @@ use clap::builder::Str;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{Arg, ArgAction, Command, Error};
 use std::ffi::OsString;
-use std::process::ExitCode;
 
 /// Headings of the list of verbs: the first verb below a heading, and the heading. Verbs stand in the order of their declaration.
 const VERB_HEADINGS: &[(&str, &str)] = &[
@@ -163,8 +162,8 @@ fn argument(arg: Arg, lang: Lang) -> Arg {
         .hide_default_value(true)
 }
 
-/// Says why the arguments cannot be used, or shows the help that was asked for.
-pub fn refuse(error: &Error, lang: Lang) -> ExitCode {
+/// Says why the arguments cannot be used, or shows the help that was asked for; gives the exit code.
+pub fn refuse(error: &Error, lang: Lang) -> u8 {
     let asked_for = !error.use_stderr();
     if asked_for || error.kind() == ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand {
         super::stdout::check(error.print());
@@ -174,10 +173,7 @@ pub fn refuse(error: &Error, lang: Lang) -> ExitCode {
     } else {
         super::place::eprint_diagnostic(&complaint(error, lang));
     }
-    ExitCode::from(super::place::settled(
-        if asked_for { super::exit::PASS } else { super::exit::ERROR },
-        lang,
-    ))
+    super::place::settled(if asked_for { super::exit::PASS } else { super::exit::ERROR }, lang)
 }
 
 /// The complaint in a language, for the kinds that the tables know; in the words of the library for others.

@@ -51,6 +51,8 @@ mod schema_files;
 mod selftest;
 mod serve;
 mod sign;
+#[cfg(unix)]
+mod signals;
 mod simulate;
 mod single_test;
 mod source;
@@ -69,7 +71,6 @@ use crate::i18n::{Lang, visible};
 use clap::builder::PossibleValuesParser;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::ffi::OsString;
-use std::process::ExitCode;
 
 #[derive(Debug, Parser)]
 #[command(
@@ -250,12 +251,26 @@ enum Verb {
     Selftest,
 }
 
+/// Prepares a process that runs the program: a signal that ends it leaves nothing half made.
+///
+/// A decoder that panics on a damaged file is caught, and the diagnostic of the file says so: the message of the panic
+/// itself would only confuse, and is not printed.
+pub fn begin() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |panic| {
+        if !crate::ingest::decoder_is_running() {
+            usual(panic);
+        }
+    }));
+    #[cfg(unix)]
+    signals::tidy_up_on();
+}
+
 /// Parses the command line, runs the verb, gives the exit code.
-pub fn main() -> ExitCode {
-    let arguments: Vec<OsString> = std::env::args_os().collect();
-    let lang = help::language(&arguments);
+pub fn run(arguments: &[OsString]) -> u8 {
+    let lang = help::language(arguments);
     let cli = match help::command(Cli::command(), lang)
-        .try_get_matches_from(&arguments)
+        .try_get_matches_from(arguments)
         .and_then(|matches| Cli::from_arg_matches(&matches))
     {
         Ok(cli) => cli,
@@ -315,5 +330,5 @@ pub fn main() -> ExitCode {
         place::eprint_diagnostic(&message);
         exit::ERROR
     });
-    ExitCode::from(place::settled(code, lang))
+    place::settled(code, lang)
 }

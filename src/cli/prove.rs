@@ -6,6 +6,7 @@ use super::place::{self, OutputPlace};
 use crate::config::contained_files::folder_of;
 use crate::config::proof::{self, ClaimSource, ProofFile, Source};
 use crate::config::text_file;
+use crate::executable;
 use crate::i18n::{Lang, Note};
 use crate::output::{Kind, StagedFolder, sha256};
 use crate::prove::{CLAIM_FILE, ProofOrder, prove};
@@ -63,7 +64,7 @@ impl Job for Proving<'_> {
 
     fn run(&self, _: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
         let say = |note: Note| place::error(&note, frame.lang);
-        let program = std::env::current_exe().map_err(|_| say("prove.error.no_room".into()))?;
+        let program = executable::path().map_err(|_| say("prove.error.no_room".into()))?;
         let bytes = text_file::read(&self.args.proof).unwrap_or_default();
         let order = ProofOrder {
             proof: &self.file,

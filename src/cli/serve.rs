@@ -69,6 +69,7 @@ mod server {
     use crate::cli::{ending, exit, place};
     use crate::config::serve as rules_file;
     use crate::config::shipped::{SHIPPED_LIMITS, SHIPPED_PROCEDURES, Shipped};
+    use crate::executable;
     use crate::i18n::{Lang, Localize, Note, io_reason, note};
     use crate::output::{Kind, MAX_RECORD_BYTES};
     use crate::record::read;
@@ -112,7 +113,7 @@ mod server {
     fn setup(args: &ServeArgs, lang: Lang) -> Result<Setup, String> {
         let error = |note: Note| place::error(&note, lang);
         let program =
-            std::env::current_exe().map_err(|e| error(note!("serve.no_program", reason = io_reason(&e))))?;
+            executable::path().map_err(|e| error(note!("serve.no_program", reason = io_reason(&e))))?;
         let behind_proxy = args.behind_proxy.as_deref().map(|url| {
             PublicOrigin::parse(url).map_err(|why| {
                 error(match why {

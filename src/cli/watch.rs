@@ -11,6 +11,7 @@ use crate::config::procedure::phases::{is_phased, load_phased};
 use crate::config::procedure::{load, load_limits};
 use crate::config::watch::{self as rules_file, Completeness, WatchRule, WatchRules};
 use crate::estimate::Verdict;
+use crate::executable;
 use crate::i18n::{Lang, Localize, Note, io_reason, note};
 use crate::ingest::{ReadOptions, files_read};
 use crate::moment;
@@ -507,7 +508,7 @@ fn test_lock(out: &Path) -> Result<File, Note> {
 
 /// The command line of a test. What follows `--` is no option, whatever its name.
 fn command(watch: &Watch<'_>, rule: usize, ready: &Ready, serial: &str, place: &Path, lang: Lang) -> Command {
-    let mut command = Command::new(std::env::current_exe().unwrap_or_else(|_| "sagnac".into()));
+    let mut command = Command::new(executable::path().unwrap_or_else(|_| "sagnac".into()));
     command.arg("run").args(["--lang", lang.code()]).args(watch.args.output.forms.arguments());
     command.arg("--out").arg(place).arg(format!("--serial={serial}"));
     // Something else stands there: a result of a file that was changed while it was read.

@@ -4,6 +4,7 @@ use super::finding::Finding;
 use super::folder::{Folder, run_of};
 use super::pages::languages;
 use super::parts;
+use crate::executable;
 use crate::i18n::note;
 use crate::output::{
     Kind, LIMITS_FILE, PROCEDURE_FILE, found_below, read_below, sha256_below, sha256_of_file,
@@ -94,7 +95,7 @@ fn of_result(folder: &Folder, run: &RunRecord, how: Anew<'_>) -> Vec<Finding> {
         .ok()
         .and_then(|bytes| serde_json::from_slice(&bytes).ok())
         .unwrap_or_default();
-    let (Ok(scratch), Ok(program)) = (tempfile::tempdir(), std::env::current_exe()) else {
+    let (Ok(scratch), Ok(program)) = (tempfile::tempdir(), executable::path()) else {
         return vec![Finding::Undone("verify.no_scratch".into())];
     };
     let out = scratch.path().join("anew");

@@ -10,10 +10,10 @@ pub fn tidy_up_on() {
     let Ok(mut signals) = Signals::new(wanted) else { return };
     std::thread::spawn(move || {
         for signal in signals.forever() {
-            if sagnac::cli::ending::request() {
+            if super::ending::request() {
                 continue;
             }
-            sagnac::output::abandon_all();
+            crate::output::abandon_all();
             // The parent learns that it was the signal.
             let _ = signal_hook::low_level::emulate_default_handler(signal);
         }
