@@ -4,7 +4,7 @@ use super::join::JoinArgs;
 use super::length::{self, Length};
 use super::progress::{Display, Measure, Progress};
 use super::{exit, place};
-use crate::config::model::{ModelFile, Profile, load_model};
+use crate::config::model::{DEFAULT_SEED, ModelFile, Profile, load_model};
 use crate::config::schedule::{self, Schedule};
 use crate::effect::Column;
 use crate::i18n::{Arg, Lang, Localize, Note, note};
@@ -14,9 +14,6 @@ use crate::series::{Series, SeriesOptions, load_series};
 use crate::simulate::{Format, Order, Over, Simulation, Written, write};
 use clap::Args;
 use std::path::{Path, PathBuf};
-
-/// Seed where neither the command line nor the model says one.
-const DEFAULT_SEED: u64 = 1;
 
 #[derive(Debug, Args)]
 pub struct SimulateArgs {

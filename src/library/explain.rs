@@ -2,7 +2,7 @@
 
 use super::{Error, Recording, files};
 use crate::claim::Claim;
-use crate::config::model::{self, ModelFile, Profile, SimulationPlan};
+use crate::config::model::{self, DEFAULT_SEED, ModelFile, Profile, SimulationPlan};
 use crate::i18n::{Lang, Note};
 use crate::mismatch::{self, Options, Outcome, Progress};
 use crate::moment;
@@ -31,8 +31,20 @@ impl Model {
     /// [`Error::is_configuration`] with every problem of the file.
     pub fn load(path: impl AsRef<Path>) -> Result<Model, Error> {
         let path = path.as_ref();
-        let ModelFile { claim, simulation, drivers } = model::load_model(path)?;
-        Ok(Model { claim, plan: simulation, drivers, name: path.display().to_string() })
+        Ok(Model::of(model::load_model(path)?, path.display().to_string()))
+    }
+
+    /// Reads a model from the text of a file; `name` stands for the file in diagnostics.
+    ///
+    /// # Errors
+    /// As [`Model::load`].
+    pub fn parse(name: &str, text: &str) -> Result<Model, Error> {
+        Ok(Model::of(model::parse(name, text.as_bytes())?, name.to_owned()))
+    }
+
+    fn of(file: ModelFile, name: String) -> Model {
+        let ModelFile { claim, simulation, drivers } = file;
+        Model { claim, plan: simulation, drivers, name }
     }
 
     /// The same model, simulated over another length.
@@ -40,6 +52,11 @@ impl Model {
     pub fn lasting(mut self, duration_s: f64) -> Model {
         self.plan.duration_s = Some(duration_s);
         self
+    }
+
+    /// The seed that the file states, else that of the program.
+    pub fn seed(&self) -> u64 {
+        self.plan.seed.unwrap_or(DEFAULT_SEED)
     }
 
     /// Makes a recording from the model, over the length that its file states. Equal seeds give equal recordings.

@@ -45,8 +45,28 @@ impl Procedure {
     /// # Errors
     /// [`Error::is_configuration`] with every problem of the file.
     pub fn load(path: impl AsRef<Path>) -> Result<Procedure, Error> {
-        let procedure = procedure::load(path.as_ref())?;
-        Ok(Procedure { procedure, limits: None, operator: None, station: None, evaluated_at: None })
+        Ok(Procedure::of(procedure::load(path.as_ref())?))
+    }
+
+    /// Reads a procedure from the text of a file; `name` stands for the file in diagnostics and results.
+    ///
+    /// # Errors
+    /// As [`Procedure::load`].
+    pub fn parse(name: &str, text: &str) -> Result<Procedure, Error> {
+        Ok(Procedure::of(procedure::parse_procedure(name, text.as_bytes())?))
+    }
+
+    fn of(procedure: Loaded<procedure::Procedure>) -> Procedure {
+        Procedure { procedure, limits: None, operator: None, station: None, evaluated_at: None }
+    }
+
+    /// Adds limits from the text of a limits file; `name` stands for the file.
+    ///
+    /// # Errors
+    /// As [`Procedure::with_limits`].
+    pub fn with_limits_of(mut self, name: &str, text: &str) -> Result<Procedure, Error> {
+        self.limits = Some(procedure::parse_limits(name, text.as_bytes())?);
+        Ok(self)
     }
 
     /// Adds a limits file (TOML). Its limits replace those of the procedure for the same measurand and channel.

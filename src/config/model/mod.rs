@@ -12,3 +12,6 @@ pub use write::write;
 
 #[cfg(test)]
 mod tests;
+
+/// Seed of a simulation where neither its file nor its user states one.
+pub const DEFAULT_SEED: u64 = 1;
