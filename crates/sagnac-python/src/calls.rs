@@ -32,6 +32,7 @@ use std::sync::Arc;
 
 /// Adds the functions to the module.
 pub fn add_to(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add_function(wrap_pyfunction!(toml_text, module)?)?;
     module.add_function(wrap_pyfunction!(allan, module)?)?;
     module.add_function(wrap_pyfunction!(identify, module)?)?;
     module.add_function(wrap_pyfunction!(inspect, module)?)?;
@@ -59,6 +60,44 @@ fn recording(source: &Bound<'_, PyAny>, sample_rate_hz: Option<f64>) -> PyResult
         Some(hz) => opened.with_sample_rate(hz),
         None => opened,
     })
+}
+
+/// A file of the program: its path, or a name that stands for it and its text.
+#[derive(FromPyObject)]
+enum Document {
+    Path(PathBuf),
+    Text(String, String),
+}
+
+impl Document {
+    fn model(&self) -> Result<Model, Error> {
+        match self {
+            Document::Path(path) => Model::load(path),
+            Document::Text(name, text) => Model::parse(name, text),
+        }
+    }
+
+    fn procedure(&self) -> Result<Procedure, Error> {
+        match self {
+            Document::Path(path) => Procedure::load(path),
+            Document::Text(name, text) => Procedure::parse(name, text),
+        }
+    }
+
+    fn limits_of(&self, procedure: Procedure) -> Result<Procedure, Error> {
+        match self {
+            Document::Path(path) => procedure.with_limits(path),
+            Document::Text(name, text) => procedure.with_limits_of(name, text),
+        }
+    }
+}
+
+/// Tables in JSON as the text of a TOML file.
+#[pyfunction]
+fn toml_text(py: Python<'_>, tables: &str) -> PyResult<String> {
+    let refused = |why: &dyn std::fmt::Display| argument(py, &format!("tables: no TOML has this: {why}"));
+    let tables: Value = serde_json::from_str(tables).map_err(|e| refused(&e))?;
+    toml::to_string(&tables).map_err(|e| refused(&e))
 }
 
 /// Averaging times: a word, or seconds.
@@ -237,16 +276,16 @@ struct Session {
 #[pyfunction]
 fn run(
     py: Python<'_>,
-    procedure: PathBuf,
+    procedure: Document,
     source: &Bound<'_, PyAny>,
-    limits: Option<PathBuf>,
+    limits: Option<Document>,
     session: Session,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<(Results, Vec<String>)> {
     let failed = |e: Error| raised(py, &e);
-    let mut procedure = Procedure::load(procedure).map_err(failed)?;
+    let mut procedure = procedure.procedure().map_err(failed)?;
     if let Some(limits) = limits {
-        procedure = procedure.with_limits(limits).map_err(failed)?;
+        procedure = limits.limits_of(procedure).map_err(failed)?;
     }
     let Session { serial, lot, operator, station } = session;
     if let Some(operator) = operator {
@@ -271,7 +310,7 @@ fn run(
 fn explain(
     py: Python<'_>,
     source: &Bound<'_, PyAny>,
-    model: PathBuf,
+    model: Document,
     alpha: f64,
     max_effects: usize,
     progress: Option<Py<PyAny>>,
@@ -279,7 +318,7 @@ fn explain(
     if !(alpha > 0.0 && alpha < 1.0) {
         return Err(argument(py, &format!("alpha: a probability between 0 and 1, not {alpha}")));
     }
-    let model = Model::load(model).map_err(|e| raised(py, &e))?;
+    let model = model.model().map_err(|e| raised(py, &e))?;
     let recording = recording(source, None)?;
     let options = mismatch::Options { alpha, max_effects, ..mismatch::Options::default() };
     let (results, time_s, correction) = watched(py, progress, move |teller: &mut Teller| {
@@ -302,23 +341,24 @@ fn array(values: Vec<f64>) -> PyArray {
     PyArray::from_array_ref(values)
 }
 
-/// A recording made from a model: (name, values) of each column.
+/// A recording made from a model: (name, values) of each column, and the seed that was taken.
 #[pyfunction]
 fn simulate(
     py: Python<'_>,
-    model: PathBuf,
-    seed: u64,
+    model: Document,
+    seed: Option<u64>,
     duration_s: Option<f64>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Vec<(String, PyArray)>> {
-    let mut model = Model::load(model).map_err(|e| raised(py, &e))?;
+) -> PyResult<(Vec<(String, PyArray)>, u64)> {
+    let mut model = model.model().map_err(|e| raised(py, &e))?;
+    let seed = seed.unwrap_or_else(|| model.seed());
     if let Some(duration_s) = duration_s {
         model = model.lasting(duration_s);
     }
     let columns = watched(py, progress, move |teller: &mut Teller| {
         model.simulate_columns(seed, &mut |done, total| teller.tell("simulating", done, total))
     })?;
-    Ok(columns.into_iter().map(|(name, values)| (name, array(values))).collect())
+    Ok((columns.into_iter().map(|(name, values)| (name, array(values))).collect(), seed))
 }
 
 /// Russian against Allan figures of results: each with the name of its unit, its path, and whether it was made from a recording for

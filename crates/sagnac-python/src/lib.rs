@@ -6,6 +6,7 @@
 mod calls;
 mod columns;
 mod errors;
+mod program;
 mod results;
 mod watch;
 
@@ -16,5 +17,6 @@ use pyo3::prelude::*;
 fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<results::Results>()?;
+    module.add_function(wrap_pyfunction!(program::main, module)?)?;
     calls::add_to(module)
 }

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import resource
+import shutil
 import signal
 import subprocess
 import sys
@@ -262,3 +264,113 @@ def test_no_copy_of_the_samples_is_made() -> None:
     # The samples are 153 MiB.
     assert more_mib < 75, f"{more_mib} MiB"
     assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss > 0
+
+
+def test_documents_are_objects(samples: Path, procedures: Path, tmp_path: Path) -> None:
+    model = sagnac.Model.read(samples / "model-static.toml")
+    model.tables["noise"]["N_deg_rt_h"] = 0.02
+    changed = sagnac.simulate(model, seed=3, duration=600.0)
+    plain = sagnac.simulate(samples / "model-static.toml", seed=3, duration=600.0)
+    assert changed.rate_deg_h.std() > 3.0 * plain.rate_deg_h.std()
+    model.write(tmp_path / "model.toml")
+    written = sagnac.simulate(tmp_path / "model.toml", seed=3, duration=600.0)
+    assert np.array_equal(written.rate_deg_h, changed.rate_deg_h)
+    assert sagnac.Model.parse(model.to_toml()).tables == model.tables
+    # The seed of the program, where nobody states one.
+    unstated = sagnac.simulate(model, duration=600.0)
+    assert unstated.seed == sagnac.simulate(model, seed=unstated.seed, duration=600.0).seed
+    with pytest.raises(sagnac.ConfigurationError, match="N_deg_rt_hour") as refused:
+        sagnac.simulate({"recording": {"sample_rate_hz": 1.0}, "noise": {"N_deg_rt_hour": 0.1}})
+    assert refused.value.file == "in memory" and refused.value.line is not None
+    limits = sagnac.Limits.read(procedures / "limits" / "sample-unit.toml")
+    for limit in limits.tables["limit"]:
+        if limit["measurand"] == "angle_random_walk":
+            limit["max"] = "0.001 deg/sqrt(h)"
+    judged = sagnac.run(
+        procedures / "static-bias.toml", samples / "unit-pass.csv", limits=limits, serial="SN-0001"
+    )
+    assert judged["angle_random_walk"].verdict == "fail" and judged.verdict == "fail"
+    with pytest.raises(sagnac.ArgumentError):
+        sagnac.Limits.parse("limit = [")
+
+
+def test_pandas_needs_no_pyarrow(samples: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.read_csv(samples / "unit-indeterminate.csv", comment="#")
+    frame["who"] = "operator"
+    with monkeypatch.context() as without:
+        without.setitem(sys.modules, "pyarrow", None)
+        found = sagnac.analyze(frame)
+        noise = sagnac.identify(frame["rate_deg_h"], 1.0)
+    expected = sagnac.analyze(samples / "unit-indeterminate.csv")
+    assert found["angle_random_walk"].value == expected["angle_random_walk"].value
+    assert noise["angle_random_walk"].value is not None
+
+
+def test_results_are_drawn_on_axes(samples: Path) -> None:
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    result = sagnac.analyze(samples / "unit-indeterminate.csv")
+    ax = result.plot()
+    assert ax.get_xscale() == "log" and len(ax.lines[0].get_xdata()) == len(result.allan())
+    assert sagnac.allan(np.arange(100.0) % 7, 1.0, deviations=["oadev", "mdev"]).plot(ax=ax) is ax
+    assert len(ax.lines) == 3
+    made = sagnac.simulate(samples / "model-static.toml", duration=36_000.0)
+    course = made.plot().lines[0].get_ydata()
+    assert len(course) <= 20_000 and course.max() == made.rate_deg_h.max()
+    assert len(sagnac.compare(samples / "unit-pass.csv").plot().get_yticklabels()) == 1
+
+
+def test_the_program_comes_with_the_package(samples: Path, procedures: Path, tmp_path: Path) -> None:
+    told = subprocess.run(
+        [sys.executable, "-m", "sagnac", "--version"], capture_output=True, text=True, check=True
+    )
+    assert told.stdout.split() == ["sagnac", sagnac.__version__]
+    arguments = [
+        *("run", str(procedures / "static-bias.toml"), str(samples / "unit-pass.csv")),
+        *("--limits", str(procedures / "limits" / "sample-unit.toml")),
+        *("--serial", "SN-0001", "--out", str(tmp_path / "report")),
+    ]
+    ran = subprocess.run([sys.executable, "-m", "sagnac", *arguments], capture_output=True, text=True, check=False)
+    assert ran.returncode == 0, ran.stderr
+    assert sagnac.verify(tmp_path / "report")
+    assert sagnac.verify(tmp_path / "report", recording=samples / "unit-pass.csv")
+    record = tmp_path / "report" / "result.json"
+    record.write_text(record.read_text().replace("SN-0001", "SN-0002", 1))
+    broken = sagnac.verify(tmp_path / "report")
+    assert not broken and any(check.state == "differs" for check in broken.checks)
+    with pytest.raises(sagnac.SagnacError, match="without result.json"):
+        sagnac.verify(tmp_path / "none")
+
+
+def test_a_folder_is_watched(samples: Path, procedures: Path, tmp_path: Path) -> None:
+    (tmp_path / "in").mkdir()
+    recording = tmp_path / "in" / "SN-0001.csv"
+    shutil.copy(samples / "unit-pass.csv", recording)
+    os.utime(recording, (1e9, 1e9))
+
+    def seen() -> list[tuple[str | None, str]]:
+        results = sagnac.watch(
+            tmp_path / "in",
+            procedure=procedures / "static-bias.toml",
+            limits=procedures / "limits" / "sample-unit.toml",
+            out=tmp_path / "out",
+            once=True,
+        )
+        return [(result.serial, result.verdict) for result in results]
+
+    assert seen() == [("SN-0001", "pass")]
+    assert seen() == []
+    with pytest.raises(sagnac.SagnacError):
+        next(sagnac.watch(tmp_path / "none", procedure=procedures / "static-bias.toml", out=tmp_path / "other"))
+
+
+def test_the_next_test_is_planned(samples: Path, tmp_path: Path) -> None:
+    made = sagnac.simulate(samples / "model-step.toml", seed=7)
+    found = sagnac.explain(made.to_dict(), samples / "model-static.toml")
+    found.write(tmp_path / "why")
+    planned = sagnac.plan(tmp_path / "why", samples / "model-static.toml", "8h", chamber=False)
+    assert planned.outcome in {"decides", "too_short", "undecidable", "nothing_to_decide"}
+    assert planned.to_dict()["outcome"] == planned.outcome
+    with pytest.raises(sagnac.SagnacError, match="budget"):
+        sagnac.plan(tmp_path / "why", samples / "model-static.toml", "8 bananas")

@@ -9,6 +9,7 @@ True
 """
 
 from ._api import allan, analyze, compare, datasheet, explain, identify, inspect, read, run, simulate
+from ._documents import Limits, Model, Procedure
 from ._errors import (
     ArgumentError,
     ConfigurationError,
@@ -19,6 +20,7 @@ from ._errors import (
 )
 from ._inputs import Samples, Source
 from ._native import __version__
+from ._program import Check, Verification, plan, verify, watch
 from ._results import (
     Comparison,
     DataSheet,
@@ -28,6 +30,7 @@ from ._results import (
     Inspection,
     Noise,
     Parameter,
+    Plan,
     Result,
     RunResult,
     SheetBound,
@@ -40,6 +43,7 @@ __all__ = [
     "AllanCurve",
     "ArgumentError",
     "Bound",
+    "Check",
     "Column",
     "Comparison",
     "Condition",
@@ -52,12 +56,16 @@ __all__ = [
     "Inspection",
     "Interval",
     "Limit",
+    "Limits",
     "Line",
     "Measurand",
+    "Model",
     "Noise",
     "NotEvaluableError",
     "OutputError",
     "Parameter",
+    "Plan",
+    "Procedure",
     "RecordingError",
     "Result",
     "RunResult",
@@ -67,6 +75,7 @@ __all__ = [
     "SheetQuantity",
     "Simulation",
     "Source",
+    "Verification",
     "__version__",
     "allan",
     "analyze",
@@ -75,7 +84,10 @@ __all__ = [
     "explain",
     "identify",
     "inspect",
+    "plan",
     "read",
     "run",
     "simulate",
+    "verify",
+    "watch",
 ]

@@ -11,6 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._documents import Given, Limits, Model, Procedure, given
 from ._errors import ArgumentError
 from ._inputs import Path, Samples, Source, samples, seconds, source
 from ._progress import Progress, watching
@@ -21,6 +22,7 @@ from ._results import (
     Explanation,
     Inspection,
     Noise,
+    Plan,
     RunResult,
     Simulation,
 )
@@ -58,9 +60,9 @@ def allan(
         ArgumentError: The samples are no numbers, the interval is not positive, or an averaging time is no multiple of it.
     """
     names = [deviations] if isinstance(deviations, str) else list(deviations)
-    given = samples(rate)
+    values = samples(rate)
     with watching(progress) as tell:
-        text, svg = _native.allan(given, float(tau0), seconds(taus), names, exact, tell)
+        text, svg = _native.allan(values, float(tau0), seconds(taus), names, exact, tell)
     return Deviations._of(text, svg, float(tau0))
 
 
@@ -84,9 +86,9 @@ def identify(
     Raises:
         ArgumentError: The samples are no numbers, or the unit is not an angular rate.
     """
-    given = samples(rate)
+    values = samples(rate)
     with watching(progress) as tell:
-        text, drawings = _native.identify(given, float(tau0), unit, tell)
+        text, drawings = _native.identify(values, float(tau0), unit, tell)
     return Noise._of(text, drawings)
 
 
@@ -165,10 +167,10 @@ def analyze(
 
 
 def run(
-    procedure: Path,
+    procedure: Given | Procedure,
     recording: Source,
     *,
-    limits: Path | None = None,
+    limits: Given | Limits | None = None,
     serial: str | None = None,
     lot: str | None = None,
     operator: str | None = None,
@@ -178,9 +180,9 @@ def run(
     """Runs a test procedure on a recording: what ``sagnac run`` does. A missed limit is a verdict, not an error.
 
     Args:
-        procedure: Procedure (TOML) of one phase.
+        procedure: Procedure of one phase: a TOML file, or its tables.
         recording: A path, the paths of its files in order, columns by name, or a DataFrame. Arrays are not copied.
-        limits: Limits file (TOML); its limits replace those of the procedure.
+        limits: Limits: a TOML file, or its tables; they replace those of the procedure.
         serial: Serial number of the unit.
         lot: Lot of the unit.
         operator: Who tests.
@@ -196,9 +198,9 @@ def run(
     session = {"serial": serial, "lot": lot, "operator": operator, "station": station}
     with watching(progress) as tell:
         native, warnings = _native.run(
-            os.fspath(procedure),
+            given(procedure),
             source(recording),
-            None if limits is None else os.fspath(limits),
+            None if limits is None else given(limits),
             session,
             tell,
         )
@@ -207,7 +209,7 @@ def run(
 
 def explain(
     recording: Source,
-    model: Path,
+    model: Given | Model,
     *,
     alpha: float = 0.01,
     max_effects: int = 3,
@@ -217,7 +219,7 @@ def explain(
 
     Args:
         recording: A path, the paths of its files in order, columns by name, or a DataFrame.
-        model: Model (TOML) of the recording.
+        model: Model of the recording: a TOML file, or its tables.
         alpha: Probability that a correct model is called a mismatch.
         max_effects: Most effects that are named.
         progress: True for a bar, or a function of what is being done and the share that is done.
@@ -229,7 +231,7 @@ def explain(
     """
     with watching(progress) as tell:
         native, times, correction = _native.explain(
-            source(recording), os.fspath(model), float(alpha), int(max_effects), tell
+            source(recording), given(model), float(alpha), int(max_effects), tell
         )
     if times is None or correction is None:
         return Explanation._of(native, None, None)
@@ -237,17 +239,17 @@ def explain(
 
 
 def simulate(
-    model: Path,
+    model: Given | Model,
     *,
-    seed: int = 0,
+    seed: int | None = None,
     duration: float | None = None,
     progress: Progress = False,
 ) -> Simulation:
     """Makes a recording from a model. Equal seeds give equal recordings.
 
     Args:
-        model: Model (TOML).
-        seed: Seed of the noise, 0 or more.
+        model: Model: a TOML file, or its tables.
+        seed: Seed of the noise, 0 or more; that of the model where it is left out, else that of the program.
         duration: Length, s; that of the model where it is left out.
         progress: True for a bar, or a function of what is being done and the share that is done.
 
@@ -255,11 +257,11 @@ def simulate(
         ConfigurationError: The model is wrong.
         ArgumentError: No length is stated, or an effect lacks a parameter or a column.
     """
-    if seed < 0:
+    if seed is not None and seed < 0:
         raise ArgumentError(f"seed: 0 or more is expected, not {seed}")
     with watching(progress) as tell:
-        columns = _native.simulate(os.fspath(model), int(seed), duration, tell)
-    return Simulation(columns={name: np.asarray(values) for name, values in columns}, seed=seed)
+        columns, used = _native.simulate(given(model), seed, duration, tell)
+    return Simulation(columns={name: np.asarray(values) for name, values in columns}, seed=used)
 
 
 def compare(*units: RunResult | Path) -> Comparison:
@@ -295,17 +297,18 @@ def datasheet(
     Raises:
         ArgumentError: A file is no result, or the results are of several models or procedures.
     """
-    given: list[str | tuple[_native.Results, str]] = []
+    tested: list[str | tuple[_native.Results, str]] = []
     for number, result in enumerate(results, start=1):
         if isinstance(result, RunResult):
-            given.append((result._native, f"result {number}, of {result._path}"))
+            tested.append((result._native, f"result {number}, of {result._path}"))
         else:
-            given.append(os.fspath(result))
-    return DataSheet._of(_native.datasheet(given, proportion, confidence))
+            tested.append(os.fspath(result))
+    return DataSheet._of(_native.datasheet(tested, proportion, confidence))
 
 
-def read(path: Path) -> RunResult | Explanation | Comparison | DataSheet:
-    """Reads results back: a ``result.json``, ``explain.json``, ``comparison.json`` or ``datasheet.json``, or the folder of one.
+def read(path: Path) -> RunResult | Explanation | Comparison | DataSheet | Plan:
+    """Reads results back: a ``result.json``, ``explain.json``, ``comparison.json``, ``datasheet.json`` or ``plan.json``, or the folder
+    of one.
 
     Raises:
         ArgumentError: It is no result that this version reads.
@@ -320,6 +323,8 @@ def read(path: Path) -> RunResult | Explanation | Comparison | DataSheet:
         return Comparison._of(native)
     if kind == "datasheet.json":
         return DataSheet._of(native)
+    if kind == "plan.json":
+        return Plan._of(native, None)
     raise ArgumentError(f"{os.fspath(path)}: {kind} is read by the program only")
 
 

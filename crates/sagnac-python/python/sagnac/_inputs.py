@@ -41,7 +41,7 @@ def samples(values: Samples, name: str = "rate") -> object:
 
     Arrow arrays and contiguous numpy arrays are passed on as they are; anything else is copied once.
     """
-    if isinstance(values, (ArrowArray, ArrowStream)):
+    if isinstance(values, (ArrowArray, ArrowStream)) and not _of_pandas(values):
         return values
     array = np.asarray(values)
     if array.ndim != 1:
@@ -61,6 +61,8 @@ def source(recording: Source) -> object:
         return os.fspath(recording)
     if isinstance(recording, Mapping):
         return {str(name): samples(values, str(name)) for name, values in recording.items()}
+    if _of_pandas(recording):
+        return _numbers_of(recording)
     if isinstance(recording, ArrowStream):
         return recording
     paths: list[str] = []
@@ -72,6 +74,24 @@ def source(recording: Source) -> object:
             )
         paths.append(os.fspath(path))
     return paths
+
+
+def _of_pandas(values: object) -> bool:
+    """True for an object of pandas, which hands its memory over by Arrow only where pyarrow is installed."""
+    return type(values).__module__.partition(".")[0] == "pandas"
+
+
+def _numbers_of(table: Any) -> dict[str, object]:
+    """Returns the columns of a DataFrame of pandas that hold numbers or times; others are left out, as those of any table."""
+    columns: dict[str, object] = {}
+    for place, name in enumerate(table.columns):
+        column = table.iloc[:, place]
+        kind = getattr(column.dtype, "kind", "O")
+        if kind in "fiu":
+            columns[str(name)] = samples(column.to_numpy(dtype=np.float64, na_value=np.nan), str(name))
+        elif kind == "M":
+            columns[str(name)] = samples(column.to_numpy(dtype="datetime64[ns]"), str(name))
+    return columns
 
 
 def seconds(taus: str | Sequence[float] | npt.NDArray[Any]) -> str | list[float]:

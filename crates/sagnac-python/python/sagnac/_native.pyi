@@ -9,6 +9,7 @@ import numpy.typing as npt
 __version__: str
 
 _Progress = Callable[[str, float], object] | None
+_Document = str | tuple[str, str]
 
 class _Array:
     def __array__(self, dtype: Any = None, copy: Any = None) -> npt.NDArray[np.float64]: ...
@@ -22,6 +23,8 @@ class Results:
     def tables(self) -> list[tuple[str, str]]: ...
     def write(self, folder: str, forms: Sequence[str], lang: str) -> None: ...
 
+def toml_text(tables: str) -> str: ...
+def main(arguments: Sequence[str], executable: str) -> int: ...
 def allan(
     rate: object,
     tau0_s: float,
@@ -45,18 +48,18 @@ def analyze(
     progress: _Progress,
 ) -> Results: ...
 def run(
-    procedure: str,
+    procedure: _Document,
     source: object,
-    limits: str | None,
+    limits: _Document | None,
     session: dict[str, str | None],
     progress: _Progress,
 ) -> tuple[Results, list[str]]: ...
 def explain(
-    source: object, model: str, alpha: float, max_effects: int, progress: _Progress
+    source: object, model: _Document, alpha: float, max_effects: int, progress: _Progress
 ) -> tuple[Results, _Array | None, _Array | None]: ...
 def simulate(
-    model: str, seed: int, duration_s: float | None, progress: _Progress
-) -> list[tuple[str, _Array]]: ...
+    model: _Document, seed: int | None, duration_s: float | None, progress: _Progress
+) -> tuple[list[tuple[str, _Array]], int]: ...
 def compare(units: list[tuple[Results, str, str, bool]]) -> Results: ...
 def datasheet(
     results: list[str | tuple[Results, str]], proportion: float, confidence: float

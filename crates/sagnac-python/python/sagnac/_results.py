@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _native
+from . import _native, _plots
 from ._errors import ArgumentError
 from ._frames import frame
 from ._inputs import Path
@@ -84,8 +84,8 @@ class Result:
 
         Args:
             folder: The folder. Files of the same names are replaced.
-            forms: ``html``, ``markdown``, ``csv``, ``json``, ``svg``, ``junit``, ``parquet``, ``atml``; those that the program
-                writes unasked where none is named.
+            forms: Forms by the names that ``sagnac report --format`` knows, such as ``html``, ``docx``, ``parquet``; those
+                that the program writes unasked where none is named.
             lang: Language of the report, ``en`` or ``ru``.
 
         Raises:
@@ -164,6 +164,11 @@ class RunResult(Result):
             _analysed=analysed,
         )
 
+    @property
+    def path(self) -> str:
+        """Where the result was read from; of one that was made here, its recording."""
+        return self._path
+
     def measurand(self, id: str, channel: str | None = None) -> Measurand:
         """Returns a measured quantity by its id: the first, where several channels have it and none is named.
 
@@ -213,6 +218,14 @@ class RunResult(Result):
             if d["channel"] == first
         ]
         return allan_curve(estimator, points)
+
+    def plot(self, ax: Any = None, channel: str | None = None) -> Any:
+        """Draws the Allan deviation of a channel with its intervals; returns the axes of matplotlib.
+
+        Raises:
+            KeyError: The result holds no deviation, as that of a rate table.
+        """
+        return _plots.deviations([self.allan(channel)], "deg/h", ax)
 
     def to_frame(self, library: str | None = None) -> Any:
         """Returns the measurands as a DataFrame, one row each, of ``pandas`` or ``polars``."""
@@ -298,6 +311,10 @@ class Noise:
             "quantization",
         )
         return tuple(self[id] for id in ids)
+
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the deviation with its intervals; returns the axes of matplotlib."""
+        return _plots.deviations([self.allan], "deg/h", ax)
 
     def figures(self) -> tuple[Figure, ...]:
         """Returns the drawing of the deviation with the identified terms."""
@@ -398,6 +415,10 @@ class Deviations:
             )
         return frame(rows, library)
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draws the curves with their intervals; returns the axes of matplotlib."""
+        return _plots.deviations(self.curves, "unit of the samples", ax)
+
     def figures(self) -> tuple[Figure, ...]:
         """Returns the drawing of the curves."""
         return (Figure("deviations", "deviations.svg", self._svg),)
@@ -481,6 +502,16 @@ class Explanation(Result):
             correction_deg_h=correction,
         )
 
+    def plot(self, ax: Any = None) -> Any:
+        """Draws what the model left out over time; returns the axes of matplotlib.
+
+        Raises:
+            ArgumentError: What was left out cannot be predicted, or the explanation was read back, without its recording.
+        """
+        if self.time_s is None or self.correction_deg_h is None:
+            raise ArgumentError("plot: this explanation has no course of what was left out; see figures()")
+        return _plots.course(self.time_s, self.correction_deg_h, "left out by the model, deg/h", ax)
+
     def to_frame(self, library: str | None = None) -> Any:
         """Returns the parameters of all effects as a DataFrame of ``pandas`` or ``polars``, one row each."""
         rows = [
@@ -543,6 +574,22 @@ class Comparison(Result):
     @classmethod
     def _of(cls, native: _native.Results) -> Comparison:
         return cls(_native=native, units=tuple(json.loads(native.json())["units"]))
+
+    def plot(self, ax: Any = None, id: str = "ratio_russian_to_allan_bias") -> Any:
+        """Draws a quantity of every unit with its interval; returns the axes of matplotlib.
+
+        Raises:
+            KeyError: No unit has the quantity.
+        """
+        rows = [
+            (unit["name"], q["value"], None if q.get("interval") is None else (q["interval"]["low"], q["interval"]["high"]))
+            for unit in self.units
+            for q in unit["quantities"]
+            if q["id"] == id and q["value"] is not None
+        ]
+        if not rows:
+            raise KeyError(id)
+        return _plots.estimates(rows, id, ax)
 
     def to_frame(self, library: str | None = None) -> Any:
         """Returns the compared quantities as a DataFrame of ``pandas`` or ``polars``, one row for a quantity of a unit."""
@@ -707,6 +754,30 @@ def _quantity(record: dict[str, Any]) -> SheetQuantity:
     )
 
 
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Plan(Result):
+    """The next test, which tells the explanations of a recording apart: the result of :func:`plan`.
+
+    Attributes:
+        outcome: ``decides``, ``too_short``, ``undecidable`` or ``nothing_to_decide``.
+        schedule: The schedule as the text of a TOML file, or ``None`` where there is nothing to do.
+    """
+
+    outcome: str
+    schedule: str | None
+
+    @classmethod
+    def _of(cls, native: _native.Results, schedule: str | None) -> Plan:
+        return cls(_native=native, outcome=json.loads(native.json())["outcome"], schedule=schedule)
+
+    def __repr__(self) -> str:
+        return f"<Plan: {self.outcome}>"
+
+    def _repr_html_(self) -> str:
+        text = html.escape(self.schedule or "")
+        return f"<p><b>{html.escape(self.outcome)}</b></p><pre>{text}</pre>{self._drawn()}"
+
+
 @dataclass(frozen=True, slots=True, repr=False)
 class Inspection:
     """What a recording holds: the result of :func:`inspect`.
@@ -782,6 +853,14 @@ class Simulation:
     def to_dict(self) -> dict[str, npt.NDArray[np.float64]]:
         """Returns the columns by name."""
         return dict(self.columns)
+
+    def plot(self, ax: Any = None, column: str = "rate_deg_h") -> Any:
+        """Draws a column over time; returns the axes of matplotlib.
+
+        Raises:
+            KeyError: There is no such column.
+        """
+        return _plots.course(self.time_s, self.columns[column], column, ax)
 
     def to_frame(self, library: str | None = None) -> Any:
         """Returns the recording as a DataFrame of ``pandas`` or ``polars``."""
