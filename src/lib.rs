@@ -47,6 +47,7 @@
 //! | [`watch`] | a watched folder: what is complete, what was tested |
 //! | [`store`] | results that are kept, and their index |
 //! | [`i18n`] | sentences in English and Russian |
+//! | [`manual`] | the documents that the program carries |
 //! | [`executable`] | the file that starts this program |
 //! | [`output`] | folders that appear complete or not at all |
 //! | [`cli`] | the program |
@@ -59,6 +60,7 @@ pub mod executable;
 pub mod i18n;
 pub mod ingest;
 mod library;
+pub mod manual;
 pub mod moment;
 pub mod output;
 pub mod prove;

@@ -18,6 +18,7 @@ mod export;
 mod figure;
 mod follow;
 mod follow_args;
+mod guide;
 mod help;
 mod history;
 mod init;
@@ -187,6 +188,11 @@ enum Verb {
     /// List the effects known to models and explanations, or describe one
     #[command(after_help = "Examples:\n  sagnac effects\n  sagnac effects bias_step")]
     Effects(effects::EffectsArgs),
+    /// Print a page of the documents, or search them
+    #[command(
+        after_help = "Examples:\n  sagnac guide\n  sagnac guide temperature lag\n  sagnac guide rate-table"
+    )]
+    Guide(guide::GuideArgs),
     /// Write the data sheet of a lot from the results of its units, with limits that it can keep
     #[command(after_help = "Examples:\n  sagnac datasheet reports/*/result.json --out sheet\n  \
         sagnac datasheet 'samples/lot/*/result.json' --audience customer --out sheet\n  \
@@ -301,6 +307,7 @@ pub fn run(arguments: &[OsString]) -> u8 {
         Verb::Model(args) => model::main(&args, lang),
         Verb::Simulate(args) => simulate::main(&args, lang),
         Verb::Effects(args) => effects::main(&args, lang),
+        Verb::Guide(args) => guide::main(&args, lang),
         Verb::Explain(args) => explain::main(&args, lang),
         Verb::Plan(args) => plan::main(&args, lang),
         Verb::Prove(args) => prove::main(&args, lang),
