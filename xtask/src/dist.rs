@@ -1,4 +1,5 @@
-//! What is handed out: the program with PDF, completions, manual page, list of its packages, hashes, and a Debian package.
+//! What is handed out: the program with PDF, completions, manual page, list of its packages, hashes, a Debian package, and
+//! wheels for Python.
 
 use crate::notices;
 use serde_json::{Value, json};
@@ -15,6 +16,14 @@ const COMPLETIONS: [(&str, &str); 3] = [
     ("zsh", "usr/share/zsh/vendor-completions/_sagnac"),
     ("fish", "usr/share/fish/vendor_completions.d/sagnac.fish"),
 ];
+/// Targets of wheels: name, and what a wheel of it runs on. One that the compiler or the linker lacks is left out, and said so.
+const WHEELS: [(&str, &str); 5] = [
+    ("x86_64-unknown-linux-gnu", "Linux"),
+    ("aarch64-unknown-linux-gnu", "Linux on ARM"),
+    ("aarch64-apple-darwin", "macOS"),
+    ("x86_64-apple-darwin", "macOS on Intel"),
+    ("x86_64-pc-windows-msvc", "Windows"),
+];
 /// Files of the project that travel with the program.
 const PAPERS: [&str; 4] = ["LICENSE-MIT", "LICENSE-APACHE", "THIRD-PARTY.md", "README.md"];
 
@@ -26,18 +35,25 @@ pub struct Options {
     pub out: PathBuf,
     /// Whether the program makes PDF.
     pub pdf: bool,
+    /// Whether wheels are made.
+    pub wheels: bool,
 }
 
 impl Options {
     /// The options of a command line; `None` where one is unknown.
     pub fn of(root: &Path, arguments: &[String]) -> Option<Options> {
-        let mut options = Options { profile: "release".into(), out: root.join("target/dist"), pdf: true };
+        let out = root.join("target/dist");
+        let mut options = Options { profile: "release".into(), out, pdf: true, wheels: true };
         let mut rest = arguments;
         loop {
             match rest {
                 [] => return Some(options),
                 [flag, after @ ..] if flag == "--without-pdf" => {
                     options.pdf = false;
+                    rest = after;
+                }
+                [flag, after @ ..] if flag == "--without-wheels" => {
+                    options.wheels = false;
                     rest = after;
                 }
                 [flag, profile, after @ ..] if flag == "--profile" => {
@@ -101,6 +117,9 @@ fn dist(root: &Path, options: &Options) -> Result<(), String> {
         "tree",
     ]))?;
     debian(&staged, &tree, &version, target)?;
+    if options.wheels {
+        wheels(root, &staged, options)?;
+    }
     fs::remove_dir_all(&tree).map_err(|e| failed(&tree, &e))?;
     let mut files: Vec<String> = fs::read_dir(&staged)
         .map_err(|e| failed(&staged, &e))?
@@ -219,6 +238,48 @@ fn debian(staged: &Path, tree: &Path, version: &str, target: Option<&str>) -> Re
         .output()
         .map_err(|e| format!("failed to start dpkg-deb: {e}"))?;
     if made.status.success() { Ok(()) } else { Err(String::from_utf8_lossy(&made.stderr).into_owned()) }
+}
+
+/// Wheels of the package for Python with the program inside, for every target that this machine builds for.
+fn wheels(root: &Path, staged: &Path, options: &Options) -> Result<(), String> {
+    if said(Command::new("maturin").arg("--version")).is_err() {
+        println!("no wheels: `pip install maturin` makes them");
+        return Ok(());
+    }
+    let host = said(Command::new("rustc").arg("-vV"))?;
+    let host = host.lines().find_map(|line| line.strip_prefix("host: ")).unwrap_or_default();
+    let sysroot = said(Command::new("rustc").args(["--print", "sysroot"]))?;
+    // Zig links for other systems, and against an old C library.
+    let zig = said(Command::new("python3").args(["-m", "ziglang", "version"])).is_ok();
+    for (target, system) in WHEELS {
+        if !Path::new(sysroot.trim()).join("lib/rustlib").join(target).join("lib").is_dir() {
+            println!("no wheel for {system}: `rustup target add {target}` is missing");
+            continue;
+        }
+        let linux = target.contains("linux");
+        if target != host && !(zig && linux) {
+            println!("no wheel for {system}: this machine does not link for {target}");
+            continue;
+        }
+        let mut maturin = Command::new("maturin");
+        maturin.current_dir(root).args([
+            "build",
+            "--locked",
+            "--profile",
+            &options.profile,
+            "--target",
+            target,
+        ]);
+        maturin.arg("--out").arg(staged);
+        if zig && linux {
+            maturin.args(["--zig", "--compatibility", "manylinux2014"]);
+        }
+        let status = maturin.status().map_err(|e| format!("failed to start maturin: {e}"))?;
+        if !status.success() {
+            return Err(format!("the wheel for {target} was not built"));
+        }
+    }
+    Ok(())
 }
 
 fn package<'a>(metadata: &'a Value, name: &str) -> Result<&'a Value, String> {

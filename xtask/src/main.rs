@@ -28,8 +28,8 @@ proofs DATA [WORD]...
     Run the proofs with the recordings of a folder, those whose path contains a word or all, and add a line a run to docs/PROOFS.md.
 schemas [--check]
     Write schemas/: JSON Schema of results, generated from the types of the records.
-dist [--profile PROFILE] [--out DIR] [--without-pdf]
-    Write target/dist: the program with PDF, completions, manual page, its packages (CycloneDX), hashes, and a Debian package.
+dist [--profile PROFILE] [--out DIR] [--without-pdf] [--without-wheels]
+    Write target/dist: the program with PDF, completions, manual page, its packages (CycloneDX), hashes, a Debian package, and wheels.
 notices [--check]
     Write THIRD-PARTY.md: licences and notices of the packages that the program contains.
 tests COMMIT
