@@ -306,3 +306,33 @@ fn init_copies_the_layout_of_a_raw_file_to_where_its_procedure_finds_it() {
 fn text_of(output: &Output) -> String {
     String::from_utf8_lossy(&[&output.stdout[..], &output.stderr].concat()).into_owned()
 }
+
+/// The picture of a terminal in the README: what the quick start prints, in its colours. `SAGNAC_WRITE_FIGURES=1` writes it.
+#[test]
+fn the_picture_of_a_terminal_shows_what_is_printed() {
+    let folder = tempdir().unwrap();
+    for name in ["procedures", "samples"] {
+        std::os::unix::fs::symlink(root().join(name), folder.path().join(name)).unwrap();
+    }
+    let args = [
+        "run",
+        "procedures/static-bias.toml",
+        "samples/unit-pass.csv",
+        "--limits",
+        "procedures/limits/sample-unit.toml",
+        "--serial",
+        "SN-0001",
+        "--out",
+        "report",
+    ];
+    let ran = printed(folder.path(), "100", &[("CLICOLOR_FORCE", "1")], &args);
+    assert_eq!(ran.status.code(), Some(0), "{ran:?}");
+    let told = format!("$ sagnac {}\n{}", args.join(" "), String::from_utf8(ran.stdout).unwrap());
+    let drawn = anstyle_svg::Term::new().render_svg(&told);
+    let path = root().join("docs/terminal.svg");
+    if std::env::var_os("SAGNAC_WRITE_FIGURES").is_some() {
+        std::fs::write(&path, &drawn).unwrap();
+    }
+    let kept = std::fs::read_to_string(&path).unwrap_or_default();
+    assert!(drawn == kept, "docs/terminal.svg is of another version: write it with SAGNAC_WRITE_FIGURES=1");
+}

@@ -1,7 +1,6 @@
 //! The programming interface: JSON, and streams of events.
 
 use crate::events::{Event, Events};
-use sagnac_base::estimate::Verdict;
 use crate::intake::{self, Form, Given};
 use crate::openapi;
 use crate::order::{End, State as RunState};
@@ -18,6 +17,7 @@ use axum::http::{HeaderMap, StatusCode, header};
 use axum::response::sse::{self, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use futures_util::stream;
+use sagnac_base::estimate::Verdict;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 use std::collections::VecDeque;

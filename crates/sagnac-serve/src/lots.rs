@@ -1,9 +1,9 @@
 //! Units by quantities: the tests of a lot, a day or a procedure, with the share that passed at the first attempt.
 
 use crate::harness::{Outcome, Quantity};
-use sagnac_base::estimate::Verdict;
 use crate::queue::Job;
 use crate::texts::Lang;
+use sagnac_base::estimate::Verdict;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 

@@ -3,7 +3,6 @@
 use super::{page, refused, see_other, value};
 use crate::api::{self, Listed, Run};
 use crate::catalogue::Catalogue;
-use sagnac_base::estimate::Verdict;
 use crate::intake::{Form, Given};
 use crate::order::State as RunState;
 use crate::queue::Job;
@@ -14,6 +13,7 @@ use axum::extract::{FromRequest, Multipart, Path, Query, Request, State};
 use axum::http::StatusCode;
 use axum::response::{IntoResponse, Response};
 use minijinja::context;
+use sagnac_base::estimate::Verdict;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
