@@ -22,6 +22,7 @@ const PACKAGES: [&str; 10] = [
     "crates/sagnac-ingest/src",
     "crates/sagnac-fft/src",
     "crates/sagnac-pdf/src",
+    "crates/sagnac-bench/src",
     "crates/sagnac-serve/src",
     "crates/sagnac-table-derive/src",
 ];
