@@ -159,6 +159,11 @@ impl<'b> Machine<'b> {
         }
     }
 
+    /// True where it may tell its own time.
+    pub fn has_clock(&self) -> bool {
+        self.text().is_none_or(|text| text.device_time.is_some())
+    }
+
     /// True when it has introduced itself and said something.
     pub fn is_ready(&self) -> bool {
         (self.hello.is_some() || self.text().is_some()) && !self.latest.is_empty()
@@ -179,7 +184,13 @@ impl<'b> Machine<'b> {
     pub fn next_ns(&self) -> i64 {
         let silent = after(self.heard_ns, self.device.heartbeat);
         let answer = self.pending.front().map_or(i64::MAX, |p| after(p.asked_ns, self.device.patience));
-        silent.min(answer).min(if self.polls() { self.next_poll_ns } else { i64::MAX })
+        let poll = if self.polls() && !self.is_polled() { self.next_poll_ns } else { i64::MAX };
+        silent.min(answer).min(poll)
+    }
+
+    /// True where the answer to a question is outstanding.
+    fn is_polled(&self) -> bool {
+        self.pending.iter().any(|p| p.what == Question::Poll)
     }
 
     fn polls(&self) -> bool {
@@ -195,8 +206,8 @@ impl<'b> Machine<'b> {
             // It may not be switched on yet.
             self.pending.retain(|p| now_ns < after(p.asked_ns, RETRY));
         }
-        let is_asked = self.pending.iter().any(|p| p.what == Question::Poll);
-        let Some(text) = self.text().filter(|_| self.polls() && now_ns >= self.next_poll_ns && !is_asked)
+        let Some(text) =
+            self.text().filter(|_| self.polls() && now_ns >= self.next_poll_ns && !self.is_polled())
         else {
             return Ok(());
         };
@@ -487,6 +498,11 @@ impl<'b> Machine<'b> {
                 return;
             }
         }
+    }
+
+    /// True where its link stands.
+    pub fn is_linked(&self) -> bool {
+        self.link.is_some()
     }
 
     /// True where an answer about the safe state is outstanding.

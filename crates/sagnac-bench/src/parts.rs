@@ -42,6 +42,7 @@ pub(crate) struct Parts {
     folder: PathBuf,
     id: String,
     header: String,
+    has_clock: bool,
     length_ns: i64,
     rows: VecDeque<Row>,
     /// Parts that were written.
@@ -53,9 +54,9 @@ pub(crate) struct Parts {
 }
 
 impl Parts {
-    /// Parts of a device in a folder, with the names of its columns.
-    pub fn new(folder: &Path, id: &str, columns: &[String], length_ns: i64) -> Parts {
-        let mut header = "time_s,device_time_s".to_owned();
+    /// Parts of a device in a folder, with the names of its columns; `has_clock`: the device tells its own time.
+    pub fn new(folder: &Path, id: &str, columns: &[String], has_clock: bool, length_ns: i64) -> Parts {
+        let mut header = if has_clock { "time_s,device_time_s" } else { "time_s" }.to_owned();
         for column in columns {
             header.push(',');
             header.push_str(column);
@@ -64,6 +65,7 @@ impl Parts {
             folder: folder.to_owned(),
             id: id.to_owned(),
             header,
+            has_clock,
             length_ns,
             rows: VecDeque::new(),
             written: 0,
@@ -109,7 +111,7 @@ impl Parts {
             let count = self.rows.iter().take_while(belongs).count();
             let mut text = format!("{}\n", self.header);
             for row in self.rows.iter().take(count) {
-                line(&mut text, row, zero_ns);
+                line(&mut text, row, self.has_clock, zero_ns);
             }
             let name = format!("{}-{:06}.csv", self.id, self.written + 1);
             write_whole(&self.folder, &name, text.as_bytes()).map_err(|e| (self.folder.join(&name), e))?;
@@ -122,13 +124,13 @@ impl Parts {
 }
 
 /// A row as a line.
-fn line(text: &mut String, row: &Row, zero_ns: i64) {
+fn line(text: &mut String, row: &Row, has_clock: bool, zero_ns: i64) {
     // Whole nanoseconds: a difference of floating-point numbers would not show them. Writing to a text cannot fail.
     let since = row.at_ns - zero_ns;
     let sign = if since < 0 { "-" } else { "" };
     let (whole, rest) = (since.unsigned_abs() / 1_000_000_000, since.unsigned_abs() % 1_000_000_000);
     let _ = write!(text, "{sign}{whole}.{rest:09}");
-    for value in std::iter::once(&row.device_s).chain(&row.values) {
+    for value in Some(&row.device_s).filter(|_| has_clock).into_iter().chain(&row.values) {
         text.push(',');
         if let Some(value) = value {
             let _ = write!(text, "{value}");
@@ -149,7 +151,7 @@ mod tests {
     fn rows_up_to_a_time_become_parts_of_the_length_and_the_others_wait() {
         let folder = tempfile::tempdir().unwrap();
         let columns = ["a".to_owned(), "b [V]".to_owned()];
-        let mut parts = Parts::new(folder.path(), "gyro", &columns, 2_000_000_000);
+        let mut parts = Parts::new(folder.path(), "gyro", &columns, true, 2_000_000_000);
         for i in 0..6 {
             assert!(parts.push(row(f64::from(i), 0.5)));
         }
@@ -176,7 +178,7 @@ mod tests {
     #[test]
     fn a_recording_begins_with_the_last_row_before_it_of_what_is_interpolated() {
         let folder = tempfile::tempdir().unwrap();
-        let mut parts = Parts::new(folder.path(), "table", &[], 1);
+        let mut parts = Parts::new(folder.path(), "table", &[], false, 1);
         (0..5).for_each(|i| assert!(parts.push(row(f64::from(i), 0.0))));
         parts.begin(2_500_000_000);
         assert_eq!(parts.rows.front().map(|r| r.at_ns), Some(2_000_000_000));
@@ -186,7 +188,7 @@ mod tests {
 
     #[test]
     fn a_disk_that_is_gone_is_told_with_the_file() {
-        let mut parts = Parts::new(Path::new("/nonexistent/folder"), "gyro", &[], 1);
+        let mut parts = Parts::new(Path::new("/nonexistent/folder"), "gyro", &[], false, 1);
         parts.push(row(0.0, 0.0));
         let (path, _) = parts.write(1, 0).unwrap_err();
         assert!(path.ends_with("gyro-000001.csv"));

@@ -134,8 +134,9 @@ impl<'o> Session<'o> {
                 return Ok(End::Asked);
             }
             let now = self.inbox.now_ns();
-            self.machines.push(Machine::open(device, folder, self.inbox.sender(place), now)?);
-            self.parts.push(Parts::new(folder, &device.id, &[], ns(self.order.bench.part)));
+            let machine = Machine::open(device, folder, self.inbox.sender(place), now)?;
+            self.parts.push(self.parts_of(&machine));
+            self.machines.push(machine);
         }
         // A unit that the bench switches on says nothing before.
         let begin = self.order.bench.begin();
@@ -153,6 +154,12 @@ impl<'o> Session<'o> {
         (self.tell)(note!("bench_said.begins", devices = self.machines.len()));
         self.motion = Motion::new(self.order.legs.clone());
         self.go_through()
+    }
+
+    /// The parts of a device, as far as its columns are known.
+    fn parts_of(&self, machine: &Machine<'_>) -> Parts {
+        let length_ns = ns(self.order.bench.part);
+        Parts::new(self.order.folder, &machine.device.id, &machine.header(), machine.has_clock(), length_ns)
     }
 
     /// Sets what is set before a schedule begins; false where it is asked to end.
@@ -287,9 +294,9 @@ impl<'o> Session<'o> {
                 Ok(())
             }
             Told::Hello => {
-                let columns = self.machines.get(place).map(Machine::header).unwrap_or_default();
-                if let Some(parts) = self.parts.get_mut(place) {
-                    *parts = Parts::new(self.order.folder, &device, &columns, ns(self.order.bench.part));
+                let begun = self.machines.get(place).map(|machine| self.parts_of(machine));
+                if let Some((parts, begun)) = self.parts.get_mut(place).zip(begun) {
+                    *parts = begun;
                 }
                 let hello = self.machines.get(place).and_then(|m| m.hello.clone()).unwrap_or_default();
                 let (name, model, serial) = (&hello.name, &hello.model, &hello.serial);
@@ -377,8 +384,14 @@ impl<'o> Session<'o> {
         }
         let now = self.inbox.now_ns();
         let mut patience = Duration::ZERO;
-        for (place, machine) in self.machines.iter_mut().enumerate().filter(|(_, m)| m.device.has_safe_state)
-        {
+        let (standing, lost): (Vec<_>, Vec<_>) = self
+            .machines
+            .iter_mut()
+            .enumerate()
+            .filter(|(_, machine)| machine.device.has_safe_state)
+            .partition(|(_, machine)| machine.is_linked());
+        // A connection that must be made anew may take its time.
+        for (place, machine) in standing.into_iter().chain(lost) {
             machine.make_safe(self.order.folder, self.inbox.sender(place), now);
             patience = patience.max(machine.device.patience);
         }

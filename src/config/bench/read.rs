@@ -156,6 +156,9 @@ fn keys_of_language(keys: &DeviceKeys, reader: &mut Reader<'_>) {
     if let Some(time) = keys.device_time.as_ref().filter(|time| !keys.columns.contains(time)) {
         wrong(reader, section, "device_time", note!("bench_file.no_column", column = time.as_str()));
     }
+    if keys.poll.is_some() && keys.period_s >= keys.heartbeat_s {
+        wrong(reader, section, "period", note!("bench_file.heartbeat"));
+    }
     if !keys.moves.is_empty() && keys.safe.is_empty() {
         wrong(reader, section, "id", note!("bench_file.no_safe", id = keys.id.as_str()));
     }
@@ -239,6 +242,7 @@ mod tests {
             ("highest = 10", "highest = 10\nbegin = 11", 18),
             ("tolerance = 0.1", "tolerance = 0", 18),
             ("within = \"20 s\"", "within = 20", 19),
+            ("columns", "poll = \"?\"\nperiod = \"5 s\"\ncolumns", 12),
             (
                 "\"uptime\", \"table_rate_deg_s\"]",
                 "\"uptime\", \"table_rate_deg_s\"]\ndevice_time = \"t\"",
