@@ -140,7 +140,7 @@ fn keys_of_link(keys: &DeviceKeys, reader: &mut Reader<'_>) {
 fn keys_of_language(keys: &DeviceKeys, reader: &mut Reader<'_>) {
     let section = &keys.section;
     if keys.language == LanguageWord::Json {
-        for key in ["columns", "device_time", "poll", "period", "answer", "safe"] {
+        for key in ["columns", "device_time", "poll", "answer", "safe"] {
             if section.entry(key).is_some() {
                 wrong(reader, section, key, note!("bench_file.of_text", key));
             }

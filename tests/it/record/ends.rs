@@ -53,10 +53,11 @@ fn a_step_of_a_clock_is_told_and_the_recording_goes_on_by_its_own() {
 fn running(bench: &Bench, part: &str) -> std::process::Child {
     let mut command = Command::new(program());
     command.current_dir(bench.folder()).args(bench.args()).stdout(Stdio::piped()).stderr(Stdio::piped());
-    let child = command.spawn().unwrap();
+    let mut child = command.spawn().unwrap();
     let began = Instant::now();
     while !bench.at(part).exists() {
-        assert!(began.elapsed() < Duration::from_secs(60), "no {part}");
+        let ended = child.try_wait().unwrap();
+        assert!(ended.is_none() && began.elapsed() < Duration::from_secs(60), "no {part}: {ended:?}");
         std::thread::sleep(Duration::from_millis(1));
     }
     child

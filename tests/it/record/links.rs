@@ -32,8 +32,14 @@ fn bench(folder: &Path) -> std::process::Child {
     for (name, text) in [("driver.sh", DRIVER), ("bench.toml", BENCH), ("volts", "0\n"), ("room.log", "")] {
         fs::write(folder.join(name), text).unwrap();
     }
-    let writer = "while :; do echo 21.5 >> room.log; sleep 0.05; done";
-    Command::new("sh").args(["-c", writer]).current_dir(folder).stdout(Stdio::null()).spawn().unwrap()
+    let writer = "while echo 21.5 >> room.log; do sleep 0.05; done";
+    Command::new("sh")
+        .args(["-c", writer])
+        .current_dir(folder)
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
 }
 
 #[cfg(unix)]
