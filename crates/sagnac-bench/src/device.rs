@@ -13,8 +13,8 @@ use std::collections::{BTreeMap, VecDeque};
 use std::path::Path;
 use std::time::Duration;
 
-/// Largest age of the stamp of a driver.
-const OLDEST_STAMP: Duration = Duration::from_secs(60);
+/// Largest distance between the stamp of a driver and the arrival of its line.
+const FURTHEST_STAMP: Duration = Duration::from_secs(60);
 /// Time after which a device that has said nothing so far is asked again.
 const RETRY: Duration = Duration::from_secs(1);
 /// Most characters of an unreadable line that are kept.
@@ -300,9 +300,9 @@ impl<'b> Machine<'b> {
                 Ok(vec![Told::Hello])
             }
             Said::Sample { at_ns: stamped, device_s, values } => {
-                let oldest = after(at_ns, Duration::ZERO) - crate::clock::ns(OLDEST_STAMP);
                 // A stamp of another clock is none.
-                let at_ns = stamped.filter(|stamp| (oldest..=at_ns).contains(stamp)).unwrap_or(at_ns);
+                let is_of_ours = |stamp: &i64| stamp.abs_diff(at_ns) <= FURTHEST_STAMP.as_nanos() as u64;
+                let at_ns = stamped.filter(is_of_ours).unwrap_or(at_ns);
                 let values =
                     self.columns.iter().map(|c| values.get(c).and_then(serde_json::Value::as_f64)).collect();
                 self.row(at_ns, at_ns, device_s, values)

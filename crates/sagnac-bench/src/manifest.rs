@@ -8,7 +8,7 @@ use std::path::Path;
 /// File of the manifest.
 pub const MANIFEST_FILE: &str = "recording.toml";
 
-/// Writes it anew: it names the devices of which there are parts.
+/// Writes it anew, with the devices beside the unit of which there are parts.
 ///
 /// # Errors
 /// A disk that is full or gone.
@@ -23,7 +23,7 @@ fn text(serial: Option<&str>, unit: &Parts, others: &[&Parts]) -> String {
         let _ = writeln!(text, "serial = {}", quoted(serial));
     }
     let _ = writeln!(text, "files = {}", quoted(&unit.pattern()));
-    for parts in others.iter().filter(|parts| parts.written > 0) {
+    for parts in others {
         let _ = writeln!(text, "\n[[source]]\nfiles = {}\ntime_offset = \"0 s\"", quoted(&parts.pattern()));
     }
     text

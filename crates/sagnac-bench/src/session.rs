@@ -11,7 +11,7 @@ use crate::parts::Parts;
 use crate::setup::{Bench, Device};
 use sagnac_base::message::{Arg, Note, note};
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Longest pause of the loop while nothing is due.
@@ -92,8 +92,8 @@ struct Session<'o> {
     began_ns: Option<i64>,
     remarks: Vec<Fault>,
     unreadable: BTreeMap<usize, usize>,
-    /// Devices of which the manifest names parts.
-    named: usize,
+    /// Devices beside the unit of which the manifest names parts; `None` before it is written.
+    named: Option<usize>,
     is_safe: bool,
     is_asked: &'o dyn Fn() -> bool,
     tell: &'o mut dyn FnMut(Note),
@@ -118,7 +118,7 @@ impl<'o> Session<'o> {
             began_ns: None,
             remarks: vec![],
             unreadable: BTreeMap::new(),
-            named: 0,
+            named: None,
             is_safe: false,
             is_asked,
             tell,
@@ -141,7 +141,9 @@ impl<'o> Session<'o> {
         // A unit that the bench switches on says nothing before.
         let begin = self.order.bench.begin();
         let is_switched_on = !begin.is_empty();
-        if !self.wait_until_ready(&|device| !(device.is_unit && is_switched_on))? {
+        if !self
+            .wait_until_ready(&|device| !(is_switched_on && device.is_unit && device.demands.is_empty()))?
+        {
             return Ok(End::Asked);
         }
         self.begin()?;
@@ -336,45 +338,34 @@ impl<'o> Session<'o> {
     }
 
     /// Writes the rows so far; those of the unit as far as the other devices have been read, or all.
+    ///
+    /// The manifest is there before the first part of the unit, and each device in it has a part: a recording can be read at any
+    /// moment.
     fn write(&mut self, all: bool) -> Result<(), Fault> {
         let Some(zero) = self.began_ns else { return Ok(()) };
-        let is_unit: Vec<bool> = self.machines.iter().map(|machine| machine.device.is_unit).collect();
+        let disk_of = |(path, e): (PathBuf, std::io::Error)| disk(&path, &e);
+        let (mut units, mut others): (Vec<_>, Vec<_>) =
+            self.parts.iter_mut().zip(&self.machines).partition(|(_, machine)| machine.device.is_unit);
         let mut to = i64::MAX;
-        for (parts, _) in self.parts.iter_mut().zip(&is_unit).filter(|(_, is_unit)| !**is_unit) {
-            parts.write(i64::MAX, zero).map_err(|(path, e)| disk(&path, &e))?;
+        for (parts, _) in &mut others {
+            parts.write(i64::MAX, zero).map_err(disk_of)?;
             to = to.min(parts.latest.as_ref().map_or(i64::MAX, |row| row.at_ns));
         }
-        for (parts, _) in self.parts.iter_mut().zip(&is_unit).filter(|(_, is_unit)| **is_unit) {
-            parts.write(if all { i64::MAX } else { to }, zero).map_err(|(path, e)| disk(&path, &e))?;
-        }
-        self.name_parts(&is_unit)?;
-        let Some(journal) = &mut self.journal else { return Ok(()) };
-        journal.sync().map_err(|e| disk(&self.order.folder.join(EVENTS_FILE), &e))
-    }
-
-    /// Writes the manifest where there are parts of a device that it does not name.
-    fn name_parts(&mut self, is_unit: &[bool]) -> Result<(), Fault> {
-        let written = self.parts.iter().filter(|parts| parts.written > 0).count();
-        let place = is_unit.iter().position(|is_unit| *is_unit);
-        let Some(unit) = place.and_then(|place| self.parts.get(place)) else { return Ok(()) };
-        if unit.written == 0 || written == self.named {
-            return Ok(());
-        }
-        let others: Vec<&Parts> = self
-            .parts
-            .iter()
-            .zip(is_unit)
-            .filter(|(_, is_unit)| !**is_unit)
-            .map(|(parts, _)| parts)
-            .collect();
-        let hello =
-            place.and_then(|place| self.machines.get(place)).and_then(|machine| machine.hello.as_ref());
-        let stated = hello.map(|hello| hello.serial.as_str()).filter(|serial| !serial.is_empty());
         let folder = self.order.folder;
-        manifest::write(folder, self.order.serial.or(stated), unit, &others)
-            .map_err(|e| disk(&folder.join(MANIFEST_FILE), &e))?;
-        self.named = written;
-        Ok(())
+        for (unit, machine) in &mut units {
+            let beside: Vec<&Parts> =
+                others.iter().map(|(parts, _)| &**parts).filter(|p| p.written > 0).collect();
+            if self.named != Some(beside.len()) {
+                let stated = machine.hello.as_ref().map(|hello| hello.serial.as_str());
+                let serial = self.order.serial.or(stated.filter(|serial| !serial.is_empty()));
+                manifest::write(folder, serial, &**unit, &beside)
+                    .map_err(|e| disk(&folder.join(MANIFEST_FILE), &e))?;
+                self.named = Some(beside.len());
+            }
+            unit.write(if all { i64::MAX } else { to }, zero).map_err(disk_of)?;
+        }
+        let Some(journal) = &mut self.journal else { return Ok(()) };
+        journal.sync().map_err(|e| disk(&folder.join(EVENTS_FILE), &e))
     }
 
     /// Brings every device into its safe state, and waits until those that answer have said so.

@@ -9,7 +9,7 @@ use tempfile::tempdir;
 /// A driver as anybody would write it: a row every 20 ms; it becomes safe when it is asked to, or at the end of its input.
 const DRIVER: &str = r#"
 echo '{"v":1,"hello":{"name":"shell","serial":"SN-9","channels":[{"id":"rate_deg_h"},{"id":"supply_v"}],"commands":[{"id":"supply_v","min":0,"max":9}]}}'
-( i=0; while :; do i=$((i+1)); echo "{\"u\":$i,\"rate_deg_h\":1.$((i%7)),\"supply_v\":$(cat volts)}"; sleep 0.02; done ) &
+( i=0; while :; do i=$((i+1)); echo "{\"rate_deg_h\":1.$((i%7)),\"supply_v\":$(cat volts)}"; sleep 0.02; done ) &
 beat=$!
 while read -r line; do
   id=${line#*\"id\":}; id=${id%%,*}
@@ -23,7 +23,7 @@ echo "end" >> log
 "#;
 
 const BENCH: &str = "format = \"bench/1\"\npart = \"200 ms\"\n[[device]]\nid = \"unit\"\nunit_under_test = true\n\
-    command = [\"sh\", \"driver.sh\"]\nclock_step = \"60 s\"\n[[device.move]]\nquantity = \"supply_v\"\nlowest = 4\nhighest = 6\n\
+    command = [\"sh\", \"driver.sh\"]\n[[device.move]]\nquantity = \"supply_v\"\nlowest = 4\nhighest = 6\n\
     tolerance = 0.1\nwithin = \"5 s\"\nbegin = 5\n\
     [[device]]\nid = \"room\"\nlink = \"file\"\npath = \"room.log\"\nlanguage = \"text\"\ncolumns = [\"room_temp_degC\"]\n";
 
@@ -57,7 +57,9 @@ fn a_process_and_a_file_are_recorded_and_the_process_ends_safe() {
     assert_eq!(fs::read_to_string(dir.path().join("volts")).unwrap().trim(), "0");
     let inspected = sagnac(dir.path(), &["inspect", "rec/recording.toml"]);
     assert_eq!(inspected.code, 0, "{inspected:?}");
-    for words in ["rate_deg_h", "room_temp_degC", "SN-9"] {
+    let manifest = fs::read_to_string(dir.path().join("rec/recording.toml")).unwrap();
+    assert!(manifest.contains("serial = \"SN-9\""), "{manifest}");
+    for words in ["rate_deg_h", "room_temp_degC"] {
         assert!(inspected.out.contains(words), "{words}: {}", inspected.out);
     }
 }
