@@ -358,7 +358,7 @@ impl<'o> Session<'o> {
             if self.named != Some(beside.len()) {
                 let stated = machine.hello.as_ref().map(|hello| hello.serial.as_str());
                 let serial = self.order.serial.or(stated.filter(|serial| !serial.is_empty()));
-                manifest::write(folder, serial, &**unit, &beside)
+                manifest::write(folder, serial, unit, &beside)
                     .map_err(|e| disk(&folder.join(MANIFEST_FILE), &e))?;
                 self.named = Some(beside.len());
             }
