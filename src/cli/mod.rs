@@ -41,6 +41,7 @@ mod procedures;
 mod progress;
 mod prove;
 mod read;
+mod record;
 mod rehearse;
 mod report;
 mod run;
@@ -127,6 +128,13 @@ enum Verb {
         sagnac watch /data/bench-2 --procedure static-bias --limits sample-unit --once"
     )]
     Watch(watch::WatchArgs),
+    /// Record a bench: what its devices say, while a schedule moves table and chamber within limits
+    #[command(
+        after_help = "Exit codes: 0 complete, 1 a fault ended it or a device is not safe, 2 could not begin, 3 ended early when asked, or a clock made a step.\n\n\
+        Examples:\n  sagnac record bench.toml --schedule next/schedule.toml --serial SN-0042 --out recorded\n  \
+        sagnac record bench.toml --duration 10h"
+    )]
+    Record(record::RecordArgs),
     /// Serve the pages of a bench: scan a serial number, see the verdict; with an interface for programs
     #[command(after_help = "Exit codes: 0 ended when asked, 2 could not start.\n\n\
         Examples:\n  sagnac serve --data /srv/bench --recordings /data/bench-2\n  \
@@ -292,6 +300,7 @@ pub fn run(arguments: &[OsString]) -> u8 {
         Verb::Run(args) if is_phased(&args.procedure) => run_phases::main(&args, lang),
         Verb::Run(args) => run::main(&args, lang),
         Verb::Watch(args) => watch::main(&args, lang),
+        Verb::Record(args) => record::main(&args, lang),
         Verb::Serve(args) => serve::main(&args, lang),
         Verb::Check(args) => check::main(&args, lang),
         Verb::Rehearse(args) => rehearse::main(&args, lang),

@@ -52,6 +52,11 @@ pub fn after_model(model: &Path) -> Note {
     note!("next_step.model", model = for_shell(&model.display().to_string()))
 }
 
+/// After a recording was made: what it holds.
+pub fn after_record(recording: &Path) -> Note {
+    note!("next_step.record", recording = for_shell(&recording.display().to_string()))
+}
+
 /// After a test was planned: its recording, simulated.
 pub fn after_plan(model: &Path, schedule: &Path) -> Note {
     note!(

@@ -45,6 +45,8 @@ pub enum SchemaKind {
     Sheet,
     /// Rules of a watched folder
     Watch,
+    /// Devices of a bench
+    Bench,
     /// Rules of a bench
     Serve,
     /// datasheet.json
@@ -63,6 +65,7 @@ pub fn main(args: &SchemaArgs) -> Result<u8, String> {
         SchemaKind::Proof => schema::proof(),
         SchemaKind::Sheet => schema::sheet(),
         SchemaKind::Watch => schema::watch(),
+        SchemaKind::Bench => schema::bench(),
         SchemaKind::Serve => schema::serve(),
         SchemaKind::Schedule => schema::schedule(),
         SchemaKind::Alternatives => schema::alternatives(),

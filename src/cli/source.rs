@@ -57,6 +57,7 @@ impl SourceArgs {
     pub fn sources(&self) -> Vec<SecondSource> {
         let of = |path: &PathBuf| SecondSource {
             path: path.clone(),
+            more: vec![],
             offset_s: self.source_offset,
             rate: self.source_rate.unwrap_or(0.0) * 1e-6,
             offset_uncertainty_s: self.source_offset_uncertainty.unwrap_or(0.0),

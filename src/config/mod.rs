@@ -1,10 +1,11 @@
 //! TOML files whose keys are described once, as data: reading with every problem placed, and the parts of schema and
 //! guide that follow from the description.
 //!
-//! [`procedure`], [`model`], [`alternatives`], [`schedule`], [`sheet`], [`proof`], [`manifest`], [`layout`], [`laboratory`],
+//! [`procedure`], [`model`], [`bench`], [`alternatives`], [`schedule`], [`sheet`], [`proof`], [`manifest`], [`layout`], [`laboratory`],
 //! [`serve`], [`watch`] and [`user`] are the files; the others know none of them.
 
 pub mod alternatives;
+pub mod bench;
 pub(crate) mod contained_files;
 pub mod diagnostics;
 pub mod external;

@@ -7,7 +7,7 @@ use crate::config::diagnostics::Problems;
 use crate::config::layout::{self, refused};
 use crate::config::manifest::{self, Manifest};
 use crate::i18n::{Lang, Localize, Note, note};
-use sagnac_ingest::{beside, pattern};
+use sagnac_ingest::{SecondSource, beside, pattern};
 use std::fmt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -165,11 +165,11 @@ pub fn files_read(named: &[PathBuf], options: &ReadOptions) -> Vec<PathBuf> {
         files.push(path.clone());
         if let Ok(manifest) = manifest::load(path) {
             files.extend(manifest.files.iter().map(|f| f.path.clone()));
-            files.extend(manifest.options.sources.iter().map(|s| s.path.clone()));
+            files.extend(manifest.options.sources.iter().flat_map(SecondSource::files).cloned());
             layout = manifest.options.layout.map(|l| l.path).or(layout);
         }
     }
-    files.extend(options.sources.iter().map(|s| s.path.clone()));
+    files.extend(options.sources.iter().flat_map(SecondSource::files).cloned());
     files.extend(layout);
     files
 }

@@ -42,6 +42,7 @@ mod procedures;
 mod prove;
 mod rate_table;
 mod real;
+mod record;
 mod recordings;
 mod registry;
 mod rehearse;

@@ -13,7 +13,7 @@ const SPLINTER_LINES: usize = 60;
 /// Commits from here on count for the files that a change touches, where no date is given.
 pub const COMMITS_SINCE: &str = "2026-11-24";
 /// The package of the program, and those that its `run` leads to.
-const PACKAGES: [&str; 10] = [
+const PACKAGES: [&str; 11] = [
     "src",
     "crates/sagnac-base/src",
     "crates/sagnac-core/src",
@@ -22,6 +22,7 @@ const PACKAGES: [&str; 10] = [
     "crates/sagnac-ingest/src",
     "crates/sagnac-fft/src",
     "crates/sagnac-pdf/src",
+    "crates/sagnac-bench/src",
     "crates/sagnac-serve/src",
     "crates/sagnac-table-derive/src",
 ];

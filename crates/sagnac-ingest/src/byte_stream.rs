@@ -6,7 +6,7 @@ use sagnac_core::message::note;
 use sha2::{Digest, Sha256};
 use std::fs::File;
 use std::io::{self, BufReader, Read};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// How a file is compressed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -183,6 +183,21 @@ pub fn digest(path: &Path) -> Result<Digested, IngestError> {
     let mut buffer = vec![0; 1 << 18];
     while stream.fill(&mut buffer)? > 0 {}
     stream.finish()
+}
+
+/// SHA-256 of files, one after the other.
+///
+/// # Errors
+/// As [`digest`].
+pub(crate) fn digest_of_all(paths: &[&PathBuf]) -> Result<String, IngestError> {
+    if let [one] = paths {
+        return Ok(digest(one)?.sha256);
+    }
+    let mut hash = Sha256::new();
+    for path in paths {
+        hash.update(std::fs::read(path).map_err(|e| io_error(path, &e))?);
+    }
+    Ok(hex(&hash.finalize()))
 }
 
 /// Compares the sizes of a file when it was opened, as read, and now.

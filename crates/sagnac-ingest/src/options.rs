@@ -30,6 +30,8 @@ pub struct ReadOptions {
 pub struct SecondSource {
     /// The file.
     pub path: PathBuf,
+    /// Files that continue it, in order.
+    pub more: Vec<PathBuf>,
     /// Time that is added to its stamps to give those of the recording, s; `None`: both clocks tell the date.
     pub offset_s: Option<f64>,
     /// Relative length of its seconds beyond those of the recording.
@@ -38,6 +40,13 @@ pub struct SecondSource {
     pub offset_uncertainty_s: f64,
     /// Offset and rate are estimated from what both files record, in place of the three before.
     pub estimate: bool,
+}
+
+impl SecondSource {
+    /// Its files, in order.
+    pub fn files(&self) -> impl Iterator<Item = &PathBuf> {
+        std::iter::once(&self.path).chain(&self.more)
+    }
 }
 
 /// The rows in which a column has a value.

@@ -3,11 +3,12 @@
 //! output of a gyro is interpolated.
 
 use crate::beside_columns::{Beside, MAX_STEPS_APART, TieUncertainty, Track};
-use crate::byte_stream::digest;
+use crate::byte_stream::digest_of_all;
 use crate::estimated_tie::{EstimatedTie, estimate};
+use crate::multi_file::{self, PartSpec};
 use crate::stamp_column::Stamps;
 use crate::turns::{TURN_ARCSEC, unwrap_turns};
-use crate::{Column, IngestError, IngestErrorKind, SecondSource, Source};
+use crate::{Column, IngestError, IngestErrorKind, ReadOptions, SecondSource, Source};
 use sagnac_core::message::{Arg, Note, note};
 use sagnac_core::recording::Role;
 use sagnac_core::units::Unit;
@@ -35,7 +36,7 @@ pub fn beside(source: Source, files: &[SecondSource]) -> Result<Source, IngestEr
     let mut added = Added { columns: Vec::new(), notes: Vec::new() };
     let mut tracks = Vec::new();
     for file in files {
-        let second = crate::open(&file.path)?;
+        let second = open(file)?;
         let its = stamps_of(&second).ok_or_else(|| without_time(&file.path))?;
         let tied = tie(&source, &stamps, &second, &its, file)?;
         let wanted = added.take(&source, &second, its.column)?;
@@ -44,11 +45,21 @@ pub fn beside(source: Source, files: &[SecondSource]) -> Result<Source, IngestEr
         if ends.is_none_or(|(_, last)| begins_s.is_some_and(|begins| *last < begins)) {
             return Err(apart(&file.path, ends.map(|(a, b)| (*a, *b)), begins_s.unwrap_or(f64::NAN)));
         }
-        added.say(&second, &wanted, tied.by)?;
+        added.say(&second, file, &wanted, tied.by)?;
         tracks.push(track);
     }
     let own = source.columns().len();
     Ok(source.with_beside(added.columns, added.notes, Beside { own, stamps, files: tracks }))
+}
+
+/// Opens a second file with those that continue it.
+fn open(file: &SecondSource) -> Result<Source, IngestError> {
+    if file.more.is_empty() {
+        return crate::open(&file.path);
+    }
+    let parts: Vec<PartSpec> =
+        file.files().map(|path| PartSpec { path: path.clone(), ..PartSpec::default() }).collect();
+    multi_file::open(&file.path, &parts, false, &ReadOptions::default())
 }
 
 /// The stamps of a file; `None` without a time column.
@@ -66,6 +77,12 @@ impl Added {
     /// The columns that are taken from a file, by their positions in it: numbers but for its time, its counter and outputs of a gyro.
     fn take(&mut self, source: &Source, second: &Source, time: usize) -> Result<Vec<usize>, IngestError> {
         let stem = second.path().file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+        // The number of a part is none of the name of the whole.
+        let stem = if second.files().len() > 1 {
+            stem.trim_end_matches(|c: char| c.is_ascii_digit() || c == '-')
+        } else {
+            &stem
+        };
         let (mut wanted, mut gyros) = (Vec::new(), Vec::new());
         for (index, column) in second.columns().iter().enumerate().filter(|(i, c)| c.numeric && *i != time) {
             let inferred = column.inferred();
@@ -100,14 +117,20 @@ impl Added {
     }
 
     /// Says what was taken from a file and by which tie of the clocks.
-    fn say(&mut self, second: &Source, wanted: &[usize], tie: Note) -> Result<(), IngestError> {
+    fn say(
+        &mut self,
+        second: &Source,
+        file: &SecondSource,
+        wanted: &[usize],
+        tie: Note,
+    ) -> Result<(), IngestError> {
         let names: Vec<&str> =
             wanted.iter().filter_map(|i| second.columns().get(*i)).map(|c| c.name.as_str()).collect();
         self.notes.push(note!(
             "ingest.beside.read",
             file = second.path().display().to_string(),
             columns = names.join(", "),
-            sha256 = digest(second.path())?.sha256,
+            sha256 = digest_of_all(&file.files().collect::<Vec<_>>())?,
             tie
         ));
         Ok(())

@@ -274,6 +274,7 @@ fn sources(listed: Vec<SourceKeys>, folder: &Path, reader: &mut Reader<'_>) -> V
     let mut found = Vec::new();
     for SourceKeys {
         path,
+        files,
         sha256,
         time_offset_s,
         time_offset_uncertainty_s,
@@ -282,13 +283,43 @@ fn sources(listed: Vec<SourceKeys>, folder: &Path, reader: &mut Reader<'_>) -> V
         section,
     } in listed
     {
-        let Some(text) = path else { continue };
-        let at = reader.source.inside_quotes(&section.span_of("path"));
-        let Some(file) = contained_files::file(&text, folder, &at, reader) else { continue };
-        if sha256.is_none_or(|stated| hash_holds(&stated, &file.path, &section, reader)) {
-            let (path, offset_s, estimate) = (file.path, time_offset_s, estimate_offset);
+        let paths: Vec<PathBuf> = match (path, files) {
+            (Some(_), Some(_)) => {
+                let at = section.span_of("files");
+                complain(reader, &at, note!("manifest.two_sources"), Some("manifest.help.two_sources"));
+                continue;
+            }
+            (Some(text), None) => {
+                let at = reader.source.inside_quotes(&section.span_of("path"));
+                contained_files::file(&text, folder, &at, reader).into_iter().map(|file| file.path).collect()
+            }
+            (None, Some(_)) if sha256.is_some() => {
+                let at = section.span_of("sha256");
+                complain(reader, &at, note!("manifest.hash_of_several"), None);
+                continue;
+            }
+            (None, Some(pattern)) => {
+                let found = by_pattern(&pattern, &section.span_of("files"), folder, reader);
+                found.into_iter().map(|file| file.path).collect()
+            }
+            (None, None) => {
+                // A wrong value has been reported already.
+                if section.entry("path").is_none() && section.entry("files").is_none() {
+                    let note = note!("manifest.no_source");
+                    complain(reader, &section.span.clone(), note, Some("manifest.help.no_source"));
+                }
+                continue;
+            }
+        };
+        let Some((path, more)) = paths.split_first().map(|(path, more)| (path.clone(), more.to_vec())) else {
+            continue;
+        };
+        if sha256.is_none_or(|stated| hash_holds(&stated, &path, &section, reader)) {
+            let (offset_s, estimate) = (time_offset_s, estimate_offset);
             let offset_uncertainty_s = time_offset_uncertainty_s;
-            found.push(SecondSource { path, offset_s, rate: time_rate, offset_uncertainty_s, estimate });
+            let source =
+                SecondSource { path, more, offset_s, rate: time_rate, offset_uncertainty_s, estimate };
+            found.push(source);
         }
     }
     found

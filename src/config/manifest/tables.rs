@@ -104,8 +104,11 @@ pub(super) struct FileKeys {
 #[table("source")]
 pub(super) struct SourceKeys {
     /// Path relative to the manifest, with `/`. It cannot lead out of the manifest's folder.
-    #[key(required, example = "chamber.csv")]
+    #[key(example = "chamber.csv")]
     pub path: Option<String>,
+    /// Pattern of files that continue each other, relative to the manifest. In place of `path`.
+    #[key(example = "chamber-*.csv")]
+    pub files: Option<String>,
     /// SHA-256 of the file, checked before anything is read.
     #[key(example = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855")]
     pub sha256: Option<String>,

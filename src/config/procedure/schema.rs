@@ -7,6 +7,7 @@ use super::tables::PROCEDURE_FILE;
 use super::tables::limits::LIMITS_FILE;
 use super::tables::phases::PHASES_FILE;
 use crate::config::alternatives::ALTERNATIVES_FILE;
+use crate::config::bench::tables::BENCH_FILE;
 use crate::config::layout::tables::LAYOUT_FILE;
 use crate::config::manifest::tables::MANIFEST_FILE;
 use crate::config::model::tables::MODEL_FILE;
@@ -58,6 +59,11 @@ pub fn sheet() -> Value {
 /// The schema of a file of watch rules.
 pub fn watch() -> Value {
     document(&WATCH_FILE, "Sagnac watch rules")
+}
+
+/// The schema of a file of a bench.
+pub fn bench() -> Value {
+    document(&BENCH_FILE, "Sagnac bench")
 }
 
 /// The schema of a file of rules of a bench.
