@@ -206,6 +206,51 @@ fn base<'a>(n: usize, time: Option<&DVector<f64>>, turning: Option<&'a Turning>)
     Base { columns, turning }
 }
 
+/// What the fits of a channel gave: first of the bias, then of the scale factor.
+struct Fitted<'a> {
+    found: &'a Intervals,
+    states: &'a States,
+    drives: &'a [Drive],
+    /// Per unit of every drive.
+    per_unit: Vec<Combination>,
+    /// Coefficients of the fit with a column for every level.
+    of_levels: Vec<Combination>,
+    each: Fit,
+    /// The first column of a level.
+    first: usize,
+}
+
+impl Fitted<'_> {
+    /// Drives at every level.
+    fn drives_of_levels(&self) -> Vec<Vec<f64>> {
+        self.drives.iter().map(|d| d.levels.clone()).collect()
+    }
+
+    /// The effect on the bias, number 0, or on the scale factor, number 1.
+    fn effect(&self, law: Law, number: usize) -> Effect {
+        let axis = |at: usize| self.found.axes[at].clone();
+        let term = |(d, per_unit): (&Drive, &Combination)| Term {
+            axis: axis(d.axis),
+            degree: d.degree,
+            told_apart: d.told_apart,
+            per_unit: *per_unit,
+        };
+        let first = self.first + number * self.states.list.len();
+        let shift = |(k, (a, level)): (usize, &(usize, f64))| {
+            Some(Shift { axis: axis(*a), level: *level, change: *self.of_levels.get(first + k)? })
+        };
+        let per_unit = self.per_unit.iter().skip(number * self.drives.len());
+        Effect {
+            terms: self.drives.iter().zip(per_unit).map(term).collect(),
+            shifts: self.states.list.iter().enumerate().filter_map(shift).collect(),
+            line: match law {
+                Law::OnOff => None,
+                _ => off_line(&self.each, first, &self.drives_of_levels()),
+            },
+        }
+    }
+}
+
 /// Evaluates a channel. `None` without an interval of both kinds, or where rates of a table are asked for and none differ.
 pub fn evaluate(
     blocks: &Blocks,
@@ -266,26 +311,9 @@ pub fn evaluate(
     let by_level = base.with(&indicators(&states, &cut));
     let (each, _) = noise.solve(&cut, &states, &by_level.x)?;
     let of_levels = coefficients(&by_level.x, &each);
-    let drives_of_levels: Vec<Vec<f64>> = drives.iter().map(|d| d.levels.clone()).collect();
-    let effect = |on_scale_factor: bool| {
-        let of = usize::from(on_scale_factor);
-        let term = |(d, per_unit): (&Drive, &Combination)| Term {
-            axis: found.axes[d.axis].clone(),
-            degree: d.degree,
-            told_apart: d.told_apart,
-            per_unit: *per_unit,
-        };
-        let first = by_level.first + of * states.list.len();
-        let shift = |(k, (a, level)): (usize, &(usize, f64))| {
-            let change = *of_levels.get(first + k)?;
-            Some(Shift { axis: found.axes[*a].clone(), level: *level, change })
-        };
-        Effect {
-            terms: drives.iter().zip(per_unit.iter().skip(of * drives.len())).map(term).collect(),
-            shifts: states.list.iter().enumerate().filter_map(shift).collect(),
-            line: (law != Law::OnOff).then(|| off_line(&each, first, &drives_of_levels)).flatten(),
-        }
-    };
+    let fitted =
+        Fitted { found, states: &states, drives: &drives, per_unit, of_levels, each, first: by_level.first };
+    let drives_of_levels = fitted.drives_of_levels();
     let course = |values: &[f64], what: &Nuisance| {
         let levels = states.list.len();
         let own = Course { values, of: &cut.of, time, states: &states.of, drives: &drives_of_levels, levels };
@@ -295,8 +323,8 @@ pub fn evaluate(
     let (intervals, without) = means(blocks, found, &states, &cut, (time, turning, &noise))?;
     Some(Comparison {
         channel: blocks.gyros.get(gyro)?.clone(),
-        bias: effect(false),
-        scale_factor: turning.map(|_| effect(true)),
+        bias: fitted.effect(law, 0),
+        scale_factor: turning.map(|_| fitted.effect(law, 1)),
         intervals,
         without,
         drift,

@@ -55,8 +55,8 @@ fn found(blocks: &Blocks, intervals: &Intervals, settling_s: f64) -> Vec<Stretch
                 list.push(Stretch { blocks, interval, rate });
             }
         };
-        for at in own.blocks.0..own.blocks.1 {
-            let rate = rates[at];
+        for (at, rate) in rates.iter().enumerate().take(own.blocks.1).skip(own.blocks.0) {
+            let rate = *rate;
             if n > 0.0 && (rate - sum / n).abs() > near {
                 close(start, at, sum / n);
                 (start, sum, n) = (at, 0.0, 0.0);

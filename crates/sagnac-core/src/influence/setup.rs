@@ -268,3 +268,29 @@ pub struct ComparisonTest {
     /// The intervals; empty: found from the channels of the influence's role.
     pub intervals: Vec<StatedLevel>,
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn terms_are_zero_at_the_reference_and_follow_their_law() {
+        for law in [Law::Linear, Law::Square, Law::LinearQuadratic] {
+            assert!(law.degrees().iter().all(|d| law.drive(*d, 101.3, 101.3) == 0.0), "{law:?}");
+        }
+        let at_3 = |law: Law| law.degrees().iter().map(|d| law.drive(*d, 3.0, 1.0)).collect::<Vec<_>>();
+        assert_eq!(Law::ALL.map(at_3), [vec![2.0], vec![8.0], vec![2.0, 4.0], vec![1.0]]);
+    }
+
+    #[test]
+    fn influences_with_a_table_of_their_own_are_settings() {
+        for (setting, unit, degree) in [
+            (Setting::magnetic_field(), "mT", 1),
+            (Setting::supply(), "V", 1),
+            (Setting::vibration(), "g", 2),
+        ] {
+            assert_eq!((setting.level_unit(), setting.law.degrees()), (unit, &[degree][..]));
+            assert!(setting.name.is_empty() && !setting.on_scale_factor);
+        }
+    }
+}
