@@ -49,7 +49,7 @@ fn a_declared_field_has_the_numbers_of_the_magnetic_test() {
         ],
     );
     let recording = std::fs::read_to_string(root("samples/magnetic-sensitivity-pass.csv")).unwrap();
-    let (code, found) = tested(&declared, &recording);
+    let (code, found) = tested(&declared, &recording.replace("SN-0113", "SN-1"));
     assert_eq!(code, 0, "{:#}", found["summary"]);
     let (a, b) = (row(own, "magnetic_sensitivity"), row(&found, "influence_sensitivity"));
     for member in ["value", "interval", "unit", "verdict", "notes"] {

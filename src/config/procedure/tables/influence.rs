@@ -241,7 +241,7 @@ pub(crate) struct InfluenceKeys {
     name: Option<String>,
     /// Unit of the level where no channel tells it: `kPa`, `%`, `g`, `V`, `A`, `mT`, `V/m`, `W/m^2`, `Gy` or `deg/s^2`. Without
     /// one, levels are numbers: 0 without and 1 with the influence.
-    #[key(example = "V/m")]
+    #[key(example = "kPa")]
     unit: Option<String>,
     /// How the output follows the level.
     #[key(choice = LAWS, example = "linear")]
@@ -271,7 +271,7 @@ pub(crate) struct InfluenceIntervalKeys {
     #[key(flatten)]
     stretch: StretchKeys,
     /// Level during the interval, in the unit of the level.
-    #[key(example = "50 V/m")]
+    #[key(example = "150 kPa")]
     level: String,
     /// Axis along which it acts, if several are tested.
     #[key(id, example = "x")]
