@@ -51,7 +51,7 @@ pub(super) fn of_intervals(found: &Comparison, evidence: Evidence) -> Vec<Interv
         row: r.row,
         level: Some(r.level),
         evidence: Some(evidence),
-        level_unit: Some(found.test.influence.unit().to_owned()),
+        level_unit: Some(found.test.setting.level_unit().to_owned()),
         axis: Some(r.axis.clone()).filter(|a| !a.is_empty()),
         without: Some(r.off),
         ..record(&found.channel, i, &r.mean, r.temperature)

@@ -5,7 +5,7 @@ use super::verdict;
 use crate::config::procedure::limits::gyro_of;
 use crate::config::procedure::model::{MeasurandSpec, Procedure};
 use crate::config::procedure::obtainable;
-use crate::config::procedure::scale_factor_unit::scale_factor_unit;
+use crate::config::procedure::scale_factor_unit::unit_of_result;
 use crate::estimate::Estimate;
 use crate::i18n::Note;
 use crate::measurand::Measurand;
@@ -62,10 +62,7 @@ fn without_value(
     channel: &str,
     missing: &'static str,
 ) -> Estimate {
-    let unit = match measurand.unit {
-        "" => scale_factor_unit(procedure, channel).0,
-        unit => unit,
-    };
+    let unit = unit_of_result(procedure, measurand, channel);
     let general = if measurand.test().is_at_rest() { "unshown.nothing" } else { missing };
     let why = obtainable::why_not(procedure, measurand, channel).unwrap_or_else(|| Note::new(general));
     Estimate::not_identifiable(measurand.id, channel, None, unit, "not_evaluated").note(why)

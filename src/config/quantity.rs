@@ -79,27 +79,38 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// Units that an output per input has: of samples that are rates or angles already, of counts an interval, of counts of rate.
-pub const AS_RECORDED: [&str; 3] = ["1", "count/arcsec", "count/(deg/h)"];
-
-/// Reads an output per input: the number in the one of [`AS_RECORDED`] that its unit fits, and that unit. A number alone
-/// is a pure one.
+/// Reads a quantity that may have one of several units, each of a dimension of its own: the number in the one that its unit
+/// fits, and that unit. A number alone is a pure one.
 ///
 /// # Errors
 /// As [`parse`].
-pub fn parse_as_recorded(text: &str) -> Result<(f64, &'static str), QuantityError> {
+pub fn parse_as_recorded(
+    text: &str,
+    units: &'static [&'static str],
+) -> Result<(f64, &'static str), QuantityError> {
     let (_, unit_text) = split(text)?;
     let whole = || 0..text.len();
-    if unit_text.is_empty() {
-        return parse(text, "1", false, true).map(|value| (value, "1"));
+    let pure = units.iter().find(|u| **u == "1");
+    if let Some(pure) = pure.filter(|_| unit_text.is_empty()) {
+        return parse(text, "1", false, true).map(|value| (value, *pure));
     }
     let given =
         Unit::parse(unit_text).map_err(|e| QuantityError { span: whole(), message: e.note(), help: None })?;
-    let fits = |unit: &&&str| Unit::parse(unit).is_ok_and(|u| u.same_dimension(&given));
-    match AS_RECORDED.iter().find(fits) {
+    // What is per percent is a plain quantity by its dimension alone, and would be meant otherwise.
+    let per_cent = |text: &str| text.contains('%');
+    let fits = |unit: &&&str| {
+        let alike = per_cent(unit) == per_cent(unit_text);
+        alike && Unit::parse(unit).is_ok_and(|u| u.same_dimension(&given))
+    };
+    match units.iter().find(fits) {
         Some(unit) => parse(text, unit, true, true).map(|value| (value, *unit)),
         None => {
-            let message = note!("keyed_more.no_output_per_input", unit = unit_text);
+            let key = if pure.is_some() {
+                "keyed_more.no_output_per_input"
+            } else {
+                "keyed_more.no_unit_per_level"
+            };
+            let message = Note::new(key).with("unit", unit_text);
             Err(QuantityError { span: whole(), message, help: None })
         }
     }

@@ -5,6 +5,7 @@ use super::diagnostics::{Problem, Problems, SourceText, Span};
 use super::reader::{Reader, Value, example, meant, shorten};
 use super::section::{Entry, Section};
 use super::spec::{KeySpec, Kind, Need, TableSpec};
+use super::values::UnitBy;
 use super::{syntax, values};
 use crate::i18n::{Arg, Lang, Note, lookup, note};
 use crate::measurand::Measurand;
@@ -298,8 +299,8 @@ impl Reader<'_> {
         let mut found = vec![];
         for (name, value) in table.iter() {
             let Some(id) = self.measurand(name.get_ref(), &name.span()) else { continue };
-            let read =
-                values::quantity_by(self, Value { key, toml: value.get_ref(), span: &value.span() }, id.unit);
+            let value_of = Value { key, toml: value.get_ref(), span: &value.span() };
+            let read = values::quantity_by(self, value_of, &UnitBy::of(id));
             if let Some(Entry::Number(number) | Entry::AsRecorded(number, _)) = read {
                 found.push((id, number, name.span()));
             }
@@ -326,14 +327,14 @@ pub(crate) fn entry_of_literal(key: &'static KeySpec, literal: &str) -> Option<E
 }
 
 /// The unit a dependent quantity is converted to; `None` when the key it depends on is unusable.
-fn dependent_unit(section: &Section, by: &str) -> Option<String> {
+fn dependent_unit(section: &Section, by: &str) -> Option<UnitBy> {
     match section.entry(by)? {
-        Entry::Measurand(id) => Some(id.unit.to_owned()),
+        Entry::Measurand(id) => Some(UnitBy::of(id)),
         Entry::Word(role) => {
             let role = Role::ALL.iter().find(|r| r.id() == *role)?;
             match (role.internal_unit(), section.entry("unit")) {
-                (Some(unit), _) => Some(unit.to_owned()),
-                (None, Some(Entry::Unit(unit))) => Some(unit.text().to_owned()),
+                (Some(unit), _) => Some(UnitBy::Known(unit.to_owned())),
+                (None, Some(Entry::Unit(unit))) => Some(UnitBy::Known(unit.text().to_owned())),
                 _ => None,
             }
         }

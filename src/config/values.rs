@@ -9,6 +9,7 @@ use super::spec::{KeySpec, Kind, Range, Word};
 use super::texts::{Blank, local, text};
 use crate::effect::EFFECTS;
 use crate::i18n::{Note, note};
+use crate::measurand::Measurand;
 use crate::recording::ColumnRef;
 use crate::units::Unit;
 use chrono::NaiveDate;
@@ -328,16 +329,37 @@ fn quantity_in(
     in_range(reader, value, number, range, unit).then_some(number)
 }
 
-/// Reads a quantity whose unit follows from elsewhere.
-pub(crate) fn quantity_by(reader: &mut Reader<'_>, value: Value<'_>, unit: &str) -> Option<Entry> {
-    if !unit.is_empty() {
-        return quantity_text(reader, value, unit, false).map(Entry::Number);
+/// The unit of a quantity that follows from elsewhere.
+pub(crate) enum UnitBy {
+    /// One unit.
+    Known(String),
+    /// That of the result, one of these.
+    Recorded(&'static [&'static str]),
+}
+
+impl UnitBy {
+    /// That of a measurand.
+    pub(crate) fn of(measurand: &Measurand) -> UnitBy {
+        if measurand.unit.is_empty() {
+            UnitBy::Recorded(measurand.recorded_in)
+        } else {
+            UnitBy::Known(measurand.unit.to_owned())
+        }
     }
+}
+
+/// Reads a quantity whose unit follows from elsewhere.
+pub(crate) fn quantity_by(reader: &mut Reader<'_>, value: Value<'_>, unit: &UnitBy) -> Option<Entry> {
+    let units = match unit {
+        UnitBy::Known(unit) => return quantity_text(reader, value, unit, false).map(Entry::Number),
+        UnitBy::Recorded(units) => *units,
+    };
+    let as_recorded_help = || as_recorded_help(units);
     let DeValue::String(text) = value.toml else {
         reader.error(value.span, note!("keyed.no_unit", name = value.key.name), Some(as_recorded_help()));
         return None;
     };
-    match quantity::parse_as_recorded(text) {
+    match quantity::parse_as_recorded(text, units) {
         Ok((number, unit)) => Some(Entry::AsRecorded(number, unit)),
         Err(QuantityError { message, help, .. }) => {
             let at = inside_quotes(reader, text, value.span);
@@ -348,8 +370,9 @@ pub(crate) fn quantity_by(reader: &mut Reader<'_>, value: Value<'_>, unit: &str)
 }
 
 /// How a quantity is written whose unit is as recorded.
-fn as_recorded_help() -> Note {
-    note!("keyed_more.help.as_recorded", units = quantity::AS_RECORDED.join(", "))
+pub(crate) fn as_recorded_help(units: &[&str]) -> Note {
+    let key = if units.contains(&"1") { "keyed_more.help.as_recorded" } else { "keyed_more.help.per_level" };
+    Note::new(key).with("units", units.join(", "))
 }
 
 fn quantity_text(reader: &mut Reader<'_>, value: Value<'_>, unit: &str, difference: bool) -> Option<f64> {

@@ -53,6 +53,7 @@ pub static STUDIES: &[&Study] = &[
     &rate_table::zones::ROUNDED,
     &single_samples::false_finds::STUDY,
     &single_samples::DETECTION,
+    &edges::DECLARED,
     &edges::FREQUENCY,
     &edges::GRAVITY,
     &edges::INFLUENCE,

@@ -122,6 +122,11 @@ fn pairs() -> Vec<Pair> {
     for (number, (procedure, name, exit)) in (111..).zip(tests) {
         add(procedure, &format!("{procedure}-{name}.csv"), Some(&format!("SN-0{number}")), None, exit);
     }
+    let declared = ["pressure-sensitivity", "electromagnetic-immunity", "scale-factor-under-pressure"];
+    let tests = declared.iter().flat_map(|p| [(*p, "pass", 0), (*p, "fail", 1)]);
+    for (number, (procedure, name, exit)) in (121..).zip(tests) {
+        add(procedure, &format!("{procedure}-{name}.csv"), Some(&format!("SN-0{number}")), None, exit);
+    }
     add("output-noise", "output-noise-pass.csv", Some("SN-0119"), None, 0);
     add("output-noise", "output-noise-fail.csv", Some("SN-0120"), None, 1);
     for (name, exit) in [("pass", 0), ("fail", 1)] {

@@ -13,6 +13,7 @@ const INFERRED_CONDITIONS: &[&str] = &[
     "table_response",
     "table_scale",
     "influence_line",
+    "influence_rates",
 ];
 
 /// Stated by the procedure or by who ran the test.

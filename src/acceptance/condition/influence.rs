@@ -2,6 +2,7 @@
 
 use super::facts::record;
 use crate::i18n::{Arg, Note, note};
+use crate::influence::Law;
 use crate::influence::nuisance::Following;
 use crate::influence::repeatability::factors;
 use crate::record::{ConditionRecord, ConditionStatus, Evidence};
@@ -172,10 +173,12 @@ pub struct ComparedFacts<'a> {
     pub others: Vec<&'a Following>,
     /// How much of a difference of temperature is allowed, degC.
     pub allowed_deg_c: f64,
-    /// Probability of levels so far off the line.
+    /// Probability of levels so far off the law.
     pub line: Option<f64>,
-    /// True when the line is one over the square of the level.
-    pub squared: bool,
+    /// The law.
+    pub law: Law,
+    /// Rates of a table that differ within the intervals; `None` where the scale factor is not asked for.
+    pub rates: Option<usize>,
 }
 
 /// Probability below which levels are said to be off the line.
@@ -185,11 +188,14 @@ const MIN_LINE_PROBABILITY: f64 = 0.01;
 pub fn judge_compared(facts: &ComparedFacts<'_>) -> Vec<ConditionRecord> {
     let mut all = vec![intervals(facts), acted(facts), temperature(facts)];
     all.extend(facts.others.iter().map(|o| beside(o, facts)));
+    all.extend(facts.rates.map(rates));
     if let Some(p) = facts.line {
-        let (status, key) = match (p < MIN_LINE_PROBABILITY, facts.squared) {
+        let (status, key) = match (p < MIN_LINE_PROBABILITY, facts.law) {
+            (false, Law::LinearQuadratic) => (ConditionStatus::Ok, "compared.on_parabola"),
             (false, _) => (ConditionStatus::Ok, "compared.on_line"),
-            (true, false) => (ConditionStatus::Remark, "compared.off_line"),
-            (true, true) => (ConditionStatus::Remark, "compared.off_square"),
+            (true, Law::LinearQuadratic) => (ConditionStatus::Remark, "compared.off_parabola"),
+            (true, Law::Square) => (ConditionStatus::Remark, "compared.off_square"),
+            (true, Law::Linear | Law::OnOff) => (ConditionStatus::Remark, "compared.off_line"),
         };
         let note = Note::new(key).with("probability", Arg::figures(100.0 * p, 2));
         all.push(record("influence_line", status, &[("probability", p)], None, note));
@@ -226,6 +232,24 @@ fn intervals(facts: &ComparedFacts<'_>) -> ConditionRecord {
     let required = note!("compared.required", n = facts.asked);
     let evidence = if facts.recorded { Evidence::Recorded } else { Evidence::Declared };
     known(record("influence_intervals", status, &observed, Some(required), note), Some(evidence))
+}
+
+/// Rates of a table that differ: with fewer than two, scale factor and bias are one.
+fn rates(found: usize) -> ConditionRecord {
+    let (status, key) = if found < 2 {
+        (ConditionStatus::Invalid, "compared.one_rate")
+    } else {
+        (ConditionStatus::Ok, "compared.rates")
+    };
+    let required = Some(note!("compared.required_rates"));
+    let judged = record(
+        "influence_rates",
+        status,
+        &[("rates", found as f64)],
+        required,
+        Note::new(key).with("n", found),
+    );
+    known(judged, Some(Evidence::Recorded))
 }
 
 fn temperature(facts: &ComparedFacts<'_>) -> ConditionRecord {

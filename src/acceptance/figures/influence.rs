@@ -3,8 +3,8 @@
 use super::draw;
 use crate::acceptance::interval_means::interval95;
 use crate::figure::{Figure, Panel, Style};
-use crate::influence::comparison::{Comparison, IntervalMean};
-use crate::influence::setup::Influence;
+use crate::influence::comparison::{Comparison, Effect, IntervalMean};
+use crate::influence::{Influence, Law};
 
 /// Points of a curve over the level.
 const CURVE_POINTS: usize = 61;
@@ -40,41 +40,56 @@ pub fn figure(found: &Comparison, several: bool) -> Figure {
             vec![draw::line(points, Style::SecondData, "figure.legend.temperature")],
         ));
     }
-    panels.extend(found.axes.iter().enumerate().map(|(k, name)| over_level(found, k, name)));
+    let effects = [Some((&found.bias, false)), found.scale_factor.as_ref().map(|e| (e, true))];
+    for (effect, of_scale_factor) in effects.into_iter().flatten() {
+        let mut axes: Vec<&str> = effect.shifts.iter().map(|s| s.axis.as_str()).collect();
+        axes.sort_by_key(|axis| effect.terms.iter().position(|t| t.axis == *axis));
+        axes.dedup();
+        panels.extend(axes.into_iter().map(|axis| over_level(found, effect, axis, of_scale_factor)));
+    }
     draw::figure("influence", "figure.title.influence", &found.channel, several, panels, vec![])
 }
 
-fn over_level(found: &Comparison, k: usize, name: &str) -> Panel {
-    let influence = found.test.influence;
-    let own = || found.shifts.iter().filter(|s| s.axis == name);
+/// Changes of bias or scale factor along one axis over the level, with the law through them.
+fn over_level(found: &Comparison, effect: &Effect, axis: &str, of_scale_factor: bool) -> Panel {
+    let setting = &found.test.setting;
+    let own = || effect.shifts.iter().filter(|s| s.axis == axis);
     let reference = found.test.reference;
     let low = own().fold(reference, |m, s| m.min(s.level));
     let high = own().fold(reference, |m, s| m.max(s.level));
     let at = |i: usize| low + (high - low) * i as f64 / (CURVE_POINTS - 1) as f64;
-    let drive = |l: f64| influence.drive(l) - influence.drive(reference);
-    let curve = (0..CURVE_POINTS).map(|i| (at(i), found.per_unit[k].value * drive(at(i)))).collect();
-    let label = match influence {
+    let value = |level: f64| {
+        let terms = effect.terms.iter().filter(|t| t.axis == axis);
+        terms.map(|t| t.per_unit.value * setting.law.drive(t.degree, level, reference)).sum::<f64>()
+    };
+    let label = match setting.influence {
         Influence::MagneticField => "figure_influence.axis_field",
         Influence::Supply => "axis.supply",
         Influence::Vibration => "figure_influence.axis_vibration",
+        Influence::Declared => "figure_influence.axis_level",
     };
     let bars = own().map(|s| (s.level, interval95(&s.change).low, interval95(&s.change).high));
-    let mut layers = vec![
-        draw::line(curve, Style::Model, "figure.legend.model"),
+    let mut layers = vec![];
+    if setting.law != Law::OnOff {
+        let curve = (0..CURVE_POINTS).map(|i| (at(i), value(at(i)))).collect();
+        layers.push(draw::line(curve, Style::Model, "figure.legend.model"));
+    }
+    layers.extend([
         draw::strokes(bars, Style::SecondData, "figure.legend.band95"),
         draw::points(
             own().map(|s| (s.level, s.change.value)).collect(),
             Style::SecondData,
             "figure_influence.shift",
         ),
-    ];
-    if !name.is_empty() {
-        let text = crate::i18n::note!("figure_influence.axis_name", axis = name);
+    ]);
+    if !axis.is_empty() {
+        let text = crate::i18n::note!("figure_influence.axis_name", axis);
         layers.push(draw::label((high, 0.0), text));
     }
-    draw::panel(
-        draw::linear(label, influence.unit()),
-        draw::linear("figure_influence.axis_change", "deg/h"),
-        layers,
-    )
+    let change = if of_scale_factor {
+        draw::linear("figure_influence.axis_scale_factor", "ppm")
+    } else {
+        draw::linear("figure_influence.axis_change", "deg/h")
+    };
+    draw::panel(draw::linear(label, setting.level_unit()), change, layers)
 }

@@ -5,12 +5,12 @@ use super::diagnostics::{Problem, SourceText};
 pub use super::limit_set::gyro_of;
 pub use super::limit_set::{Expected, LimitSet, LimitSpec, LimitsFile, Reference};
 use super::model::{Loaded, Procedure};
-use super::quantity::AS_RECORDED;
 use super::reader::Reader;
 use super::scale_factor_unit;
 use super::section::Section;
 use super::slips;
 use super::tables::limits::{LimitKeys, ReferenceKeys, TypicalValues};
+use crate::config::values::as_recorded_help;
 use crate::estimate::{Limit, Rule};
 use crate::i18n::{Note, note};
 use crate::measurand::{Measurand, RATE_NOISE_DENSITY};
@@ -243,7 +243,7 @@ fn read_limit(keys: LimitKeys, references: &[Reference], reader: &mut Reader<'_>
     let units: Vec<&'static str> =
         ["min", "max", "max_abs"].into_iter().filter_map(|key| section.recorded_unit(key)).collect();
     if units.windows(2).any(|pair| pair[0] != pair[1]) || keys.factor.is_some() && measurand.unit.is_empty() {
-        let help = note!("keyed_more.help.as_recorded", units = AS_RECORDED.join(", "));
+        let help = as_recorded_help(measurand.recorded_in);
         reader.error(&section.span, about("check.limit_as_recorded", measurand), Some(help));
         return None;
     }

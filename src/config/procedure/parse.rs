@@ -74,10 +74,13 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         spec.model = model;
     }
     let by_angle = file.channels.iter().any(|c| c.role == Some(Role::TableAngle));
+    let channels: Vec<ChannelSpec> =
+        file.channels.iter().filter_map(|keys| one_channel(keys, reader)).collect();
     let comparison = [
         file.magnetic_test.map(ComparisonTest::from),
         file.supply_test.map(ComparisonTest::from),
         file.vibration_test.map(ComparisonTest::from),
+        file.influence_test.map(|keys| keys.test(&channels, reader)),
     ];
     let (sample_rate_hz, sample_rate_tolerance) = (recording.sample_rate_hz, recording.sample_rate_tolerance);
     let mut read = recording_options::options(recording, &file.channels, reader);
@@ -95,7 +98,7 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         recording: RecordingSpec { read },
         sample_rate_hz,
         sample_rate_tolerance,
-        channels: file.channels.iter().filter_map(|keys| one_channel(keys, reader)).collect(),
+        channels,
         interim: file.interim.map(|keys| keys.plan(file.conditions.planned_duration_s)),
         conditions: file.conditions,
         exclusions: file.exclusions.into_iter().map(Into::into).collect(),

@@ -1,8 +1,9 @@
-//! The unit of a quantity that is given as it was recorded: the scale factor.
+//! The unit of a quantity that is given as it was recorded: the scale factor, and what changes per level of an influence.
 
 use super::limit_set::LimitSpec;
 use super::model::Procedure;
 use crate::i18n::{Note, note};
+use crate::measurand::{Measurand, PerLevel};
 use crate::recording::Role;
 use crate::units::Unit;
 
@@ -25,13 +26,25 @@ pub fn scale_factor_unit(procedure: &Procedure, channel: &str) -> (&'static str,
     }
 }
 
+/// Unit of a measurand in the result of a procedure.
+pub fn unit_of_result(procedure: &Procedure, measurand: &Measurand, channel: &str) -> &'static str {
+    match (measurand.unit, PerLevel::of(measurand)) {
+        ("", Some(per)) => {
+            let level = procedure.comparison_test.as_ref().and_then(|test| test.setting.unit);
+            level.map_or("", |level| per.unit(level))
+        }
+        ("", None) => scale_factor_unit(procedure, channel).0,
+        (unit, _) => unit,
+    }
+}
+
 /// Note on a wrong unit of a limit on a rate given as recorded; `None` where it is that of its channels.
 pub fn other_unit(procedure: &Procedure, limit: &LimitSpec) -> Option<Note> {
     let given = limit.recorded_unit?;
     let concerned = |id: &str| limit.channel.as_deref().is_none_or(|c| c == id);
     let mut channels = procedure.gyro_channels().map(|c| c.channel.id.as_str()).filter(|id| concerned(id));
     channels.find_map(|id| {
-        let (unit, _) = scale_factor_unit(procedure, id);
+        let unit = unit_of_result(procedure, limit.measurand, id);
         (unit != given).then(|| {
             note!("check.limit_other_unit", measurand = limit.measurand.id, channel = id, unit, given)
         })

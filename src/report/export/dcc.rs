@@ -117,6 +117,38 @@ const UNITS: &[(&str, &str)] = &[
     ("deg/h/mT", r"\degree\per\hour\milli\tesla"),
     ("deg/h/(m/s^2)^2", r"\degree\second\tothe{4}\per\hour\metre\tothe{2}"),
     ("deg/h/(m/s^2)", r"\degree\second\tothe{2}\per\hour\metre"),
+    ("deg/h/kPa", r"\degree\per\hour\kilo\pascal"),
+    ("deg/h/kPa^2", r"\degree\per\hour\kilo\pascal\tothe{2}"),
+    ("deg/h/A", r"\degree\per\hour\ampere"),
+    ("deg/h/A^2", r"\degree\per\hour\ampere\tothe{2}"),
+    ("deg/h/V^2", r"\degree\per\hour\volt\tothe{2}"),
+    ("deg/h/mT^2", r"\degree\per\hour\milli\tesla\tothe{2}"),
+    ("deg/h/(V/m)", r"\degree\metre\per\hour\volt"),
+    ("deg/h/(V/m)^2", r"\degree\metre\tothe{2}\per\hour\volt\tothe{2}"),
+    ("deg/h/(W/m^2)", r"\degree\metre\tothe{2}\per\hour\watt"),
+    ("deg/h/(W/m^2)^2", r"\degree\metre\tothe{4}\per\hour\watt\tothe{2}"),
+    ("deg/h/Gy", r"\degree\per\hour\gray"),
+    ("deg/h/Gy^2", r"\degree\per\hour\gray\tothe{2}"),
+    ("deg/h/(deg/s^2)", r"\second\tothe{2}\per\hour"),
+    ("deg/h/(deg/s^2)^2", r"\second\tothe{4}\per\hour\degree"),
+    ("ppm/kPa", r"\ppm\per\kilo\pascal"),
+    ("ppm/kPa^2", r"\ppm\per\kilo\pascal\tothe{2}"),
+    ("ppm/A", r"\ppm\per\ampere"),
+    ("ppm/A^2", r"\ppm\per\ampere\tothe{2}"),
+    ("ppm/V", r"\ppm\per\volt"),
+    ("ppm/V^2", r"\ppm\per\volt\tothe{2}"),
+    ("ppm/mT", r"\ppm\per\milli\tesla"),
+    ("ppm/mT^2", r"\ppm\per\milli\tesla\tothe{2}"),
+    ("ppm/(V/m)", r"\ppm\metre\per\volt"),
+    ("ppm/(V/m)^2", r"\ppm\metre\tothe{2}\per\volt\tothe{2}"),
+    ("ppm/(W/m^2)", r"\ppm\metre\tothe{2}\per\watt"),
+    ("ppm/(W/m^2)^2", r"\ppm\metre\tothe{4}\per\watt\tothe{2}"),
+    ("ppm/Gy", r"\ppm\per\gray"),
+    ("ppm/Gy^2", r"\ppm\per\gray\tothe{2}"),
+    ("ppm/(m/s^2)", r"\ppm\second\tothe{2}\per\metre"),
+    ("ppm/(m/s^2)^2", r"\ppm\second\tothe{4}\per\metre\tothe{2}"),
+    ("ppm/(deg/s^2)", r"\ppm\second\tothe{2}\per\degree"),
+    ("ppm/(deg/s^2)^2", r"\ppm\second\tothe{4}\per\degree\tothe{2}"),
     ("deg/h/sqrt(Hz)", r"\degree\second\tothe{0.5}\per\hour"),
     ("dB", r"\decibel"),
     ("W", r"\watt"),
@@ -494,7 +526,6 @@ mod tests {
     use super::super::xml::reading::{Element, elements, ending};
     use super::*;
     use crate::config::laboratory;
-    use crate::config::quantity::AS_RECORDED;
     use crate::measurand::MEASURANDS;
     use crate::record::read;
     use std::path::Path;
@@ -557,7 +588,7 @@ mod tests {
 
     #[test]
     fn every_unit_of_a_measurand_has_a_name_in_d_si() {
-        for unit in MEASURANDS.iter().map(|m| m.unit).chain(AS_RECORDED) {
+        for unit in MEASURANDS.iter().flat_map(|m| m.recorded_in.iter().copied().chain([m.unit])) {
             let (si, other) = si_unit(unit);
             let (name, factor) = si.unwrap_or_else(|| panic!("{unit}"));
             assert!(name.starts_with('\\') && name.matches(r"\per").count() < 2, "{unit}: {name}");

@@ -226,7 +226,9 @@ fn option_value(value: &str, words: Translator) -> String {
     match value {
         "true" => words.t("report.yes"),
         "false" => words.t("report.no"),
-        "octave" | "decade" | "all" => words.name("option_value", value),
+        "octave" | "decade" | "all" | "linear" | "quadratic" | "linear_quadratic" | "on_off" => {
+            words.name("option_value", value)
+        }
         list => list
             .split(", ")
             .map(|part| seconds(part).or_else(|| number(part)).unwrap_or_else(|| part.to_owned()))

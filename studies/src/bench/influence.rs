@@ -124,6 +124,45 @@ pub fn squared(k: f64, level: f64) -> f64 {
     k * level * level
 }
 
+/// A bias that follows the level by a parabola.
+pub fn parabola(k: f64, level: f64) -> f64 {
+    k * level * (1.0 + 0.005 * level)
+}
+
+/// A bias that changes when the influence is there.
+pub fn present(k: f64, level: f64) -> f64 {
+    if level.abs() > 1e-9 { k } else { 0.0 }
+}
+
+/// Rates of a table in turns within intervals, and what the influence does to the scale factor.
+#[derive(Clone, Debug)]
+pub struct Turned {
+    /// Intervals at levels, with what the influence does to the bias.
+    pub turns: Turns,
+    /// Rates, deg/s, one after the other from the beginning of every interval.
+    pub rates: Vec<f64>,
+    /// Error of the scale factor, ppm.
+    pub error: f64,
+    /// Change of the scale factor per unit of the level, ppm.
+    pub per_unit: f64,
+}
+
+impl Turned {
+    /// The recording of a seed, and the rate of the table beside it, deg/s.
+    pub fn record(&self, seed: u64) -> (Recorded, Vec<f64>) {
+        let mut recorded = self.turns.record(seed);
+        let stretch = self.turns.interval_s / self.rates.len() as f64;
+        let at = |t: f64| self.rates[((t % self.turns.interval_s) / stretch) as usize % self.rates.len()];
+        let table: Vec<f64> = recorded.time_s.iter().map(|t| at(*t)).collect();
+        let reference = self.turns.levels[0];
+        for (i, rate) in table.iter().enumerate() {
+            let ppm = self.error + self.per_unit * (recorded.level[i] - reference);
+            recorded.rate[i] += 3600.0 * rate * (1.0 + 1e-6 * ppm);
+        }
+        (recorded, table)
+    }
+}
+
 /// Noise of the samples.
 pub const NOISE: Noise = Noise { n: 0.002, b: 0.001, k: 0.0003 };
 /// Levels of a magnetic field, mT.
@@ -132,6 +171,11 @@ pub const FIELD: [f64; 9] = [0.0, 0.5, 0.0, -0.5, 0.0, 0.5, 0.0, -0.5, 0.0];
 pub const SUPPLY: [f64; 9] = [5.0, 4.75, 5.0, 5.25, 5.0, 4.75, 5.0, 5.25, 5.0];
 /// Levels of a shaker, g.
 pub const SHAKER: [f64; 9] = [0.0, 2.0, 0.0, 4.0, 0.0, 2.0, 0.0, 4.0, 0.0];
+
+/// Levels of a pressure, kPa.
+pub const PRESSURE: [f64; 9] = [101.3, 80.0, 101.3, 150.0, 101.3, 80.0, 101.3, 150.0, 101.3];
+/// Levels of a field that is switched on.
+pub const SWITCHED: [f64; 9] = [0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0, 1.0, 0.0];
 
 /// Earth rate and bias together, deg/h.
 const LEVEL: f64 = 12.467 + 0.12;
@@ -170,4 +214,10 @@ pub fn turns(levels: &[f64], per_unit: f64) -> Turns {
 /// Intervals on a shaker: a bias that follows the square of the level, and noise that follows it by `noisier`.
 pub fn shaken(per_unit: f64, noisier: fn(f64) -> f64) -> Turns {
     Turns { bias: squared, noisier, dt: 0.2, ..turns(&SHAKER, per_unit) }
+}
+
+/// Intervals at pressures, in which a table turns there and back.
+pub fn turned(per_kpa: f64, ppm_per_kpa: f64) -> Turned {
+    let rates = vec![10.0, -10.0, 20.0, -20.0];
+    Turned { turns: turns(&PRESSURE, per_kpa), rates, error: 120.0, per_unit: ppm_per_kpa }
 }

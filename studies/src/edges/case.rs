@@ -77,12 +77,15 @@ pub struct Truth {
     pub oracle: Option<f64>,
     /// The recording shows this value or more: an upper bound may lie anywhere above.
     pub at_least: bool,
+    /// Its unit where that of the measurand follows from the recording or the procedure.
+    pub unit: Option<&'static str>,
 }
 
 impl Truth {
     /// A truth without a limit and without an oracle.
     pub fn new(id: impl Into<String>, value: f64) -> Truth {
-        Truth { id: id.into(), channel: None, value, limit: None, oracle: None, at_least: false }
+        let id = id.into();
+        Truth { id, channel: None, value, limit: None, oracle: None, at_least: false, unit: None }
     }
 
     /// With a limit.
@@ -93,6 +96,11 @@ impl Truth {
     /// With the half width of the 95 % interval of an oracle that knows everything else.
     pub fn oracle(self, half_width: f64) -> Truth {
         Truth { oracle: Some(half_width), ..self }
+    }
+
+    /// In a unit that follows from the procedure.
+    pub fn in_unit(self, unit: &'static str) -> Truth {
+        Truth { unit: Some(unit), ..self }
     }
 
     /// On one of several channels.
@@ -232,7 +240,8 @@ fn limits(truths: &[Truth]) -> String {
             continue;
         }
         written.push((&truth.id, channel));
-        let unit = sagnac::measurand::find(&truth.id).map_or("", |m| m.unit);
+        let of_measurand = || sagnac::measurand::find(&truth.id).map_or("", |m| m.unit);
+        let unit = truth.unit.unwrap_or_else(of_measurand);
         let key = match limit.key {
             LimitKey::Max => "max",
             LimitKey::Min => "min",

@@ -4,6 +4,7 @@
 //! which imports nothing from the analysis. One line in [`FAMILIES`] and a study name both.
 
 pub mod case;
+mod declared;
 mod frequency;
 mod gravity;
 mod influence;
@@ -30,8 +31,9 @@ use std::sync::LazyLock;
 use table::Bench;
 
 /// Every family.
-pub static FAMILIES: LazyLock<[Family; 12]> = LazyLock::new(|| {
+pub static FAMILIES: LazyLock<[Family; 13]> = LazyLock::new(|| {
     [
+        family::<declared::Declared>(include_str!("../../cases/edges/declared.toml")),
         family::<frequency::OverFrequency>(include_str!("../../cases/edges/frequency.toml")),
         family::<gravity::InGravity>(include_str!("../../cases/edges/gravity.toml")),
         family::<influence::Bench>(include_str!("../../cases/edges/influence.toml")),
@@ -61,6 +63,9 @@ const fn study(id: &'static str, title: &'static str, cases: fn() -> Vec<Case>) 
     Study { id, title, method: METHOD, records: 200, cases }
 }
 
+/// Influences that a procedure declares.
+pub static DECLARED: Study =
+    study("edges-declared", "Declared influences at their edges", || cases("declared"));
 /// Response over frequency.
 pub static FREQUENCY: Study =
     study("edges-frequency", "Transfer functions at their edges", || cases("frequency"));

@@ -5,7 +5,7 @@ use crate::rate_table::evaluation::channels;
 use sagnac::influence::comparison::{self, Beside, Comparison};
 use sagnac::influence::cut::FileSpan;
 use sagnac::influence::repeatability::{self, Repeatability};
-use sagnac::influence::{ComparisonTest, Influence, RepeatabilityTest, intervals, runs};
+use sagnac::influence::{ComparisonTest, RepeatabilityTest, Setting, intervals, runs};
 use sagnac::rate_table::blocks::{Blocks, Collector};
 use sagnac::recording::{Role, SampleBlock, Sink};
 
@@ -52,9 +52,10 @@ pub fn repeated(s: &Series, seed: u64) -> Repeatability {
 pub fn compared(t: &Turns, seed: u64) -> Comparison {
     let blocks = blocks(&t.record(seed), t.dt);
     let test = ComparisonTest {
-        influence: if t.levels == SHAKER { Influence::Vibration } else { Influence::MagneticField },
+        setting: if t.levels == SHAKER { Setting::vibration() } else { Setting::magnetic_field() },
         reference: t.levels[0],
         settling_s: 0.0,
+        rate_settling_s: 0.0,
         minimum_interval_s: 10.0,
         alternations: 2,
         level_uncertainty: 0.0,

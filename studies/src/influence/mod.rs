@@ -68,10 +68,10 @@ pub fn comparisons(of: &Sensitivity, records: u64, first: u64) -> Comparisons {
     let tests: Vec<_> =
         (first..first + records).into_par_iter().map(|seed| compared(&of.turns, seed)).collect();
     for found in tests {
-        all.off += usize::from(found.line.is_none_or(|p| p < 0.01));
+        all.off += usize::from(found.bias.line.is_none_or(|p| p < 0.01));
         let evidence = ComparisonEvidence { bias: &found, noise: &[] };
         all.unit.take(measurand.evaluate_comparison(&evidence).first(), of.truth, None);
-        let truth = (of.turns.bias)(of.turns.per_unit, found.shifts[0].level);
+        let truth = (of.turns.bias)(of.turns.per_unit, found.bias.shifts[0].level);
         all.shift.take(BIAS_SHIFT.evaluate_comparison(&evidence).first(), truth, None);
     }
     all

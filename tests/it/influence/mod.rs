@@ -3,11 +3,14 @@
 //!
 //! `cargo test --test it influence -- --ignored write_the_samples` writes the samples anew.
 
+mod declared;
 mod study;
 
 use crate::support::pairs::sample_once;
-use sagnac_studies::bench::influence::{FIELD, NOISE, SUPPLY, series, shaken, turns};
-use sagnac_studies::bench::influence::{Recorded, Series, Turns, linear, squared};
+use sagnac_studies::bench::influence::{
+    FIELD, NOISE, PRESSURE, SUPPLY, SWITCHED, series, shaken, turned, turns,
+};
+use sagnac_studies::bench::influence::{Recorded, Series, Turned, Turns, linear, parabola, present, squared};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -30,6 +33,27 @@ fn text(serial: &str, level: &str, r: &Recorded) -> String {
     out
 }
 
+/// Pressures with a bias that follows them by a parabola.
+fn pressure(per_kpa: f64) -> Turns {
+    Turns { bias: parabola, ..turns(&PRESSURE, per_kpa) }
+}
+
+/// A field that is switched on and off.
+fn switched(change: f64) -> Turns {
+    Turns { bias: present, ..turns(&SWITCHED, change) }
+}
+
+/// A sample on a table.
+fn on_table(serial: &str, turned: &Turned, seed: u64) -> String {
+    let (r, table) = turned.record(seed);
+    let mut out = format!("# serial: {serial}\ntime_s,rate_deg_h,temp_degC,table_rate_deg_s,pressure_kPa\n");
+    for (i, table) in table.iter().enumerate() {
+        let _ =
+            writeln!(out, "{},{:.4},{:.3},{table},{}", r.time_s[i], r.rate[i], r.temperature[i], r.level[i]);
+    }
+    out
+}
+
 /// Every sample with its text.
 fn files() -> Vec<(&'static str, String)> {
     vec![
@@ -41,6 +65,12 @@ fn files() -> Vec<(&'static str, String)> {
         ("supply-sensitivity-fail", text("SN-0116", ",supply_V", &turns(&SUPPLY, -0.6).record(116))),
         ("vibration-pass", text("SN-0117", "", &shaken(0.001, |g| 1.0 + 0.05 * g).record(117))),
         ("vibration-fail", text("SN-0118", "", &shaken(0.02, |g| 1.0 + 0.3 * g).record(118))),
+        ("pressure-sensitivity-pass", text("SN-0121", ",pressure_kPa", &pressure(0.002).record(121))),
+        ("pressure-sensitivity-fail", text("SN-0122", ",pressure_kPa", &pressure(0.02).record(122))),
+        ("electromagnetic-immunity-pass", text("SN-0123", ",field_on", &switched(0.01).record(123))),
+        ("electromagnetic-immunity-fail", text("SN-0124", ",field_on", &switched(0.3).record(124))),
+        ("scale-factor-under-pressure-pass", on_table("SN-0125", &turned(0.001, 0.3), 125)),
+        ("scale-factor-under-pressure-fail", on_table("SN-0126", &turned(0.001, -3.0), 126)),
     ]
 }
 
@@ -97,7 +127,15 @@ fn holds(result: &Value, id: &str, truth: f64) {
 
 #[test]
 fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
-    let names = ["bias-repeatability", "magnetic-sensitivity", "supply-sensitivity", "vibration"];
+    let names = [
+        "bias-repeatability",
+        "magnetic-sensitivity",
+        "supply-sensitivity",
+        "vibration",
+        "pressure-sensitivity",
+        "electromagnetic-immunity",
+        "scale-factor-under-pressure",
+    ];
     for name in &names {
         for (end, code) in [("pass", 0), ("fail", 1)] {
             let run = sample_once(&format!("{name}-{end}"));
@@ -117,6 +155,20 @@ fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
                 ("magnetic-sensitivity", _) => holds(result, "magnetic_sensitivity", 0.6),
                 ("supply-sensitivity", "pass") => holds(result, "supply_sensitivity", 0.02),
                 ("supply-sensitivity", _) => holds(result, "supply_sensitivity", -0.6),
+                ("pressure-sensitivity", _) => {
+                    let k = if end == "pass" { 0.002 } else { 0.02 };
+                    holds(result, "influence_sensitivity", k);
+                    holds(result, "influence_sensitivity_quadratic", 0.005 * k);
+                }
+                ("electromagnetic-immunity", "pass") => holds(result, "bias_shift", 0.01),
+                ("electromagnetic-immunity", _) => holds(result, "bias_shift", 0.3),
+                ("scale-factor-under-pressure", _) => {
+                    let k = if end == "pass" { 0.3 } else { -3.0 };
+                    holds(result, "influence_sensitivity", 0.001);
+                    holds(result, "scale_factor_influence_sensitivity", k);
+                    // The first level is 80 kPa.
+                    holds(result, "scale_factor_shift", k * (80.0 - 101.3));
+                }
                 (_, "pass") => {
                     holds(result, "vibration_sensitivity", 0.001);
                     // N at 2 g is 1.1 times that at rest.

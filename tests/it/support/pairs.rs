@@ -57,10 +57,12 @@ const RATE: Option<&str> = Some("table_rate_deg_s");
 const OUTER: Option<&str> = Some("outer_rate_deg_s");
 const FIELD: Option<&str> = Some("field_mT");
 const VOLTS: Option<&str> = Some("supply_V");
+const BARO: Option<&str> = Some("pressure_kPa");
+const SWITCH: Option<&str> = Some("field_on");
 const TEMP: Option<&str> = Some("temp_degC");
 
 /// Every pair.
-pub const PAIRS: [Pair; 39] = [
+pub const PAIRS: [Pair; 45] = [
     pair("unit-pass", "static-bias", UNIT, "SN-0001", 0, None),
     pair("unit-fail", "static-bias", UNIT, "SN-0001", 1, None),
     pair("unit-indeterminate", "static-bias", UNIT, "SN-0001", 3, None),
@@ -100,4 +102,10 @@ pub const PAIRS: [Pair; 39] = [
     pair("supply-sensitivity-fail", "supply-sensitivity", None, "SN-0116", 1, VOLTS),
     scheduled(pair("vibration-pass", "vibration", None, "SN-0117", 0, None), 120.0),
     scheduled(pair("vibration-fail", "vibration", None, "SN-0118", 1, None), 120.0),
+    pair("pressure-sensitivity-pass", "pressure-sensitivity", None, "SN-0121", 0, BARO),
+    pair("pressure-sensitivity-fail", "pressure-sensitivity", None, "SN-0122", 1, BARO),
+    pair("electromagnetic-immunity-pass", "electromagnetic-immunity", None, "SN-0123", 0, SWITCH),
+    pair("electromagnetic-immunity-fail", "electromagnetic-immunity", None, "SN-0124", 1, SWITCH),
+    pair("scale-factor-under-pressure-pass", "scale-factor-under-pressure", None, "SN-0125", 0, BARO),
+    pair("scale-factor-under-pressure-fail", "scale-factor-under-pressure", None, "SN-0126", 1, BARO),
 ];

@@ -50,6 +50,12 @@ pub(super) const FAHRENHEIT_SYMBOLS: &[&str] = &[
 const DEG_PER_RAD: f64 = 180.0 / std::f64::consts::PI;
 const NO_DIMENSION: Dimension = [0; BASE_COUNT];
 const PER_SECOND: Dimension = inverse(one(Base::Time));
+const GRAY: Dimension = {
+    let mut dimension = one(Base::Length);
+    dimension[Base::Length as usize] = 4;
+    dimension[Base::Time as usize] = -4;
+    dimension
+};
 
 /// Spellings, factor to the base unit, dimension.
 const UNIT_SYMBOLS: &[(&[&str], f64, Dimension)] = &[
@@ -106,6 +112,8 @@ const UNIT_SYMBOLS: &[(&[&str], f64, Dimension)] = &[
     (&["nm"], 1e-9, one(Base::Length)),
     (&["g", "gn"], 9.80665, per_time(Base::Length, 2)),
     (&["mg"], 9.80665e-3, per_time(Base::Length, 2)),
+    // Energy taken up by a mass.
+    (&["Gy", "Гр"], 1.0, GRAY),
     (&["A", "А"], 1.0, one(Base::Current)),
     // Decibels of a ratio of amplitudes: their zero is a ratio of 1, so that they are no pure number.
     (&["dB", "дБ"], 1.0, one(Base::Level)),
@@ -153,8 +161,8 @@ const PREFIXES: &[(&str, f64)] = &[
 
 /// Symbols that take any prefix.
 const PREFIXED: &[&str] = &[
-    "deg", "rad", "arcsec", "dps", "dph", "degps", "radps", "sec", "Hz", "V", "A", "T", "Pa", "K", "град",
-    "рад", "с", "сек", "Гц", "В", "А", "Тл", "Па",
+    "deg", "rad", "arcsec", "dps", "dph", "degps", "radps", "sec", "Hz", "V", "A", "T", "Pa", "K", "Gy",
+    "град", "рад", "с", "сек", "Гц", "В", "А", "Тл", "Па", "Гр",
 ];
 
 /// Factor to the base unit and dimension of a symbol: as it is listed, with a prefix of the SI, or in capitals where that
@@ -193,6 +201,6 @@ pub(super) fn differ_by_prefix(written: &str, symbol: &str) -> bool {
 pub(super) const SUGGESTED_SYMBOLS: &[&str] = &[
     "deg", "mdeg", "arcmin", "arcsec", "rad", "mrad", "urad", "nrad", "rev", "s", "ms", "us", "ns", "min",
     "h", "day", "Hz", "kHz", "dph", "dps", "rpm", "degC", "K", "degF", "V", "mV", "mT", "uT", "Oe", "Pa",
-    "hPa", "kPa", "m", "mm", "g", "mg", "A", "mA", "W", "mW", "dB", "count", "LSB", "pulse", "ppm", "ppb",
-    "sqrt",
+    "hPa", "kPa", "m", "mm", "g", "mg", "A", "mA", "W", "mW", "Gy", "dB", "count", "LSB", "pulse", "ppm",
+    "ppb", "sqrt",
 ];

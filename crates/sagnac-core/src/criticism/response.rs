@@ -6,9 +6,18 @@ use crate::evidence::ComparisonEvidence;
 use crate::influence::response::{ByMeans, Response};
 use crate::message::{Arg, Note, note};
 
-/// Everything that rests on the change of the bias between levels.
-const OF_LEVELS: [&str; 4] =
-    ["magnetic_sensitivity", "supply_sensitivity", "vibration_sensitivity", "bias_shift"];
+/// Everything that rests on the change of the output between levels.
+const OF_LEVELS: [&str; 9] = [
+    "magnetic_sensitivity",
+    "supply_sensitivity",
+    "vibration_sensitivity",
+    "influence_sensitivity",
+    "influence_sensitivity_quadratic",
+    "bias_shift",
+    "scale_factor_influence_sensitivity",
+    "scale_factor_influence_sensitivity_quadratic",
+    "scale_factor_shift",
+];
 
 fn finding(found: Note, advice: Note) -> Vec<Finding> {
     vec![Finding { measurands: OF_LEVELS.to_vec(), holds: Holds::Nothing, found, advice }]

@@ -1,11 +1,12 @@
-//! The bias without and with an influence: what it changes by at every level, and how much that is per unit.
+//! The output without and with an influence: what bias and scale factor change by at every level, and how much that is per unit.
 
-use super::cut::{Cut, cut, span_s};
+use super::cut::{Cut, cut, span_s, stretches};
 use super::gls;
 use super::intervals::Intervals;
 use super::nuisance::{Course, Following, Nuisance, following};
 use super::response::{ByMeans, Changes, Courses, Response, by_means};
-use super::setup::ComparisonTest;
+use super::scale_factor::{self, Turning};
+use super::setup::{ComparisonTest, Law};
 use crate::estimate::chi_square_tail;
 use crate::numeric::reml::{Combination, Fit};
 use crate::rate_table::blocks::Blocks;
@@ -36,15 +37,39 @@ pub struct IntervalMean {
     pub temperature: f64,
 }
 
-/// What the bias changes by at one level.
+/// What changes by how much at one level.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Shift {
     /// Axis; empty where there is only one.
     pub axis: String,
     /// Level.
     pub level: f64,
-    /// Change of the bias, deg/h.
+    /// Change, deg/h of the bias and ppm of the scale factor.
     pub change: Combination,
+}
+
+/// One term of the law along one axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Term {
+    /// Axis; empty where there is only one.
+    pub axis: String,
+    /// Degree of the level; 0 is that of presence alone.
+    pub degree: u8,
+    /// False where the axis has fewer levels than the law has terms: then the change holds more than this term.
+    pub told_apart: bool,
+    /// Change per unit of the drive, deg/h of the bias and ppm of the scale factor.
+    pub per_unit: Combination,
+}
+
+/// The terms of a law with the changes at the levels.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Effect {
+    /// Terms, every axis with all of its own.
+    pub terms: Vec<Term>,
+    /// Change at every level.
+    pub shifts: Vec<Shift>,
+    /// Probability of levels so far off the law if it holds; `None` where nothing is left over to tell that.
+    pub line: Option<f64>,
 }
 
 /// One channel without and with an influence.
@@ -54,25 +79,21 @@ pub struct Comparison {
     pub channel: String,
     /// The test as the procedure states it.
     pub test: ComparisonTest,
-    /// Axes.
-    pub axes: Vec<String>,
-    /// Change of the bias per unit of the drive, one an axis.
-    pub per_unit: Vec<Combination>,
-    /// Change at every level.
-    pub shifts: Vec<Shift>,
+    /// What the bias does.
+    pub bias: Effect,
+    /// What the scale factor does; `None` without rates of a table.
+    pub scale_factor: Option<Effect>,
     /// The intervals.
     pub intervals: Vec<IntervalMean>,
     /// Mean output without the influence, in the middle of those intervals, deg/h.
     pub without: Combination,
-    /// Probability of levels so far off the line if it is one; `None` with one level an axis.
-    pub line: Option<f64>,
     /// True when a drift proportional to time was taken out.
     pub drift: bool,
     /// True when intervals of one level differ by more than their noise.
     pub scatter: bool,
-    /// The delay with which the bias follows the level; `None` where none is seen.
+    /// The delay with which the output follows the level; `None` where none is seen.
     pub response: Option<Response>,
-    /// Per unit of the drive by the plain means of the intervals, one an axis; empty where too few are left over.
+    /// Per unit of the drive by the plain means of the stretches, a term each; empty where too few are left over.
     pub by_means: Vec<ByMeans>,
     /// How the temperature of the unit goes with the levels; `None` without one.
     pub temperature: Option<Following>,
@@ -114,18 +135,123 @@ fn indicators(states: &States, cut: &Cut) -> Vec<DVector<f64>> {
     (0..states.list.len()).map(of).collect()
 }
 
-/// The drive along an axis in every interval; 0 where it is off.
-fn drive_by_interval(
-    found: &Intervals,
-    states: &States,
+/// One term of the law along one axis: its drive in every interval and at every level.
+struct Drive {
     axis: usize,
-    drive: &dyn Fn(f64) -> f64,
-) -> Vec<f64> {
-    let at = |k: usize| if states.is_off(k) { 0.0 } else { drive(found.list[k].levels[axis]) };
-    (0..found.list.len()).map(at).collect()
+    degree: u8,
+    told_apart: bool,
+    intervals: Vec<f64>,
+    levels: Vec<f64>,
+    /// Largest of the intervals, that columns of any unit weigh the same.
+    size: f64,
 }
 
-/// Evaluates a channel. `None` without an interval of both kinds.
+/// The terms along every axis that the influence acted along.
+fn drives(found: &Intervals, states: &States, law: Law) -> Vec<Drive> {
+    let of_axis = |axis: usize| {
+        let levels = states.list.iter().filter(|(a, _)| *a == axis).count();
+        let degrees = law.degrees();
+        let told_apart = levels >= degrees.len();
+        let kept = if told_apart { degrees } else { degrees.get(..1).unwrap_or_default() };
+        kept.iter().map(move |degree| (axis, *degree, told_apart))
+    };
+    let one = |(axis, degree, told_apart): (usize, u8, bool)| {
+        let drive = |level: f64| law.drive(degree, level, found.reference);
+        let interval = |k: usize| match states.of[k] {
+            None => 0.0,
+            // Along other axes there is nothing.
+            Some(state) if law == Law::OnOff => f64::from(u8::from(states.list[state].0 == axis)),
+            Some(_) => drive(found.list[k].levels[axis]),
+        };
+        let intervals: Vec<f64> = (0..found.list.len()).map(interval).collect();
+        let levels = states.list.iter().map(|(a, l)| if *a == axis { drive(*l) } else { 0.0 }).collect();
+        let size = intervals.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
+        Drive { axis, degree, told_apart, intervals, levels, size }
+    };
+    (0..found.axes.len()).flat_map(of_axis).map(one).filter(|d| d.size > 0.0).collect()
+}
+
+/// The columns of a mean, and where those of the influence begin: first what acts on the bias, then, as many again, what acts on
+/// the scale factor where the table turned.
+struct Columns {
+    x: DMatrix<f64>,
+    first: usize,
+}
+
+/// What a mean holds whatever the influence does: a constant, a drift, and with a table the output at every rate and a drift of
+/// the scale factor.
+struct Base<'a> {
+    columns: Vec<DVector<f64>>,
+    turning: Option<&'a Turning>,
+}
+
+impl Base<'_> {
+    fn with(&self, own: &[DVector<f64>]) -> Columns {
+        let mut columns = self.columns.clone();
+        columns.extend(own.iter().cloned());
+        if let Some(turning) = self.turning {
+            columns.extend(own.iter().map(|c| c.component_mul(&turning.scale)));
+        }
+        Columns { x: DMatrix::from_columns(&columns), first: self.columns.len() }
+    }
+}
+
+fn base<'a>(n: usize, time: Option<&DVector<f64>>, turning: Option<&'a Turning>) -> Base<'a> {
+    let mut columns = vec![DVector::from_element(n, 1.0)];
+    columns.extend(time.cloned());
+    if let Some(turning) = turning {
+        columns.extend(turning.rates());
+        columns.extend(time.map(|t| t.component_mul(&turning.scale)));
+    }
+    Base { columns, turning }
+}
+
+/// What the fits of a channel gave: first of the bias, then of the scale factor.
+struct Fitted<'a> {
+    found: &'a Intervals,
+    states: &'a States,
+    drives: &'a [Drive],
+    /// Per unit of every drive.
+    per_unit: Vec<Combination>,
+    /// Coefficients of the fit with a column for every level.
+    of_levels: Vec<Combination>,
+    each: Fit,
+    /// The first column of a level.
+    first: usize,
+}
+
+impl Fitted<'_> {
+    /// Drives at every level.
+    fn drives_of_levels(&self) -> Vec<Vec<f64>> {
+        self.drives.iter().map(|d| d.levels.clone()).collect()
+    }
+
+    /// The effect on the bias, number 0, or on the scale factor, number 1.
+    fn effect(&self, law: Law, number: usize) -> Effect {
+        let axis = |at: usize| self.found.axes[at].clone();
+        let term = |(d, per_unit): (&Drive, &Combination)| Term {
+            axis: axis(d.axis),
+            degree: d.degree,
+            told_apart: d.told_apart,
+            per_unit: *per_unit,
+        };
+        let first = self.first + number * self.states.list.len();
+        let shift = |(k, (a, level)): (usize, &(usize, f64))| {
+            Some(Shift { axis: axis(*a), level: *level, change: *self.of_levels.get(first + k)? })
+        };
+        let per_unit = self.per_unit.iter().skip(number * self.drives.len());
+        Effect {
+            terms: self.drives.iter().zip(per_unit).map(term).collect(),
+            shifts: self.states.list.iter().enumerate().filter_map(shift).collect(),
+            line: match law {
+                Law::OnOff => None,
+                _ => off_line(&self.each, first, &self.drives_of_levels()),
+            },
+        }
+    }
+}
+
+/// Evaluates a channel. `None` without an interval of both kinds, or where rates of a table are asked for and none differ.
 pub fn evaluate(
     blocks: &Blocks,
     found: &Intervals,
@@ -133,8 +259,14 @@ pub fn evaluate(
     beside: &Beside,
     gyro: usize,
 ) -> Option<Comparison> {
-    let spans: Vec<(usize, usize)> = found.list.iter().map(|i| i.blocks).collect();
-    let cut = cut(blocks, &spans, gyro)?;
+    let (cut, turning) = if test.setting.on_scale_factor {
+        let (cut, turning) = scale_factor::cut(blocks, found, test.rate_settling_s, gyro)?;
+        (cut, Some(turning))
+    } else {
+        let spans: Vec<(usize, usize)> = found.list.iter().map(|i| i.blocks).collect();
+        (cut(blocks, &spans, gyro)?, None)
+    };
+    let turning = turning.as_ref();
     let n = cut.rows.len();
     let states = states(found);
     if states.list.is_empty() || states.of.iter().all(Option::is_some) {
@@ -143,65 +275,56 @@ pub fn evaluate(
     let time = scaled_time(&cut);
     // A drift is told from the influence by what comes back.
     let drift = found.alternations() >= 1;
-    let base = |extra: &[DVector<f64>]| {
-        let mut columns = vec![DVector::from_element(n, 1.0)];
-        columns.extend(drift.then(|| time.clone()));
-        let own = columns.len();
-        columns.extend(extra.iter().cloned());
-        (DMatrix::from_columns(&columns), own)
-    };
-    let drive = |level: f64| test.influence.drive(level) - test.influence.drive(found.reference);
-    let by_axis = drives_by_axis(found, &states, &cut, &drive);
-    let used: Vec<usize> = (0..by_axis.len()).filter(|a| by_axis[*a].norm() > 0.0).collect();
-    let sizes: Vec<f64> = used.iter().map(|a| by_axis[*a].amax()).collect();
-    let scaled: Vec<DVector<f64>> = used.iter().zip(&sizes).map(|(a, s)| &by_axis[*a] / *s).collect();
-    let (x, first) = base(&scaled);
-    let (line, scatter) = solve(&cut, &states, &x)?;
-    let (known, components) = (known(&cut), noise(&cut, &states));
-    let of_intervals = used.iter().map(|axis| drive_by_interval(found, &states, *axis, &drive)).collect();
+    let time = drift.then_some(&time);
+    let base = base(n, time, turning);
+    let law = test.setting.law;
+    let drives = drives(found, &states, law);
+    let row = |d: &Drive| DVector::from_fn(n, |i, _| d.intervals[cut.of[i]]) / d.size;
+    let by_drive = base.with(&drives.iter().map(row).collect::<Vec<_>>());
+    let noise = Noise::new(&cut, &states, turning);
+    let (line, scatter) = noise.solve(&cut, &states, &by_drive.x)?;
+    let of_intervals = drives.iter().map(|d| d.intervals.clone()).collect();
     let changes = Changes::new(blocks, found, test.settling_s, of_intervals);
-    let own = levels(&states);
-    let courses = Courses { cut: &cut, changes: &changes, known: &known, components: &components, own };
-    let response = courses.find(&x);
+    let courses = Courses {
+        cut: &cut,
+        changes: &changes,
+        known: &noise.known,
+        components: &noise.components,
+        own: levels(&states),
+        scale: turning.map(|t| &t.scale),
+    };
+    let response = courses.find(&by_drive.x);
     let coefficients = |x: &DMatrix<f64>, plain: &Fit| -> Vec<Combination> {
         let settled = response.as_ref().and_then(|r| courses.settled(x, r));
         settled.unwrap_or_else(|| (0..x.ncols()).map(|k| plain.coefficient(k)).collect())
     };
-    let of_line = coefficients(&x, &line);
+    let of_line = coefficients(&by_drive.x, &line);
+    // Of the bias, and behind them of the scale factor.
     let per = |all: &[Combination]| -> Vec<Combination> {
-        sizes.iter().enumerate().filter_map(|(k, s)| Some(scale(all.get(first + k)?, 1.0 / s))).collect()
+        let sizes = drives.iter().chain(turning.map(|_| &drives).into_iter().flatten()).map(|d| d.size);
+        sizes.enumerate().filter_map(|(k, s)| Some(scale(all.get(by_drive.first + k)?, 1.0 / s))).collect()
     };
     let per_unit = per(&of_line);
-    let plain = by_means(&cut, &x, found.list.len()).map_or(vec![], |all| per(&all));
+    let plain = by_means(&cut, &by_drive.x).map_or(vec![], |all| per(&all));
     let by_means = plain.into_iter().zip(&per_unit).map(|(means, model)| ByMeans { means, model: *model });
     let by_means = by_means.collect();
-    let (x, first) = base(&indicators(&states, &cut));
-    let (each, _) = solve(&cut, &states, &x)?;
-    let of_levels = coefficients(&x, &each);
-    let shift = |(k, (a, level)): (usize, &(usize, f64))| Shift {
-        axis: found.axes[*a].clone(),
-        level: *level,
-        change: of_levels[first + k],
-    };
-    let shifts: Vec<Shift> = states.list.iter().enumerate().map(shift).collect();
-    let drives: Vec<Vec<f64>> = used
-        .iter()
-        .map(|u| states.list.iter().map(|(a, l)| if a == u { drive(*l) } else { 0.0 }).collect())
-        .collect();
+    let by_level = base.with(&indicators(&states, &cut));
+    let (each, _) = noise.solve(&cut, &states, &by_level.x)?;
+    let of_levels = coefficients(&by_level.x, &each);
+    let fitted =
+        Fitted { found, states: &states, drives: &drives, per_unit, of_levels, each, first: by_level.first };
+    let drives_of_levels = fitted.drives_of_levels();
     let course = |values: &[f64], what: &Nuisance| {
-        let time = drift.then_some(&time);
         let levels = states.list.len();
-        let own = Course { values, of: &cut.of, time, states: &states.of, drives: &drives, levels };
+        let own = Course { values, of: &cut.of, time, states: &states.of, drives: &drives_of_levels, levels };
         following(what, &own)
     };
     let others = beside.others.iter().filter_map(|(at, what)| course(cut.beside.get(*at)?, what)).collect();
-    let (intervals, without) = means(blocks, found, &states, &cut, drift.then_some(&time))?;
+    let (intervals, without) = means(blocks, found, &states, &cut, (time, turning, &noise))?;
     Some(Comparison {
         channel: blocks.gyros.get(gyro)?.clone(),
-        axes: used.iter().map(|a| found.axes[*a].clone()).collect(),
-        per_unit,
-        line: off_line(&each, first, &drives),
-        shifts,
+        bias: fitted.effect(law, 0),
+        scale_factor: turning.map(|_| fitted.effect(law, 1)),
         intervals,
         without,
         drift,
@@ -212,20 +335,6 @@ pub fn evaluate(
         others,
         test: test.clone(),
     })
-}
-
-/// The drive of every row along each axis: 0 without the influence.
-fn drives_by_axis(
-    found: &Intervals,
-    states: &States,
-    cut: &Cut,
-    drive: &dyn Fn(f64) -> f64,
-) -> Vec<DVector<f64>> {
-    let of_row = |axis: usize, interval: usize| {
-        if states.is_off(interval) { 0.0 } else { drive(found.list[interval].levels[axis]) }
-    };
-    let of_axis = |axis| DVector::from_fn(cut.rows.len(), |i, _| of_row(axis, cut.of[i]));
-    (0..found.axes.len()).map(of_axis).collect()
 }
 
 fn scale(c: &Combination, factor: f64) -> Combination {
@@ -269,19 +378,14 @@ fn states(found: &Intervals) -> States {
     States { list, of }
 }
 
-/// White noise of every level apart, since an influence such as vibration makes noise that grows with it, and slow noise
-/// common to all.
-fn noise(cut: &Cut, states: &States) -> Vec<DMatrix<f64>> {
-    let of = |state: Option<usize>| {
-        let mut v = cut.rows.white();
-        for i in (0..cut.rows.len()).filter(|i| states.of[cut.of[*i]] != state) {
-            v[(i, i)] = 0.0;
-        }
-        v
-    };
-    let mut components: Vec<DMatrix<f64>> = (0..levels(states)).map(|k| of(k.checked_sub(1))).collect();
-    components.extend([cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()]);
-    components
+/// The noise of the rows: white noise of every level apart, since an influence such as vibration makes noise that grows with it,
+/// and slow noise common to all.
+struct Noise {
+    /// A covariance that keeps matrices regular.
+    known: DMatrix<f64>,
+    components: Vec<DMatrix<f64>>,
+    /// Scatter between intervals: of the bias, and of the scale factor where the table turned.
+    scatter: Vec<DMatrix<f64>>,
 }
 
 /// How many levels there are, the one without the influence among them.
@@ -289,26 +393,41 @@ fn levels(states: &States) -> usize {
     1 + states.list.len()
 }
 
-/// A covariance that keeps matrices regular.
-fn known(cut: &Cut) -> DMatrix<f64> {
-    let n = cut.rows.len();
-    DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE)
-}
-
-/// Generalised least squares in the noise that is seen, with a scatter between intervals where the test speaks for it.
-fn solve(cut: &Cut, states: &States, x: &DMatrix<f64>) -> Option<(Fit, bool)> {
-    let (fixed, mut components) = (known(cut), noise(cut, states));
-    let own = levels(states);
-    let fit = gls::pruned_fit(&cut.y, x, &fixed, &components, own)?;
-    if states.of.len() <= x.ncols() {
-        return Some((fit, false));
+impl Noise {
+    fn new(cut: &Cut, states: &States, turning: Option<&Turning>) -> Noise {
+        let n = cut.rows.len();
+        let of = |state: Option<usize>| {
+            let mut v = cut.rows.white();
+            for i in (0..n).filter(|i| states.of[cut.of[*i]] != state) {
+                v[(i, i)] = 0.0;
+            }
+            v
+        };
+        let mut components: Vec<DMatrix<f64>> = (0..levels(states)).map(|k| of(k.checked_sub(1))).collect();
+        components.extend([cut.rows.angle(), cut.rows.flicker(), cut.rows.random_walk()]);
+        let mut scatter = vec![cut.rows.shared(&cut.of)];
+        let of_scale = |t: &Turning| scatter[0].component_mul(&(&t.scale * t.scale.transpose()));
+        scatter.extend(turning.map(of_scale));
+        let known = DMatrix::identity(n, n) * (1e-9 * cut.y.variance()).max(f64::MIN_POSITIVE);
+        Noise { known, components, scatter }
     }
-    components.push(cut.rows.shared(&cut.of));
-    match gls::pruned_fit(&cut.y, x, &fixed, &components, own) {
-        Some(better) if better.twice_log_likelihood > fit.twice_log_likelihood + TAKEN_FROM => {
-            Some((better, true))
+
+    /// Generalised least squares in the noise that is seen, with a scatter between intervals where the test speaks for it.
+    fn solve(&self, cut: &Cut, states: &States, x: &DMatrix<f64>) -> Option<(Fit, bool)> {
+        let own = levels(states);
+        let fit = gls::pruned_fit(&cut.y, x, &self.known, &self.components, own)?;
+        // Every stretch has its own mean: more of them than columns tell a scatter between them.
+        if stretches(cut) <= x.ncols() {
+            return Some((fit, false));
         }
-        _ => Some((fit, false)),
+        let mut components = self.components.clone();
+        components.extend(self.scatter.iter().cloned());
+        match gls::pruned_fit(&cut.y, x, &self.known, &components, own) {
+            Some(better) if better.twice_log_likelihood > fit.twice_log_likelihood + TAKEN_FROM => {
+                Some((better, true))
+            }
+            _ => Some((fit, false)),
+        }
     }
 }
 
@@ -318,12 +437,17 @@ fn means(
     found: &Intervals,
     states: &States,
     cut: &Cut,
-    time: Option<&DVector<f64>>,
+    (time, turning, noise): (Option<&DVector<f64>>, Option<&Turning>, &Noise),
 ) -> Option<(Vec<IntervalMean>, Combination)> {
     let (n, count) = (cut.rows.len(), found.list.len());
     // Time within an interval belongs to the noise here: the drift is taken from the means of those without.
-    let x = DMatrix::from_fn(n, count, |i, j| f64::from(cut.of[i] == j));
-    let fit = gls::pruned_fit(&cut.y, &x, &known(cut), &noise(cut, states), levels(states))?;
+    let mut x = DMatrix::from_fn(n, count, |i, j| f64::from(cut.of[i] == j));
+    if let Some(turning) = turning {
+        let own: Vec<DVector<f64>> = (1..count).map(|j| x.column(j).component_mul(&turning.scale)).collect();
+        let columns: Vec<DVector<f64>> = x.column_iter().map(|c| c.into_owned()).collect();
+        x = DMatrix::from_columns(&[columns, turning.rates(), own].concat());
+    }
+    let fit = gls::pruned_fit(&cut.y, &x, &noise.known, &noise.components, levels(states))?;
     let middle = |k: usize, v: &dyn Fn(usize) -> f64| {
         let of: Vec<f64> = (0..n).filter(|i| cut.of[*i] == k).map(v).collect();
         of.iter().sum::<f64>() / of.len().max(1) as f64
@@ -334,8 +458,8 @@ fn means(
     let t0 = without.iter().map(|k| t[*k]).sum::<f64>() / m;
     let stt: f64 = without.iter().map(|k| (t[*k] - t0).powi(2)).sum();
     let list = found.list.iter().enumerate().map(|(k, interval)| {
-        let weights = DVector::from_fn(count, |j, _| {
-            let line = if !states.is_off(j) {
+        let weights = DVector::from_fn(x.ncols(), |j, _| {
+            let line = if j >= count || !states.is_off(j) {
                 0.0
             } else if stt > 0.0 {
                 1.0 / m + (t[k] - t0) * (t[j] - t0) / stt
@@ -358,7 +482,8 @@ fn means(
             temperature: middle(k, &|i| cut.temperature[i]),
         }
     });
-    let without = fit.combine(&DVector::from_fn(count, |j, _| if states.is_off(j) { 1.0 / m } else { 0.0 }));
+    let of_rest = |j: usize| if j < count && states.is_off(j) { 1.0 / m } else { 0.0 };
+    let without = fit.combine(&DVector::from_fn(x.ncols(), |j, _| of_rest(j)));
     Some((list.collect(), without))
 }
 

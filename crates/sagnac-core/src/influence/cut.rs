@@ -11,6 +11,9 @@ const TOTAL_ROWS: usize = 160;
 /// Rows of one stretch at least: what happens within it tells its noise.
 const LEAST_PARTS: usize = 6;
 
+/// Rows of one stretch at least where there are many.
+const LEAST_OF_MANY: usize = 2;
+
 /// A file of the recording with its rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FileSpan {
@@ -90,12 +93,19 @@ pub struct Cut {
     pub y: DVector<f64>,
     /// When they were measured.
     pub rows: Rows,
-    /// The stretch of each.
+    /// The stretch of each, or the interval that its stretch belongs to.
     pub of: Vec<usize>,
     /// Temperatures, degC; NaN without one.
     pub temperature: Vec<f64>,
     /// Means of the channels kept beside; NaN without one.
     pub beside: Vec<Vec<f64>>,
+    /// Rates of the table, deg/h; NaN without one.
+    pub table_rate: Vec<f64>,
+}
+
+/// Number of stretches that the rows are of.
+pub fn stretches(cut: &Cut) -> usize {
+    cut.rows.step.last().map_or(0, |last| last + 1)
 }
 
 impl Cut {
@@ -119,13 +129,23 @@ impl Cut {
 
 /// Cuts stretches into rows; `None` when they do not leave more rows than stretches.
 pub fn cut(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option<Cut> {
+    cut_into(blocks, stretches, gyro, LEAST_PARTS)
+}
+
+/// Cuts stretches of which there are many: short ones into two rows at least, so that the time of a fit stays bounded.
+pub fn cut_many(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option<Cut> {
+    let least = (TOTAL_ROWS / stretches.len().max(1)).clamp(LEAST_OF_MANY, LEAST_PARTS);
+    cut_into(blocks, stretches, gyro, least)
+}
+
+fn cut_into(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize, least_parts: usize) -> Option<Cut> {
     let total: usize = stretches.iter().map(|s| s.1 - s.0).sum();
-    let (mut y, mut of, mut temperature) = (vec![], vec![], vec![]);
+    let (mut y, mut of, mut temperature, mut table_rate) = (vec![], vec![], vec![], vec![]);
     let mut rows = Rows::default();
     let mut beside = vec![vec![]; blocks.list.first().map_or(0, |b| b.beside.len())];
     for (number, (from, to)) in stretches.iter().enumerate() {
         let length = to - from;
-        let parts = (TOTAL_ROWS * length / total.max(1)).max(LEAST_PARTS).min(length);
+        let parts = (TOTAL_ROWS * length / total.max(1)).max(least_parts).min(length);
         for k in 0..parts {
             let list = &blocks.list[from + length * k / parts..from + length * (k + 1) / parts];
             let weighted = |value: &dyn Fn(&Block) -> f64| {
@@ -142,6 +162,8 @@ pub fn cut(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option
             y.push(sum / n);
             of.push(number);
             temperature.push(if t_n > 0.0 { t / t_n } else { f64::NAN });
+            let (turned, turned_n) = weighted(&|b| b.table_rate);
+            table_rate.push(if turned_n > 0.0 { turned / turned_n } else { f64::NAN });
             for (at, means) in beside.iter_mut().enumerate() {
                 let (sum, n) = weighted(&|b| b.beside.get(at).copied().unwrap_or(f64::NAN));
                 means.push(if n > 0.0 { sum / n } else { f64::NAN });
@@ -158,6 +180,7 @@ pub fn cut(blocks: &Blocks, stretches: &[(usize, usize)], gyro: usize) -> Option
         of,
         temperature,
         beside,
+        table_rate,
     })
 }
 
@@ -177,7 +200,8 @@ mod tests {
                 }
             }
             let of = rows.step.clone();
-            Cut { y: DVector::zeros(12), rows, of, temperature: vec![f64::NAN; 12], beside: vec![] }
+            let (temperature, table_rate) = (vec![f64::NAN; 12], vec![f64::NAN; 12]);
+            Cut { y: DVector::zeros(12), rows, of, temperature, beside: vec![], table_rate }
                 .without_pauses()
                 .rows
         };

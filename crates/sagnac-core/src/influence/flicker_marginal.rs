@@ -120,7 +120,8 @@ mod tests {
         let y = DVector::from_fn(n, |i, _| bias[i / parts] + noise(i));
         let of: Vec<usize> = (0..n).map(|i| i / parts).collect();
         let x = DMatrix::from_fn(n, runs, |i, j| f64::from(u8::from(of[i] == j)));
-        (Cut { y, rows, of, temperature: vec![f64::NAN; n], beside: vec![] }, x)
+        let (temperature, table_rate) = (vec![f64::NAN; n], vec![f64::NAN; n]);
+        (Cut { y, rows, of, temperature, beside: vec![], table_rate }, x)
     }
 
     #[test]

@@ -6,7 +6,7 @@ use crate::numeric::order::SortNumbers;
 use crate::rate_table::blocks::Blocks;
 
 /// Share of the range of a level within which it counts as the same.
-const SAME_LEVEL_SHARE: f64 = 0.03;
+pub(super) const SAME_LEVEL_SHARE: f64 = 0.03;
 
 /// One interval at constant level.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +40,9 @@ pub struct Intervals {
 pub fn find(blocks: &Blocks, test: &ComparisonTest, axes: &[String], files: &[FileSpan]) -> Intervals {
     let mut found =
         if test.intervals.is_empty() { recorded(blocks, axes) } else { stated(blocks, test, files) };
+    if found.axes.len() == 1 {
+        found.axes = vec![test.setting.name.clone()];
+    }
     found.reference = test.reference;
     let largest =
         found.list.iter().flat_map(|i| &i.levels).fold(0.0, |m: f64, l| m.max((l - test.reference).abs()));
@@ -119,7 +122,7 @@ fn recorded(blocks: &Blocks, axes: &[String]) -> Intervals {
 }
 
 /// How far a level may stray from its mean.
-fn tolerance(values: &[f64]) -> f64 {
+pub(super) fn tolerance(values: &[f64]) -> f64 {
     let finite: Vec<f64> = values.iter().copied().filter(|v| v.is_finite()).collect();
     let range = finite.iter().fold(f64::NEG_INFINITY, |m, v| m.max(*v))
         - finite.iter().fold(f64::INFINITY, |m, v| m.min(*v));

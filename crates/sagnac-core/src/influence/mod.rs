@@ -1,5 +1,5 @@
-//! The bias at rest under what is changed on purpose: switching off and on, a magnetic field, the supply voltage,
-//! vibration.
+//! The output under what is changed on purpose: switching off and on, a magnetic field, the supply voltage, vibration, or any
+//! influence that a procedure declares.
 //!
 //! Everything rests on means of stretches of the recording with noise that is identified from the recording itself and
 //! goes on between the stretches. Sources: IEEE Std 952-2020, 12.11 (bias repeatability, sensitivities).
@@ -16,6 +16,9 @@ pub mod range;
 pub mod repeatability;
 pub mod response;
 pub mod runs;
+pub mod scale_factor;
 pub mod setup;
 
-pub use setup::{ComparisonTest, Influence, RepeatabilityTest, Stated, StatedLevel};
+pub use setup::{
+    ComparisonTest, Influence, Law, LevelUnit, RepeatabilityTest, Setting, Stated, StatedLevel, ToldBy,
+};

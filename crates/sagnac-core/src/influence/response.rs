@@ -6,7 +6,7 @@
 //! share: `y = … + k·x(t) + a·(z(t) − x(t))`, where z follows the drive x with the time constant and k is the change after it
 //! has settled.
 
-use super::cut::{Cut, span_s};
+use super::cut::{Cut, span_s, stretches};
 use super::gls;
 use super::intervals::Intervals;
 use crate::estimate::{Spread, normal_quantile};
@@ -73,6 +73,8 @@ pub struct Courses<'a> {
     pub components: &'a [DMatrix<f64>],
     /// How many of them are kept however small.
     pub own: usize,
+    /// Output per ppm of the scale factor, deg/h, by row; `None` without rates of a table.
+    pub scale: Option<&'a DVector<f64>>,
 }
 
 /// A fit with lags of one time constant.
@@ -125,7 +127,11 @@ impl Changes {
 
 impl Courses<'_> {
     fn tried(&self, x: &DMatrix<f64>, time_constant_s: f64) -> Option<Tried> {
-        let lags = self.changes.columns(self.cut, time_constant_s);
+        let mut lags = self.changes.columns(self.cut, time_constant_s);
+        if let Some(scale) = self.scale {
+            let of_scale: Vec<DVector<f64>> = lags.iter().map(|lag| lag.component_mul(scale)).collect();
+            lags.extend(of_scale);
+        }
         let first = x.ncols();
         let mut columns: Vec<DVector<f64>> = x.column_iter().map(|c| c.into_owned()).collect();
         columns.extend(lags);
@@ -202,7 +208,7 @@ impl Courses<'_> {
     }
 }
 
-/// The change per drive along one axis by plain means of the intervals, which know nothing of the noise.
+/// The change per drive of one term by plain means, which know nothing of the noise.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ByMeans {
     /// What the interval means give, with the scatter about them.
@@ -222,13 +228,14 @@ impl ByMeans {
     }
 }
 
-/// Least squares through the plain means of the intervals on the means of the columns; `None` where none are left over.
-pub fn by_means(cut: &Cut, x: &DMatrix<f64>, intervals: usize) -> Option<Vec<Combination>> {
-    let dof = intervals.checked_sub(x.ncols()).filter(|d| *d > 0)? as f64;
-    let mut weights = vec![0.0; intervals];
-    let mut y = DVector::zeros(intervals);
-    let mut columns = DMatrix::zeros(intervals, x.ncols());
-    for (i, k) in cut.of.iter().enumerate() {
+/// Least squares through the plain means of the stretches on the means of the columns; `None` where none are left over.
+pub fn by_means(cut: &Cut, x: &DMatrix<f64>) -> Option<Vec<Combination>> {
+    let stretches = stretches(cut);
+    let dof = stretches.checked_sub(x.ncols()).filter(|d| *d > 0)? as f64;
+    let mut weights = vec![0.0; stretches];
+    let mut y = DVector::zeros(stretches);
+    let mut columns = DMatrix::zeros(stretches, x.ncols());
+    for (i, k) in cut.rows.step.iter().enumerate() {
         let weight = cut.rows.length_s[i];
         weights[*k] += weight;
         y[*k] += weight * cut.y[i];

@@ -155,8 +155,10 @@ pub enum PowerModel {
 pub struct Measurand {
     /// Id in procedures, limits and results; part of the contract of `result.json`.
     pub id: &'static str,
-    /// Unit in results; limits and references are converted to it. Empty: as recorded.
+    /// Unit in results; limits and references are converted to it. Empty: as recorded, one of `recorded_in`.
     pub unit: &'static str,
+    /// Units that it may have in results where they follow from the recording or the procedure.
+    pub recorded_in: &'static [&'static str],
     /// Definition in one line.
     pub doc: &'static str,
     /// Other names that people write for it, in lower case, so that the id can be offered; no file may use them.
@@ -213,6 +215,7 @@ impl Measurand {
         Measurand {
             id,
             unit,
+            recorded_in: &[],
             doc,
             other_names: &[],
             signed: false,
@@ -344,6 +347,13 @@ impl Measurand {
     #[must_use]
     pub const fn signed(mut self) -> Measurand {
         self.signed = true;
+        self
+    }
+
+    /// Units that it may have, one of which follows from the recording or the procedure.
+    #[must_use]
+    pub const fn recorded_in(mut self, units: &'static [&'static str]) -> Measurand {
+        self.recorded_in = units;
         self
     }
 
@@ -537,7 +547,7 @@ impl Measurand {
     pub fn evaluate_comparison(&self, compared: &ComparisonEvidence<'_>) -> Vec<Estimate> {
         match self.evaluation {
             Evaluation::Comparison { influence, evaluate }
-                if influence.is_none_or(|i| i == compared.bias.test.influence) =>
+                if influence.is_none_or(|i| i == compared.bias.test.setting.influence) =>
             {
                 let objections = criticism::objections(criticism::OF_COMPARISON, |examine| examine(compared));
                 criticism::raise(&objections, evaluate(self, compared))

@@ -1,10 +1,12 @@
-//! What an influence changes the bias by: per unit of the influence, and at every level.
+//! What an influence changes bias and scale factor by: per unit of the influence, and at every level.
 
 use super::descriptor::Measurand;
 use super::evidence::ComparisonEvidence;
 use crate::estimate::{Component, Estimate, InputQuantity};
-use crate::influence::Influence;
-use crate::influence::comparison::Comparison;
+use crate::influence::comparison::{Comparison, Effect, Term};
+use crate::influence::setup::{
+    BIAS_PER_LEVEL, BIAS_PER_SQUARE, Influence, LevelUnit, SCALE_FACTOR_PER_LEVEL, SCALE_FACTOR_PER_SQUARE,
+};
 use crate::message::{Arg, Note, note};
 use crate::numeric::reml::Combination;
 use crate::rate_table::combine::spread;
@@ -15,7 +17,7 @@ pub static MAGNETIC_SENSITIVITY: Measurand = Measurand::of_influence(
     "deg/h/mT",
     "bias per magnetic field",
     Some(Influence::MagneticField),
-    sensitivity,
+    |m, compared| of_degree(m, compared, 1),
 )
 .signed();
 
@@ -25,7 +27,7 @@ pub static SUPPLY_SENSITIVITY: Measurand = Measurand::of_influence(
     "deg/h/V",
     "bias per supply voltage",
     Some(Influence::Supply),
-    sensitivity,
+    |m, compared| of_degree(m, compared, 1),
 )
 .signed();
 
@@ -35,8 +37,30 @@ pub static VIBRATION_SENSITIVITY: Measurand = Measurand::of_influence(
     "deg/h/g^2",
     "bias per vibration power",
     Some(Influence::Vibration),
-    sensitivity,
+    |m, compared| of_degree(m, compared, 2),
 )
+.signed();
+
+/// Bias per level of a declared influence.
+pub static INFLUENCE_SENSITIVITY: Measurand = Measurand::of_influence(
+    "influence_sensitivity",
+    "",
+    "bias per level of a declared influence",
+    Some(Influence::Declared),
+    per_level,
+)
+.recorded_in(BIAS_PER_LEVEL)
+.signed();
+
+/// Bias per square of the level of a declared influence.
+pub static INFLUENCE_SENSITIVITY_QUADRATIC: Measurand = Measurand::of_influence(
+    "influence_sensitivity_quadratic",
+    "",
+    "bias per square of the level of a declared influence",
+    Some(Influence::Declared),
+    per_level,
+)
+.recorded_in(BIAS_PER_SQUARE)
 .signed();
 
 /// Change of the bias at every level.
@@ -45,35 +69,128 @@ pub static BIAS_SHIFT: Measurand = Measurand::of_influence(
     "deg/h",
     "change of the bias at one level of an influence",
     None,
-    shift,
+    |m, compared| shifts(m, compared.bias, &compared.bias.bias, true),
+)
+.signed();
+
+/// Scale factor per level of a declared influence.
+pub static SCALE_FACTOR_INFLUENCE_SENSITIVITY: Measurand = Measurand::of_influence(
+    "scale_factor_influence_sensitivity",
+    "",
+    "scale factor per level of a declared influence",
+    Some(Influence::Declared),
+    per_level,
+)
+.recorded_in(SCALE_FACTOR_PER_LEVEL)
+.signed();
+
+/// Scale factor per square of the level of a declared influence.
+pub static SCALE_FACTOR_INFLUENCE_SENSITIVITY_QUADRATIC: Measurand = Measurand::of_influence(
+    "scale_factor_influence_sensitivity_quadratic",
+    "",
+    "scale factor per square of the level of a declared influence",
+    Some(Influence::Declared),
+    per_level,
+)
+.recorded_in(SCALE_FACTOR_PER_SQUARE)
+.signed();
+
+/// Change of the scale factor at every level of a declared influence.
+pub static SCALE_FACTOR_SHIFT: Measurand = Measurand::of_influence(
+    "scale_factor_shift",
+    "ppm",
+    "change of the scale factor at one level of a declared influence",
+    Some(Influence::Declared),
+    |m, compared| {
+        let of = |effect| shifts(m, compared.bias, effect, false);
+        compared.bias.scale_factor.as_ref().map_or(vec![], of)
+    },
 )
 .signed();
 
 const METHOD: &str = "alternating_intervals";
 
+/// What a measurand tells per level of a declared influence.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PerLevel {
+    /// Degree of the level.
+    pub degree: u8,
+    /// True for the scale factor, false for the bias.
+    pub on_scale_factor: bool,
+}
+
+impl PerLevel {
+    /// That of a measurand; `None` for one that is not told per level of a declared influence.
+    pub fn of(m: &Measurand) -> Option<PerLevel> {
+        let of = |degree, on_scale_factor| Some(PerLevel { degree, on_scale_factor });
+        match m {
+            m if *m == INFLUENCE_SENSITIVITY => of(1, false),
+            m if *m == INFLUENCE_SENSITIVITY_QUADRATIC => of(2, false),
+            m if *m == SCALE_FACTOR_INFLUENCE_SENSITIVITY => of(1, true),
+            m if *m == SCALE_FACTOR_INFLUENCE_SENSITIVITY_QUADRATIC => of(2, true),
+            _ => None,
+        }
+    }
+
+    /// Its unit with a unit of the level.
+    pub fn unit(self, level: &LevelUnit) -> &'static str {
+        let units = if self.on_scale_factor { level.scale_factor } else { level.bias };
+        if self.degree == 2 { units[1] } else { units[0] }
+    }
+}
+
+/// Rows of a declared influence, whose unit follows from that of its level.
+fn per_level(m: &Measurand, compared: &ComparisonEvidence<'_>) -> Vec<Estimate> {
+    let of = PerLevel::of(m).zip(compared.bias.test.setting.unit);
+    of.map_or(vec![], |(per, level)| terms(m, compared.bias, per, per.unit(level)))
+}
+
+/// Rows of an influence on the bias with a unit of its own.
+fn of_degree(m: &Measurand, compared: &ComparisonEvidence<'_>, degree: u8) -> Vec<Estimate> {
+    terms(m, compared.bias, PerLevel { degree, on_scale_factor: false }, m.unit)
+}
+
 /// One row an axis.
-fn sensitivity(m: &Measurand, compared: &ComparisonEvidence<'_>) -> Vec<Estimate> {
-    let found = compared.bias;
-    let rows = found.axes.iter().zip(&found.per_unit).enumerate().map(|(at, (axis, c))| {
+fn terms(
+    m: &Measurand,
+    found: &Comparison,
+    PerLevel { degree, on_scale_factor }: PerLevel,
+    unit: &'static str,
+) -> Vec<Estimate> {
+    let Some(effect) = (if on_scale_factor { found.scale_factor.as_ref() } else { Some(&found.bias) }) else {
+        return vec![];
+    };
+    let own = effect.terms.iter().enumerate().filter(|(_, t)| t.degree == degree || !t.told_apart);
+    let one = |(at, term): (usize, &Term)| {
+        let c = &term.per_unit;
         let degrees = found.temperature.as_ref().and_then(|t| t.per_drive.get(at));
         // The degree of the level: a relative uncertainty of the level counts as often in its power.
         let of_level = Component::of(
             InputQuantity::InfluenceLevel,
             found.test.level_uncertainty,
             "1",
-            found.test.influence.degree() * c.value,
+            f64::from(degree) * c.value,
         );
-        row(m, found, &found.place(axis, None), c, &[of_level, of_temperature(found, degrees)])
-    });
-    rows.collect()
+        let place = found.place(&term.axis, None);
+        let row = if !term.told_apart {
+            m.not_identifiable(&place, None, METHOD).note(note!("compared.few_levels"))
+        } else if on_scale_factor {
+            row(m, found, &place, c, &[of_level])
+        } else {
+            row(m, found, &place, c, &[of_level, of_temperature(found, degrees)])
+        };
+        Estimate { unit, ..row }
+    };
+    own.map(one).collect()
 }
 
 /// One row a level.
-fn shift(m: &Measurand, compared: &ComparisonEvidence<'_>) -> Vec<Estimate> {
-    let found = compared.bias;
-    let rows = found.shifts.iter().enumerate().map(|(at, s)| {
+fn shifts(m: &Measurand, found: &Comparison, effect: &Effect, warms: bool) -> Vec<Estimate> {
+    let rows = effect.shifts.iter().enumerate().map(|(at, s)| {
         let degrees = found.temperature.as_ref().and_then(|t| t.shifts.get(at));
-        row(m, found, &found.place(&s.axis, Some(s.level)), &s.change, &[of_temperature(found, degrees)])
+        let others = [of_temperature(found, degrees)];
+        let others = if warms { &others[..] } else { &[] };
+        row(m, found, &found.place(&s.axis, Some(s.level)), &s.change, others)
     });
     rows.collect()
 }
@@ -131,6 +248,7 @@ mod tests {
     use crate::influence::nuisance::{Following, Nuisance};
     use crate::influence::response::{ByMeans, Response};
     use crate::influence::setup::ComparisonTest;
+    use crate::influence::setup::{Law, Setting};
 
     fn following(temperature: bool, shifts: [f64; 2], by_chance: f64) -> Following {
         let what = Nuisance { channel: "beside".into(), unit: "degC", temperature };
@@ -150,11 +268,13 @@ mod tests {
         }
     }
 
-    fn compared(influence: Influence) -> Comparison {
+    fn compared(setting: Setting) -> Comparison {
+        let degree = setting.law.degrees()[0];
         let test = ComparisonTest {
-            influence,
+            setting,
             reference: 0.0,
             settling_s: 0.0,
+            rate_settling_s: 0.0,
             minimum_interval_s: 1.0,
             alternations: 1,
             level_uncertainty: 0.02,
@@ -169,12 +289,17 @@ mod tests {
         Comparison {
             channel: "g".into(),
             test,
-            axes: vec!["x".into(), "y".into()],
-            per_unit: vec![combination(-2.0, 0.03), combination(0.5, 0.04)],
-            shifts: vec![shift("x", 2.0, -4.0), shift("y", 1.0, 0.5)],
+            bias: Effect {
+                terms: vec![
+                    term("x", degree, combination(-2.0, 0.03)),
+                    term("y", degree, combination(0.5, 0.04)),
+                ],
+                shifts: vec![shift("x", 2.0, -4.0), shift("y", 1.0, 0.5)],
+                line: None,
+            },
+            scale_factor: None,
             intervals: vec![interval(true), interval(false), interval(true), interval(false), interval(true)],
             without: combination(12.0, 0.01),
-            line: None,
             drift: true,
             scatter: false,
             response: None,
@@ -184,18 +309,22 @@ mod tests {
         }
     }
 
+    fn term(axis: &str, degree: u8, per_unit: Combination) -> Term {
+        Term { axis: axis.into(), degree, told_apart: true, per_unit }
+    }
+
     fn rows(m: &Measurand, bias: &Comparison) -> Vec<Estimate> {
         m.evaluate_comparison(&ComparisonEvidence { bias, noise: &[] })
     }
 
     #[test]
     fn a_sensitivity_has_a_row_an_axis_with_level_and_temperature() {
-        for (m, influence, degree) in [
-            (&MAGNETIC_SENSITIVITY, Influence::MagneticField, 1.0),
-            (&SUPPLY_SENSITIVITY, Influence::Supply, 1.0),
-            (&VIBRATION_SENSITIVITY, Influence::Vibration, 2.0),
+        for (m, setting, degree) in [
+            (&MAGNETIC_SENSITIVITY, Setting::magnetic_field(), 1.0),
+            (&SUPPLY_SENSITIVITY, Setting::supply(), 1.0),
+            (&VIBRATION_SENSITIVITY, Setting::vibration(), 2.0),
         ] {
-            let found = rows(m, &compared(influence));
+            let found = rows(m, &compared(setting.clone()));
             assert_eq!(found.iter().map(|r| r.channel.as_str()).collect::<Vec<_>>(), ["g@x", "g@y"]);
             shows(&found[0], -2.0, "alternating_intervals");
             shows(&found[1], 0.5, "alternating_intervals");
@@ -210,14 +339,66 @@ mod tests {
             assert_eq!(number(&found[0], "compared.intervals", "without"), 3.0);
             assert_eq!(number(&found[0], "compared.intervals", "with"), 2.0);
             for other in [&MAGNETIC_SENSITIVITY, &SUPPLY_SENSITIVITY, &VIBRATION_SENSITIVITY] {
-                assert_eq!(rows(other, &compared(influence)).is_empty(), other != m);
+                assert_eq!(rows(other, &compared(setting.clone())).is_empty(), other != m);
             }
         }
     }
 
+    fn declared(law: Law, on_scale_factor: bool) -> Setting {
+        let unit = LevelUnit::of("kPa");
+        let influence = Influence::Declared;
+        Setting { influence, unit, law, name: "baro".into(), on_scale_factor, ..Setting::supply() }
+    }
+
+    #[test]
+    fn a_declared_influence_has_a_row_a_term_in_the_unit_of_its_level() {
+        let mut found = compared(declared(Law::LinearQuadratic, true));
+        found.temperature = None;
+        found.bias.terms =
+            vec![term("baro", 1, combination(-2.0, 0.03)), term("baro", 2, combination(0.5, 0.04))];
+        found.scale_factor = Some(Effect {
+            terms: vec![term("baro", 1, combination(3.0, 0.1)), term("baro", 2, combination(0.2, 0.1))],
+            shifts: vec![Shift { axis: "baro".into(), level: 2.0, change: combination(7.0, 0.5) }],
+            line: None,
+        });
+        for (m, value, u, unit) in [
+            (&INFLUENCE_SENSITIVITY, -2.0, 0.03f64.hypot(0.02 * 2.0), "deg/h/kPa"),
+            (&INFLUENCE_SENSITIVITY_QUADRATIC, 0.5, 0.04f64.hypot(0.04 * 0.5), "deg/h/kPa^2"),
+            (&SCALE_FACTOR_INFLUENCE_SENSITIVITY, 3.0, 0.1f64.hypot(0.02 * 3.0), "ppm/kPa"),
+            (&SCALE_FACTOR_INFLUENCE_SENSITIVITY_QUADRATIC, 0.2, 0.1f64.hypot(0.04 * 0.2), "ppm/kPa^2"),
+        ] {
+            let own = rows(m, &found);
+            assert_eq!(own.len(), 1, "{}", m.id);
+            shows(&own[0], value, "alternating_intervals");
+            near(student(&own[0]).0, u);
+            assert_eq!((own[0].unit, own[0].channel.as_str()), (unit, "g@baro"));
+            assert!(m.recorded_in.contains(&unit), "{unit}");
+        }
+        let shift = &rows(&SCALE_FACTOR_SHIFT, &found)[0];
+        shows(shift, 7.0, "alternating_intervals");
+        assert_eq!((shift.unit, shift.channel.as_str()), ("ppm", "g@baro:2"));
+        // A table that was not asked for shows no scale factor.
+        found.scale_factor = None;
+        assert!(rows(&SCALE_FACTOR_SHIFT, &found).is_empty());
+        assert!(rows(&SCALE_FACTOR_INFLUENCE_SENSITIVITY, &found).is_empty());
+    }
+
+    #[test]
+    fn terms_that_one_level_cannot_tell_apart_have_no_value() {
+        let mut found = compared(declared(Law::LinearQuadratic, false));
+        found.bias.terms = vec![Term { told_apart: false, ..term("baro", 1, combination(-2.0, 0.03)) }];
+        for m in [&INFLUENCE_SENSITIVITY, &INFLUENCE_SENSITIVITY_QUADRATIC] {
+            let own = rows(m, &found);
+            assert_eq!(own.len(), 1);
+            withholds(&own[0], None, "alternating_intervals");
+            assert_eq!(notes(&own[0]), ["compared.few_levels"]);
+        }
+        assert!(rows(&BIAS_SHIFT, &found)[0].value.is_some());
+    }
+
     #[test]
     fn a_shift_has_a_row_a_level_without_the_uncertainty_of_the_level() {
-        let mut found = compared(Influence::Vibration);
+        let mut found = compared(Setting::vibration());
         let shifts = rows(&BIAS_SHIFT, &found);
         assert_eq!(shifts.iter().map(|r| r.channel.as_str()).collect::<Vec<_>>(), ["g@x:2", "g@y:1"]);
         shows(&shifts[0], -4.0, "alternating_intervals");
@@ -232,7 +413,7 @@ mod tests {
 
     #[test]
     fn remarks_say_what_went_with_the_levels() {
-        let mut found = compared(Influence::Supply);
+        let mut found = compared(Setting::supply());
         (found.drift, found.scatter) = (false, true);
         assert_eq!(notes(&rows(&BIAS_SHIFT, &found)[0]), ["compared.intervals_no_drift", "compared.scatter"]);
         (found.drift, found.scatter) = (true, false);
@@ -259,7 +440,7 @@ mod tests {
 
     #[test]
     fn a_response_that_goes_on_and_means_that_contradict_leave_no_value() {
-        let mut found = compared(Influence::Supply);
+        let mut found = compared(Setting::supply());
         let contradiction = |found: &Comparison| {
             let row = rows(&SUPPLY_SENSITIVITY, found).remove(0);
             withholds(&row, None, "alternating_intervals");

@@ -43,6 +43,7 @@ pub use descriptor::{
     TurnAxis,
 };
 pub use evidence::{ComparisonEvidence, Earth, GyroEvidence, KnownInputEvidence, TableEvidence};
+pub use influence::PerLevel;
 
 macro_rules! registry {
     ($($file:ident::$name:ident,)*) => {
@@ -151,7 +152,12 @@ registry! {
     influence::MAGNETIC_SENSITIVITY,
     influence::SUPPLY_SENSITIVITY,
     influence::VIBRATION_SENSITIVITY,
+    influence::INFLUENCE_SENSITIVITY,
+    influence::INFLUENCE_SENSITIVITY_QUADRATIC,
     influence::BIAS_SHIFT,
+    influence::SCALE_FACTOR_INFLUENCE_SENSITIVITY,
+    influence::SCALE_FACTOR_INFLUENCE_SENSITIVITY_QUADRATIC,
+    influence::SCALE_FACTOR_SHIFT,
     angle_random_walk_shift::ANGLE_RANDOM_WALK_SHIFT,
     bias_repeatability::BIAS_REPEATABILITY,
     bias_repeatability::BIAS_REPEATABILITY_PEAK_TO_PEAK,
@@ -192,6 +198,8 @@ mod tests {
     fn ids_are_unique_and_units_are_units() {
         for (i, m) in MEASURANDS.iter().enumerate() {
             assert!(m.unit.is_empty() || Unit::parse(m.unit).is_ok(), "{} {}", m.id, m.unit);
+            assert_eq!(m.unit.is_empty(), !m.recorded_in.is_empty(), "{}", m.id);
+            assert!(m.recorded_in.iter().all(|u| Unit::parse(u).is_ok()), "{} {:?}", m.id, m.recorded_in);
             assert!(MEASURANDS[..i].iter().all(|other| other.id != m.id), "{}", m.id);
             assert!(!m.doc.is_empty());
             for name in m.other_names {

@@ -15,6 +15,8 @@ use crate::rate_table::turns::Turned;
 pub static SCALE_FACTOR: Measurand =
     Measurand::of_steps("scale_factor", "", "output per input", Stimulus::Rates, scale_factor)
         .or_known_input(OfKnownInput { positions: false, turns: Some(TurnAxis::Own), evaluate: of_turns })
+        // Of samples that are rates or angles already, of counts an interval, of counts of rate.
+        .recorded_in(&["1", "count/arcsec", "count/(deg/h)"])
         .also_called(&["sf", "scale", "sensitivity", "gain"])
         .signed();
 

@@ -6,7 +6,9 @@ use crate::truths::noise;
 use sagnac_core::estimate::Estimate;
 use sagnac_core::influence::comparison::{self, Beside, NoiseChange};
 use sagnac_core::influence::nuisance::Nuisance;
-use sagnac_core::influence::{ComparisonTest, Influence, RepeatabilityTest, intervals, repeatability, runs};
+use sagnac_core::influence::{
+    ComparisonTest, Influence, Law, LevelUnit, RepeatabilityTest, Setting, intervals, repeatability, runs,
+};
 use sagnac_core::measurand::{
     ComparisonEvidence, Earth, GyroEvidence, KnownInputEvidence, MEASURANDS, Options, TableEvidence,
     table_extras,
@@ -390,15 +392,34 @@ fn switching_off_and_on() {
 fn under_influence() {
     let mut figures = Figures::default();
     let e = noise(91, 2100, 0.05);
-    for influence in Influence::ALL {
+    let of = |law, on_scale_factor| Setting {
+        influence: Influence::Declared,
+        law,
+        on_scale_factor,
+        name: "baro".into(),
+        unit: LevelUnit::of("kPa"),
+        ..Setting::supply()
+    };
+    let settings = [
+        ("MagneticField", Setting::magnetic_field()),
+        ("Supply", Setting::supply()),
+        ("Vibration", Setting::vibration()),
+        ("Declared linear_quadratic", of(Law::LinearQuadratic, true)),
+        ("Declared on_off", of(Law::OnOff, false)),
+    ];
+    for (influence, setting) in settings {
         for (name, of_level, warmed) in [("acts", 0.2, 0.0), ("does not act", 0.0, 0.0), ("warms", 0.2, 0.5)]
         {
             let level_at = |t: f64| [0.0, 1.0, 0.0, 2.0, 0.0, 3.0, 0.0][(t / 300.0) as usize % 7];
             let mut made = blocks(e.len(), 1, |t| {
-                let drive = influence.drive(level_at(t));
+                let level = level_at(t);
+                let drive = if influence == "Vibration" { level * level } else { level };
+                let turned =
+                    if setting.on_scale_factor { [9e3, -9e3][(t / 20.0) as usize % 2] } else { f64::NAN };
+                let input = if setting.on_scale_factor { turned * (1.0 + 1e-5 * level) } else { 0.0 };
                 (
-                    vec![0.7 + of_level * drive + 2e-5 * t + e[t as usize]],
-                    f64::NAN,
+                    vec![0.7 + input + of_level * drive + 2e-5 * t + e[t as usize]],
+                    turned,
                     f64::NAN,
                     20.0 + warmed * drive,
                 )
@@ -407,9 +428,10 @@ fn under_influence() {
                 block.beside = vec![level_at(block.first_index as f64 * 0.1 + 0.5)];
             }
             let test = ComparisonTest {
-                influence,
+                setting: setting.clone(),
                 reference: 0.0,
                 settling_s: 20.0,
+                rate_settling_s: 1.0,
                 minimum_interval_s: 60.0,
                 alternations: 2,
                 level_uncertainty: 0.02,
@@ -420,11 +442,11 @@ fn under_influence() {
                 intervals: vec![],
             };
             let series = intervals::find(&made, &test, &["level".into()], &[]);
-            figures.add(format!("{influence:?} {name} intervals"), &series);
+            figures.add(format!("{influence} {name} intervals"), &series);
             let temperature = Nuisance { channel: "t".into(), unit: "degC", temperature: true };
             let beside = Beside { temperature: Some(temperature), others: vec![] };
             let Some(bias) = comparison::evaluate(&made, &series, &test, &beside, 0) else { continue };
-            figures.add(format!("{influence:?} {name} found"), &bias);
+            figures.add(format!("{influence} {name} found"), &bias);
             let change = |without, with| NoiseChange { channel: "g0 1".into(), without, with };
             let noise = [
                 change(Some((0.01, 1e-4)), Some((0.013, 2e-4))),
@@ -433,7 +455,7 @@ fn under_influence() {
             ];
             for measurand in MEASURANDS {
                 let rows = measurand.evaluate_comparison(&ComparisonEvidence { bias: &bias, noise: &noise });
-                add(&mut figures, &format!("{influence:?} {name}"), measurand.id, &rows);
+                add(&mut figures, &format!("{influence} {name}"), measurand.id, &rows);
             }
         }
     }

@@ -63,7 +63,7 @@ pub fn find(
     if let Some(acted) = against_channels(test, blocks, series, axes) {
         return Ok(acted);
     }
-    let by_noise = if test.influence == Influence::Vibration && series.with() > 0 {
+    let by_noise = if test.setting.influence == Influence::Vibration && series.with() > 0 {
         louder(reading, blocks, series, progress)?
     } else {
         None

@@ -1,4 +1,5 @@
-//! The bias without and with an influence: a magnetic field, another supply voltage, vibration.
+//! The output without and with an influence: a magnetic field, another supply voltage, vibration, or one that the procedure
+//! declares.
 
 mod acted;
 mod noise;
@@ -13,10 +14,10 @@ use crate::config::procedure::Procedure;
 use crate::config::procedure::model::MeasurandSpec;
 use crate::estimate::Estimate;
 use crate::figure::Figure;
-use crate::influence::ComparisonTest;
 use crate::influence::comparison::{self, Beside, Comparison, NoiseChange};
 use crate::influence::intervals::{self, Intervals};
 use crate::influence::nuisance::{Following, Nuisance};
+use crate::influence::{ComparisonTest, Influence, Setting, scale_factor};
 use crate::ingest::Pauses;
 use crate::measurand::{ANGLE_RANDOM_WALK_SHIFT, ComparisonEvidence};
 use crate::rate_table::blocks::Collector;
@@ -36,6 +37,8 @@ pub struct InfluenceEvidence {
     channels: Vec<Comparison>,
     /// The channels at rest without the influence.
     rest: Vec<GyroFact>,
+    /// Rates of a table that differ within the intervals.
+    rates: usize,
     /// Whether the influence acted as stated.
     acted: Acted,
     /// How the angle random walk changed, where that is asked for.
@@ -54,11 +57,19 @@ impl TestKind for UnderInfluence {
     }
 
     fn options(&self, _: &Request<'_>) -> Vec<TestOption> {
-        vec![
+        let mut options = vec![
             ("influence.settling", format!("{} s", self.test.settling_s)),
             ("influence.minimum", format!("{} s", self.test.minimum_interval_s)),
             ("influence.reference", self.test.reference.to_string()),
-        ]
+        ];
+        let setting = &self.test.setting;
+        if setting.influence == Influence::Declared {
+            options.push(("influence.law", setting.law.id().to_owned()));
+        }
+        if setting.on_scale_factor {
+            options.push(("influence.rate_settling", format!("{} s", self.test.rate_settling_s)));
+        }
+        options
     }
 
     fn pauses(&self) -> Pauses {
@@ -70,8 +81,9 @@ impl TestKind for UnderInfluence {
             channels.iter().enumerate().filter(|(_, c)| of(c)).map(|(slot, _)| slot).collect::<Vec<usize>>()
         };
         // The channels of the level come first.
-        let mut kept = slots(&|c| self.is_level(c));
-        kept.extend(slots(&|c| may_disturb(c, &self.test)));
+        let setting = &self.test.setting;
+        let mut kept = slots(&|c| setting.tells_level(c));
+        kept.extend(slots(&|c| may_disturb(c, setting)));
         Ok(Collector::new(channels, interval_s, self.test.temperature.as_deref()).beside(kept))
     }
 
@@ -84,7 +96,7 @@ impl TestKind for UnderInfluence {
         let test = &self.test;
         let blocks = collected.finish(reading.report.tau0_measured_s);
         let axes: Vec<String> =
-            reading.channels.iter().filter(|c| self.is_level(c)).map(|c| c.id.clone()).collect();
+            reading.channels.iter().filter(|c| test.setting.tells_level(c)).map(|c| c.id.clone()).collect();
         let series = intervals::find(&blocks, test, &axes, &reading.file_spans());
         let context = context(&reading.channels, test, axes.len());
         let channels: Vec<Comparison> = (0..blocks.gyros.len())
@@ -92,20 +104,23 @@ impl TestKind for UnderInfluence {
             .collect();
         let off = series.list.iter().filter(|i| series.is_off(i)).map(|i| i.blocks);
         let without = Stretches { blocks: &blocks, spans: off.collect() };
-        let rest =
-            channels.iter().filter_map(|c| without.fact(reading, &c.channel, Some(&rest_mean(c)))).collect();
+        // Under the rates of a table nothing is at rest.
+        let resting = channels.iter().filter(|_| !test.setting.on_scale_factor);
+        let rest = resting.filter_map(|c| without.fact(reading, &c.channel, Some(&rest_mean(c)))).collect();
+        let rates = scale_factor::rates(&blocks, &series, test.rate_settling_s);
         let acted = acted::find(reading, test, &blocks, &series, &axes, progress)?;
         let noise = match reading.procedure().measures(ANGLE_RANDOM_WALK_SHIFT.id, None) {
             true => noise::find(reading, &blocks, &series, progress)?,
             false => BTreeMap::new(),
         };
-        Ok(InfluenceEvidence { test: self.test, series, channels, rest, acted, noise })
+        Ok(InfluenceEvidence { test: self.test, series, channels, rest, rates, acted, noise })
     }
 }
 
 impl Evidence for InfluenceEvidence {
     fn conditions(&self, reading: &Reading<'_>) -> Vec<ConditionRecord> {
-        let InfluenceEvidence { test, series, channels, acted, .. } = self;
+        let InfluenceEvidence { test, series, channels, acted, rates, .. } = self;
+        let lines = |c: &Comparison| [Some(&c.bias), c.scale_factor.as_ref()].map(|e| e.and_then(|e| e.line));
         let temperature = channels.iter().find_map(|c| c.temperature.as_ref());
         match temperature {
             Some(_) => reading.checks.made("temperature_in_step", None, "influence_temperature"),
@@ -120,14 +135,15 @@ impl Evidence for InfluenceEvidence {
             missing: series.missing,
             minimum_interval_s: test.minimum_interval_s,
             recorded: test.intervals.is_empty(),
-            level_unit: test.influence.unit(),
-            table: test.influence.table(),
+            level_unit: test.setting.level_unit(),
+            table: test.setting.influence.table(),
+            rates: test.setting.on_scale_factor.then_some(*rates),
             acted: *acted,
             temperature,
             others: most_disturbing(channels),
             allowed_deg_c: test.temperature_difference_deg_c,
-            line: channels.iter().filter_map(|c| c.line).reduce(f64::min),
-            squared: test.influence.degree() > 1.0,
+            line: channels.iter().flat_map(lines).flatten().reduce(f64::min),
+            law: test.setting.law,
         })
     }
 
@@ -160,13 +176,6 @@ impl Evidence for InfluenceEvidence {
     }
 }
 
-impl UnderInfluence {
-    /// True for a channel that tells the level of the influence.
-    fn is_level(&self, channel: &Channel) -> bool {
-        channel.role == self.test.influence.role()
-    }
-}
-
 /// Mean output without the influence.
 fn rest_mean(c: &Comparison) -> RestMean {
     RestMean {
@@ -177,7 +186,7 @@ fn rest_mean(c: &Comparison) -> RestMean {
 }
 
 /// True for a channel whose quantity may change the bias beside the influence. The temperature of the unit is judged by itself.
-fn may_disturb(c: &Channel, test: &ComparisonTest) -> bool {
+fn may_disturb(c: &Channel, setting: &Setting) -> bool {
     let role = matches!(
         c.role,
         Role::Temperature
@@ -192,7 +201,8 @@ fn may_disturb(c: &Channel, test: &ComparisonTest) -> bool {
             | Role::TableRate
             | Role::OuterRate
     );
-    role && c.role != test.influence.role()
+    let of_test = setting.tells_level(c) || setting.on_scale_factor && c.role == Role::TableRate;
+    role && !of_test
 }
 
 /// Channels recorded besides output and level. In the blocks the channels of the level come first.
@@ -202,7 +212,7 @@ fn context(channels: &[Channel], test: &ComparisonTest, levels: usize) -> Beside
         unit: c.role.internal_unit().unwrap_or("1"),
         temperature: c.role == Role::Temperature,
     };
-    let others: Vec<&Channel> = channels.iter().filter(|c| may_disturb(c, test)).collect();
+    let others: Vec<&Channel> = channels.iter().filter(|c| may_disturb(c, &test.setting)).collect();
     let warm = || others.iter().filter(|c| c.role == Role::Temperature);
     let own = warm().find(|c| Some(&c.id) == test.temperature.as_ref()).or_else(|| warm().next());
     Beside {

@@ -27,7 +27,7 @@ use crate::units::Unit;
 use acceleration::AccelerationKeys;
 use conditions::{Conditions, Exclusion};
 use derived::{DerivedKeys, DerivedLimitKeys};
-use influence::{MagneticKeys, RepeatabilityKeys, SupplyKeys, VibrationKeys};
+use influence::{InfluenceKeys, MagneticKeys, RepeatabilityKeys, SupplyKeys, VibrationKeys};
 use interim::InterimKeys;
 use limits::{LimitKeys, ReferenceKeys, TypicalValues};
 use noise::NoiseKeys;
@@ -123,6 +123,8 @@ pub(in crate::config::procedure) struct ProcedureFile {
     pub supply_test: Option<SupplyKeys>,
     /// A comparison under vibration.
     pub vibration_test: Option<VibrationKeys>,
+    /// A comparison under any influence that the procedure declares.
+    pub influence_test: Option<InfluenceKeys>,
     /// Quantities to determine, one table each, in the order of the report.
     #[key(name = "measurand", required)]
     pub measurands: Vec<MeasurandKeys>,
