@@ -23,6 +23,7 @@ pub mod pages;
 pub mod planned;
 pub mod predicted_power;
 pub mod rate_table;
+pub mod record_lengths;
 pub mod results;
 pub mod sibling_alarms;
 pub mod single_samples;
@@ -39,6 +40,7 @@ pub static STUDIES: &[&Study] = &[
     &whole_runs::LINES,
     &false_lines::STUDY,
     &predicted_power::STUDY,
+    &record_lengths::STUDY,
     &goodness_of_fit::STUDY,
     &comparison::STUDY,
     &comparison::PUBLISHED,
