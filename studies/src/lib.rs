@@ -29,6 +29,7 @@ pub mod sibling_alarms;
 pub mod single_samples;
 pub mod study;
 pub mod thermal;
+pub mod two_laboratories;
 pub mod whole_runs;
 
 use study::Study;
@@ -79,4 +80,5 @@ pub static STUDIES: &[&Study] = &[
     &lot_bounds::STUDY,
     &sibling_alarms::STUDY,
     &interim::STUDY,
+    &two_laboratories::STUDY,
 ];

@@ -6,7 +6,7 @@ use super::layout::{NO_LABEL, Page, word};
 use super::quantity::{count, names, plain, rates, time, time_both};
 use super::show_gyro::{contradicted, described, strongest};
 use crate::criticism::temperature::MIN_RANGE_DEG_C;
-use crate::i18n::{Note, note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand::{BIAS_INSTABILITY, STATIC_BIAS};
 use crate::noise::data::NoiseType;
 use crate::noise::expected::{expected_upper_limit, resolving_duration};
