@@ -6,7 +6,7 @@ use rayon::prelude::*;
 use sagnac::estimate::{Estimate, Limit, Rule, Verdict, judge};
 use sagnac::noise::data::{BlockSeries, NoiseType};
 use sagnac::noise::evidence::Evidence;
-use sagnac::noise::expected::{MIN_POWER, decision_power, resolving_duration};
+use sagnac::noise::expected::{decision_power, resolving_duration};
 use sagnac::noise::identification::{Options, identify};
 use sagnac::noise::model::NoiseModel;
 
@@ -29,8 +29,9 @@ const N: f64 = 0.002;
 const INTERVAL_S: f64 = 10.0;
 /// Risk of the limits.
 const RISK: f64 = 0.05;
-/// How far a share may lie from the stated one.
-const TOLERANCE: f64 = 0.1;
+/// Shares that count as the stated one, 0.8.
+const LEAST_SHARE: f64 = 0.7;
+const MOST_SHARE: f64 = 0.9;
 
 /// A slow term of some size.
 #[derive(Debug, Clone, Copy)]
@@ -118,8 +119,8 @@ fn cases() -> Vec<Case> {
 }
 
 fn rows(slow: Slow, records: u64, first: u64) -> Vec<Row> {
-    let about = Asked::Between(MIN_POWER - TOLERANCE, MIN_POWER + TOLERANCE);
-    let at_least = Asked::AtLeast(MIN_POWER - TOLERANCE);
+    let about = Asked::Between(LEAST_SHARE, MOST_SHARE);
+    let at_least = Asked::AtLeast(LEAST_SHARE);
     let mut rows = vec![];
     let id = slow.term.id();
     if let Some(hours) = slow.resolved_h() {
