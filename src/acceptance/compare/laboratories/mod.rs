@@ -51,8 +51,11 @@ impl Laboratories {
         let [first, second] = &given;
         let serial = serial_of_both(first.record, second.record)?.to_owned();
         let sides = [Side::of(first), Side::of(second)];
-        let same_recording =
-            !sides[0].recording_sha256.is_empty() && sides[0].recording_sha256 == sides[1].recording_sha256;
+        // A recording in memory has no hash.
+        let known = |side: &Side| {
+            !side.recording_sha256.is_empty() && side.recording_sha256.iter().all(|hash| !hash.is_empty())
+        };
+        let same_recording = known(&sides[0]) && sides[0].recording_sha256 == sides[1].recording_sha256;
         let common = Common::of(first, second);
         let pair = |a: &MeasurandRecord| {
             let b = second.record.measurands.iter().find(|b| same_row(a, b))?;
