@@ -177,7 +177,7 @@ fn length(found: &Inspection, gyro: &Gyro, term: NoiseType) -> Option<Note> {
         NoiseType::Flicker => &identification.bias_instability,
         _ => &identification.rate_random_walk,
     };
-    if contradicted(gyro, &estimate.id).is_some() {
+    if contradicted(gyro, estimate.id).is_some() {
         return None;
     }
     let background = identification.supported.with(term, 0.0);
