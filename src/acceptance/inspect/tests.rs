@@ -61,7 +61,8 @@ fn a_record_states_how_long_the_next_one_must_be_for_slow_terms() {
             "record for B, K `rate_deg_h`: No value here. If B = ",
             "of recording give it a value in 8 of 10 records; if half of that, ",
             "No value here. If K = ",
-            "Assumed for these lengths: N = 0.01 °/√h, the other terms as found",
+            "Assumed for these lengths: N = ",
+            "°/√h, the other terms as found",
         ],
     );
     // A bound by ten hours takes about as long to be resolved, and half of it longer.
