@@ -80,7 +80,9 @@ fn rows(change: &Change, phases: &[PhaseRows<'_>]) -> Vec<MeasurandRecord> {
         p.map(own).unwrap_or_default()
     };
     let (before, after) = (phase(&change.before), phase(&change.after));
-    let same_bench = before.zip(after).is_some_and(|(a, b)| !a.instruments.is_empty() && same(a, b));
+    let same_bench = before
+        .zip(after)
+        .is_some_and(|(a, b)| !a.instruments.is_empty() && same_instruments(a.instruments, b.instruments));
     let (before, after) = (of(before), of(after));
     let mut channels: Vec<&str> = before.iter().chain(&after).map(|m| m.channel.as_str()).collect();
     channels.dedup();
@@ -97,10 +99,10 @@ fn rows(change: &Change, phases: &[PhaseRows<'_>]) -> Vec<MeasurandRecord> {
     channels.into_iter().map(one).collect()
 }
 
-/// True where both phases were recorded with the same instruments.
-fn same(a: &PhaseRows<'_>, b: &PhaseRows<'_>) -> bool {
+/// True where two tests were recorded with the same instruments.
+pub(super) fn same_instruments(a: &[InstrumentRecord], b: &[InstrumentRecord]) -> bool {
     let key = |i: &InstrumentRecord| (i.name.clone(), i.serial.clone());
-    let of = |p: &PhaseRows<'_>| p.instruments.iter().map(key).collect::<Vec<_>>();
+    let of = |list: &[InstrumentRecord]| list.iter().map(key).collect::<Vec<_>>();
     let (of_a, of_b) = (of(a), of(b));
     of_a.len() == of_b.len() && of_a.iter().all(|i| of_b.contains(i))
 }

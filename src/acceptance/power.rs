@@ -3,11 +3,13 @@
 //! (validation of a procedure, no data).
 
 use crate::config::procedure::EffectiveLimits;
-use crate::config::procedure::power::{PowerQuestion, TypicalNoise};
+use crate::config::procedure::power::{LengthQuestion, PowerQuestion, Size, TypicalNoise};
 use crate::estimate::{Dependence, Limit};
 use crate::i18n::{Arg, Note, note};
 use crate::measurand::{GyroEvidence, Measurand, PowerModel};
-use crate::noise::expected::{Power, bias_power, decision_power, deviation_power, term_variance};
+use crate::noise::expected::{
+    Power, bias_power, decision_power, deviation_power, resolving_duration, term_variance,
+};
 use crate::noise::model::NoiseModel;
 use crate::noise::static_bias::BiasUncertainty;
 use crate::noise::windows::edf_of_window_std;
@@ -171,10 +173,54 @@ pub fn warning(question: &PowerQuestion) -> Option<(Note, Option<Note>)> {
         .with("fail", Arg::fixed(power.fail_probability_at_1_5, 2))
         .with("pass", Arg::fixed(power.pass_probability_at_half, 2));
     let help = match power.needed_duration_h {
-        Some(h) => note!("check.power.needed", hours = format!("{h:.0}")),
+        Some(h) => note!("check.power.needed", hours = Arg::figures(h, HOUR_DIGITS)),
         None => note!("check.power.never"),
     };
     Some((message, Some(help)))
+}
+
+/// Digits of hours that are computed to a twentieth.
+const HOUR_DIGITS: usize = 2;
+
+/// How long a record must be for a slow term: for its limit to be decided, or for its typical size to be resolved.
+pub fn length(question: &LengthQuestion) -> Option<Note> {
+    let measurand = question.measurand;
+    let name = |value: f64, sign: &str| format!("{} {sign} {value} {}", measurand.id, measurand.unit);
+    let Some(background) = background(&question.typical) else {
+        let Size::Limit(limit) = &question.size else { return None };
+        return Some(note!("check.length.no_noise", term = name(limit.max?, "<=")));
+    };
+    let PowerModel::NoiseTerm(term) = measurand.power? else { return None };
+    let tau0_s = question.sample_interval_s();
+    let (key, hours, named) = match &question.size {
+        Size::Limit(limit) => {
+            // The search begins at any length that can be analysed.
+            let duration_s = question.planned_s.unwrap_or(3600.0).max(100.0 * tau0_s);
+            let situation = Situation { background, duration_s, tau0_s, earth_uncertainty_deg_h: 0.0 };
+            let power = of_limit(measurand, limit, &situation)?;
+            ("check.length.decided", power.needed_duration_h, name(limit.max?, "<="))
+        }
+        Size::Typical(value) => {
+            let others = background.with(term, 0.0);
+            ("check.length.resolved", resolving_duration(term, *value, &others, tau0_s), name(*value, "="))
+        }
+    };
+    let hours: Arg = match hours {
+        Some(hours) => note!("check.length.hours", hours = Arg::figures(hours, HOUR_DIGITS)).into(),
+        None => note!("check.length.beyond").into(),
+    };
+    let samples = match question.sample_rate_hz {
+        Some(rate) => note!("check.length.samples", rate = Arg::Stated(rate)),
+        None => note!("check.length.samples_assumed"),
+    };
+    let planned = question.planned_s.map(|s| note!("check.length.planned", hours = Arg::Stated(s / 3600.0)));
+    let note =
+        Note::new(key).with("term", named).with("hours", hours).with("noise", Arg::Stated(background.n));
+    let note = note.with("samples", samples);
+    Some(match planned {
+        Some(planned) => note!("check.length.of_planned", what = note, planned),
+        None => note,
+    })
 }
 
 /// The typical noise of a family; `None` when even the angle random walk is not stated.

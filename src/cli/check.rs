@@ -2,7 +2,7 @@
 
 use super::progress::{Display, Progress};
 use super::{exit, place};
-use crate::acceptance::power::warning;
+use crate::acceptance::power::{length, warning};
 use crate::config::procedure::check::check_report;
 use crate::i18n::Lang;
 use crate::ingest::each_of;
@@ -28,7 +28,7 @@ pub fn main(args: &CheckArgs, lang: Lang) -> Result<u8, String> {
     let mut progress = Progress::new(Display::unless(false), lang);
     progress.stage("progress.checking");
     let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
-    let report = check_report(&paths, lang, &warning);
+    let report = check_report(&paths, lang, &warning, &length);
     drop(progress);
     place::print(&report.text);
     Ok(if report.failed > 0 { exit::ERROR } else { exit::PASS })

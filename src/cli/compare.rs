@@ -1,6 +1,7 @@
-//! `sagnac compare`: Russian against Allan figures of any units, or the published tables.
+//! `sagnac compare`: Russian against Allan figures of any units, or the published tables; two results of one unit against each other.
 
 use super::columns::{ColumnArgs, WarmUpArgs};
+use super::compare_laboratories::laboratories;
 use super::evaluate::with_progress;
 use super::job::{Frame, Job, Made, execute};
 use super::options::OutputArgs;
@@ -40,6 +41,10 @@ pub struct CompareArgs {
     /// Limits file: each limit applies to the figure it names; a result keeps its own limits
     #[arg(long, value_name = "FILE")]
     limits: Option<PathBuf>,
+    /// Of two results of one unit: their recordings, in the same order, which are evaluated under both procedures [default: the
+    /// files that the results name]
+    #[arg(long, value_name = "FILE")]
+    data: Vec<PathBuf>,
     /// Output folder [default: named after the first unit and UTC time]
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -62,7 +67,9 @@ impl Job for &CompareArgs {
     fn begin(&self, frame: &Frame<'_>) -> Result<StagedFolder, String> {
         let first = self.recording.first().map_or_else(|| "published".to_owned(), |p| stem(p));
         let out = OutputPlace::new(self.out.as_deref(), "comparison", Some(&first), frame.now);
-        let inputs = frame.inputs().recording(&read_for(&self.recording), &self.read.options());
+        let mut read = read_for(&self.recording);
+        read.extend(self.data.iter().cloned());
+        let inputs = frame.inputs().recording(&read, &self.read.options());
         let inputs = inputs.file("limits", self.limits.as_deref()).options(&(
             (
                 &self.columns.rate,
@@ -95,14 +102,21 @@ impl Job for &CompareArgs {
         for given in &self.recording {
             paths.extend(each_of(given).map_err(|e| RecordingError::from(e).say(lang))?);
         }
+        let files: Vec<Option<PathBuf>> = paths.iter().map(|path| result_file(path)).collect();
+        let laboratories = laboratories(&self.data, &files, frame)?;
         let mut units: Vec<Unit> = vec![];
         for (i, path) in paths.iter().enumerate() {
             let label = note!("progress.of_unit", n = i + 1, all = paths.len()).say(lang);
-            units.extend(read_units(self, path, &limits, now, (&label, &mut frame.progress))?);
+            match read_units(self, path, &limits, now, (&label, &mut frame.progress)) {
+                // Two results of one unit need have no Russian or Allan figures.
+                Err(_) if laboratories.is_some() => {}
+                found => units.extend(found?),
+            }
         }
         name_apart(&mut units);
         mark_repeated(&mut units);
-        Ok(Results::of_comparison(Comparison::of_units(units, stamp)).into())
+        let comparison = Comparison { laboratories, ..Comparison::of_units(units, stamp) };
+        Ok(Results::of_comparison(comparison).into())
     }
 }
 

@@ -4,6 +4,7 @@ mod analyze;
 mod check;
 mod columns;
 mod compare;
+mod compare_laboratories;
 mod datasheet;
 mod demo;
 mod each;
@@ -206,10 +207,10 @@ enum Verb {
         sagnac datasheet 'samples/lot/*/result.json' --audience customer --out sheet\n  \
         sagnac datasheet --store /srv/sagnac --device-model OIUS-501 --lot 2026-14")]
     Datasheet(datasheet::DatasheetArgs),
-    /// Compare Russian and Allan figures and explain their ratio
+    /// Compare Russian and Allan figures and explain their ratio, or two results of one unit
     #[command(
         after_help = "Examples:\n  sagnac compare unit-0042.csv unit-0043.csv reports/SN-0044 --out comparison\n  \
-        sagnac compare --published"
+        sagnac compare --published\n  sagnac compare maker/SN-0042 customer/SN-0042"
     )]
     Compare(compare::CompareArgs),
     /// Keep results: immutable, addressed by content, with an index of all attempts at a test

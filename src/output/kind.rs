@@ -145,7 +145,7 @@ impl Kind {
                         .any(|stem| name.starts_with(stem))
                         && [".toml", ".json", ".h"].iter().any(|ext| name.ends_with(ext)))
             }
-            Kind::Comparison => name == "comparison.csv",
+            Kind::Comparison => matches!(name, "comparison.csv" | "agreement.csv"),
             Kind::Explanation => {
                 matches!(name, "correction.csv" | "augmented.toml" | "alternatives.toml")
             }

@@ -140,8 +140,9 @@ impl Results {
     /// The results of a comparison.
     pub fn of_comparison(comparison: Comparison) -> Results {
         let figures = figures::all(&comparison.units);
-        let rows = compare::csv(&comparison);
-        Results::of(comparison, figures, vec![("comparison.csv".into(), rows)])
+        let rows = ("comparison.csv".to_owned(), compare::csv(&comparison));
+        let agreement = compare::agreement_csv(&comparison).map(|rows| ("agreement.csv".to_owned(), rows));
+        Results::of(comparison, figures, std::iter::once(rows).chain(agreement).collect())
     }
 
     /// The results of a lot. Those of its units stand in folders of their own.

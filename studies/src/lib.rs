@@ -23,11 +23,13 @@ pub mod pages;
 pub mod planned;
 pub mod predicted_power;
 pub mod rate_table;
+pub mod record_lengths;
 pub mod results;
 pub mod sibling_alarms;
 pub mod single_samples;
 pub mod study;
 pub mod thermal;
+pub mod two_laboratories;
 pub mod whole_runs;
 
 use study::Study;
@@ -39,6 +41,7 @@ pub static STUDIES: &[&Study] = &[
     &whole_runs::LINES,
     &false_lines::STUDY,
     &predicted_power::STUDY,
+    &record_lengths::STUDY,
     &goodness_of_fit::STUDY,
     &comparison::STUDY,
     &comparison::PUBLISHED,
@@ -78,4 +81,5 @@ pub static STUDIES: &[&Study] = &[
     &lot_bounds::STUDY,
     &sibling_alarms::STUDY,
     &interim::STUDY,
+    &two_laboratories::STUDY,
 ];

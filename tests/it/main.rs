@@ -27,6 +27,7 @@ mod guarded_decoders;
 mod identification_study;
 mod influence;
 mod interim;
+mod laboratories;
 mod layers;
 mod library;
 mod metamorphic;

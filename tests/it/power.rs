@@ -2,6 +2,7 @@
 
 use sagnac::estimate::Verdict;
 use sagnac_studies::predicted_power::{LIMITS, upper_limits};
+use sagnac_studies::record_lengths::SLOW;
 
 /// Records of each unit.
 const RECORDS: u64 = 24;
@@ -30,4 +31,17 @@ fn expected_limit_is_the_median_of_simulated_limits() {
     let (expected, median) = upper_limits(25, 0).unwrap();
     // A limit scatters by a fourth of itself, the median of 25 by a twentieth.
     assert!((median / expected - 1.0).abs() < 0.2, "expected {expected}, median {median}");
+}
+
+#[test]
+fn stated_lengths_of_records_resolve_b_and_k() {
+    // The sizes whose records are short: the study has them all.
+    for slow in [SLOW[2], SLOW[5]] {
+        let hours = slow.resolved_h().unwrap();
+        let resolved = slow.resolved(hours, RECORDS, 700);
+        let in_a_quarter = slow.resolved(0.25 * hours, RECORDS, 700);
+        // Of 24 records at 0.8, fewer than 13 come by chance in one of a thousand tests.
+        assert!(resolved >= 13, "{slow:?}: {resolved} of {RECORDS} in {hours} h");
+        assert!(in_a_quarter < resolved, "{slow:?}: {in_a_quarter} in a quarter, {resolved} in the whole");
+    }
 }

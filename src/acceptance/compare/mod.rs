@@ -1,10 +1,12 @@
-//! Russian against Allan values over any set of units: the founding paper's Table 2, with what explains each ratio.
+//! Russian against Allan values over any set of units: the founding paper's Table 2, with what explains each ratio; and two results of
+//! one unit ([`laboratories`]).
 //!
 //! A unit comes from a fresh analysis or from a `result.json`; both go through the same reading of the result, so that
 //! a figure cannot depend on where it came from. Nothing is measured here.
 
 mod faults;
 pub mod figures;
+pub mod laboratories;
 mod of_result;
 mod parts;
 pub mod published;
@@ -36,6 +38,9 @@ pub struct Comparison {
     pub units: Vec<Unit>,
     /// The published tables with their checks.
     pub published: Option<published::Checked>,
+    /// Whether two results of one unit agree, and why not; absent for any other results.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub laboratories: Option<laboratories::Laboratories>,
 }
 
 impl Comparison {
@@ -56,6 +61,7 @@ impl Comparison {
             compared_at,
             units: vec![],
             published: None,
+            laboratories: None,
         }
     }
 }

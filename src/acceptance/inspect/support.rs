@@ -6,10 +6,10 @@ use super::layout::{NO_LABEL, Page, word};
 use super::quantity::{count, names, plain, rates, time, time_both};
 use super::show_gyro::{contradicted, described, strongest};
 use crate::criticism::temperature::MIN_RANGE_DEG_C;
-use crate::i18n::{Note, note};
+use crate::i18n::{Arg, Note, note};
 use crate::measurand::{BIAS_INSTABILITY, STATIC_BIAS};
 use crate::noise::data::NoiseType;
-use crate::noise::expected::expected_upper_limit;
+use crate::noise::expected::{expected_upper_limit, resolving_duration};
 use crate::noise::motion::Motion;
 use crate::recording::Role;
 
@@ -33,6 +33,7 @@ pub(super) fn statements(page: &mut Page, found: &Inspection) {
     page.row(word("inspect.static_test"), static_test(found));
     averaging(page, found);
     flicker(page, found);
+    lengths(page, found);
     page.row(word("inspect.temperature_test"), temperature(found));
     page.row(word("inspect.scale_factor"), scale_factor(found));
     known_angle(page, found);
@@ -146,6 +147,64 @@ fn flicker(page: &mut Page, found: &Inspection) {
             (None, _, _) => note!("inspect.flicker_unknown"),
         };
         page.row(std::mem::replace(&mut label, NO_LABEL.into()), of_channel(gyro, note));
+    }
+}
+
+/// How long a record must be for B and K, by the noise of this one.
+fn lengths(page: &mut Page, found: &Inspection) {
+    let mut label = word("inspect.length_of_record");
+    let gyros = resting(found).filter(|g| described(g));
+    for gyro in gyros {
+        let told: Vec<Note> = SLOW_TERMS.iter().filter_map(|term| length(found, gyro, *term)).collect();
+        if told.is_empty() {
+            continue;
+        }
+        for note in told {
+            page.row(std::mem::replace(&mut label, NO_LABEL.into()), of_channel(gyro, note));
+        }
+        let n = plain(gyro.identification.supported.n, 3);
+        page.row(NO_LABEL, of_channel(gyro, note!("inspect.length_assumes", n)));
+    }
+}
+
+/// The terms for which the length of a record is asked.
+const SLOW_TERMS: [NoiseType; 2] = [NoiseType::Flicker, NoiseType::RateRandomWalk];
+
+/// How long a record must be for a term: for the size found, or, where it is only bounded, for its bound and a half of it.
+fn length(found: &Inspection, gyro: &Gyro, term: NoiseType) -> Option<Note> {
+    let identification = &gyro.identification;
+    let estimate = match term {
+        NoiseType::Flicker => &identification.bias_instability,
+        _ => &identification.rate_random_walk,
+    };
+    if contradicted(gyro, estimate.id).is_some() {
+        return None;
+    }
+    let background = identification.supported.with(term, 0.0);
+    let hours = |value: f64| -> Arg {
+        let hours = resolving_duration(term, value, &background, found.tau0_s);
+        let told = hours.map(|hours| note!("amount.h", value = plain(hours, 2)));
+        told.unwrap_or_else(|| note!("inspect.length_beyond")).into()
+    };
+    let size_key = match term {
+        NoiseType::Flicker => "inspect.length_of_b",
+        _ => "inspect.length_of_k",
+    };
+    let quantity = |value: f64| Note::new(size_key).with("value", plain(value, 3));
+    match (estimate.value, estimate.upper_limit) {
+        (Some(value), _) if value > 0.0 => {
+            Some(note!("inspect.length_found", size = quantity(value), hours = hours(value)))
+        }
+        (_, Some(limit)) if limit.value > 0.0 => {
+            let (limit, half) = (limit.value, 0.5 * limit.value);
+            Some(note!(
+                "inspect.length_bounded",
+                limit = quantity(limit),
+                hours = hours(limit),
+                half = hours(half)
+            ))
+        }
+        _ => None,
     }
 }
 

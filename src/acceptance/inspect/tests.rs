@@ -50,6 +50,32 @@ fn keeps_quiet(text: &str, unwanted: &[&str]) {
 }
 
 #[test]
+fn a_record_states_how_long_the_next_one_must_be_for_slow_terms() {
+    let told = |n: f64, samples: usize| {
+        told(vec![("time_s", stamps(1.0, samples)), ("rate_deg_h", noise(n, 1, 1.0, samples))], None)
+    };
+    let text = told(0.01, 37_800);
+    says(
+        &text,
+        &[
+            "record for B, K `rate_deg_h`: No value here. If B = ",
+            "of recording give it a value in 8 of 10 records; if half of that, ",
+            "No value here. If K = ",
+            "Assumed for these lengths: N = ",
+            "°/√h, the other terms as found",
+        ],
+    );
+    // A bound by ten hours takes about as long to be resolved, and half of it longer.
+    let hours = |text: &str| text.split(' ').next().unwrap().parse::<f64>().unwrap();
+    let of_b = text.split("If B = ").nth(1).unwrap();
+    let (at_bound, at_half) = (
+        hours(of_b.split("its bound, ").nth(1).unwrap()),
+        hours(of_b.split("if half of that, ").nth(1).unwrap()),
+    );
+    assert!((5.0..60.0).contains(&at_bound) && at_half > 2.0 * at_bound, "{at_bound} {at_half}");
+}
+
+#[test]
 fn a_long_rest_supports_the_static_test() {
     let n = 37_800;
     let text = told(vec![("time_s", stamps(1.0, n)), ("rate_deg_h", noise(0.01, 1, 1.0, n))], None);

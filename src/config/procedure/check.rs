@@ -4,7 +4,7 @@ use super::diagnostics::{Problem, Problems};
 use super::limits::{LimitsFile, effective};
 use super::load::{load, load_limits};
 use super::model::{Loaded, Procedure};
-use super::pairs::{self, Answer};
+use super::pairs::{self, Answer, LengthAnswer};
 use super::phases::{Phase, Phased, is_phased, load_phased};
 use super::tables::acceleration;
 use crate::config::layout;
@@ -77,8 +77,13 @@ pub struct CheckReport {
 }
 
 /// Checks files one by one, and each limits file with the procedures among them that it belongs to. `answer` says which
-/// limits cannot be decided.
-pub fn check_report(paths: &[&Path], lang: Lang, answer: Answer<'_>) -> CheckReport {
+/// limits cannot be decided, `length` how long a record must be for slow terms.
+pub fn check_report(
+    paths: &[&Path],
+    lang: Lang,
+    answer: Answer<'_>,
+    length: LengthAnswer<'_>,
+) -> CheckReport {
     let checked: Vec<(&Path, Result<Checked, Problems>)> = paths.iter().map(|p| (*p, check(p))).collect();
     let procedures: Vec<&Loaded<Procedure>> = checked
         .iter()
@@ -102,6 +107,9 @@ pub fn check_report(paths: &[&Path], lang: Lang, answer: Answer<'_>) -> CheckRep
                 }
                 let said: Vec<String> = sentences(checked, &procedures).iter().map(|s| s.say(lang)).collect();
                 report.text.push_str(&format!("{name}: {}\n", said.join("; ")));
+                for told in lengths(checked, &procedures, length) {
+                    report.text.push_str(&format!("  {}\n", told.say(lang)));
+                }
             }
             Err(problems) => {
                 report.failed += 1;
@@ -126,6 +134,15 @@ fn warnings(checked: &Checked, procedures: &[&Loaded<Procedure>], answer: Answer
         }
         Checked::Manifest(_) | Checked::Layout(_) => vec![],
         Checked::Phased(p) => p.phases.iter().flat_map(of_phase).collect(),
+    }
+}
+
+/// How long a record must be for the slow terms that a sound file limits or gives typical values for.
+fn lengths(checked: &Checked, procedures: &[&Loaded<Procedure>], length: LengthAnswer<'_>) -> Vec<Note> {
+    match checked {
+        Checked::Procedure(p) => pairs::lengths_of_procedure(p, length),
+        Checked::Limits(l) => pairs::lengths_of_limits(l, procedures, length),
+        Checked::Manifest(_) | Checked::Layout(_) | Checked::Phased(_) => vec![],
     }
 }
 

@@ -5,6 +5,7 @@ pub(crate) mod channel;
 pub mod check;
 pub mod derived;
 pub mod derived_rows;
+pub mod differences;
 pub mod guide;
 mod instrument;
 pub mod interim_plan;

@@ -3,11 +3,33 @@
 use super::diagnostics::Problem;
 use super::limits::{EffectiveLimits, LimitsFile, effective};
 use super::model::{Loaded, Procedure};
-use super::power::{PowerQuestion, questions, warnings};
+use super::power::{LengthQuestion, PowerQuestion, lengths, questions, warnings};
 use crate::i18n::Note;
 
 /// Says of a limit that it cannot be decided, and what to do; `None` where it can.
 pub type Answer<'a> = &'a dyn Fn(&PowerQuestion) -> Option<(Note, Option<Note>)>;
+
+/// Says how long a record must be for a slow term; `None` where nothing tells.
+pub type LengthAnswer<'a> = &'a dyn Fn(&LengthQuestion) -> Option<Note>;
+
+/// How long a record must be for what a file limits or gives typical values for, with the first procedure that it belongs to.
+pub fn lengths_of_limits(
+    file: &Loaded<LimitsFile>,
+    procedures: &[&Loaded<Procedure>],
+    answer: LengthAnswer<'_>,
+) -> Vec<Note> {
+    let asked = match belonging(&file.value, procedures).first() {
+        Some(procedure) => lengths(&effective(procedure, Some(file)).set, Some(&procedure.value)),
+        None => lengths(&file.value.set, None),
+    };
+    asked.iter().filter_map(answer).collect()
+}
+
+/// The same of the limits and typical values that stand in a procedure itself.
+pub fn lengths_of_procedure(procedure: &Loaded<Procedure>, answer: LengthAnswer<'_>) -> Vec<Note> {
+    let p = &procedure.value;
+    lengths(&p.limits, Some(p)).iter().filter_map(answer).collect()
+}
 
 /// The procedures that measure something of what a file limits, or, where it has no limits, of what it gives values for.
 pub fn belonging<'a>(file: &LimitsFile, procedures: &[&'a Loaded<Procedure>]) -> Vec<&'a Loaded<Procedure>> {

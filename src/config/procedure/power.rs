@@ -5,10 +5,12 @@
 //! know no procedure; this file only puts the question and places the answer in the text.
 
 use super::diagnostics::{Problem, SourceText};
-use super::limits::{EffectiveLimits, LimitSpec, LimitsFile};
+use super::limits::{EffectiveLimits, LimitSet, LimitSpec, LimitsFile};
 use super::model::{Loaded, Procedure};
+use crate::estimate::Limit;
 use crate::i18n::Note;
-use crate::measurand;
+use crate::measurand::{self, Measurand, PowerModel};
+use crate::noise::data::NoiseType;
 use std::ops::Range;
 
 /// Typical noise of a family, in inside units. `None`: not stated.
@@ -71,6 +73,63 @@ pub fn questions(procedure: &Procedure, effective: &EffectiveLimits) -> Vec<Powe
         if !channels.is_empty() {
             let sample_rate_hz = procedure.sample_rate_hz;
             list.push(PowerQuestion { limit: limit.clone(), channels, duration_s, sample_rate_hz, typical });
+        }
+    }
+    list
+}
+
+/// The size of a slow term for which the length of a record is asked.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Size {
+    /// A limit that is to be decided.
+    Limit(Limit),
+    /// The typical size, which is to be resolved.
+    Typical(f64),
+}
+
+/// How long a record must be for a slow term, B or K.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LengthQuestion {
+    /// The term.
+    pub measurand: &'static Measurand,
+    /// What is to be decided or resolved.
+    pub size: Size,
+    /// Typical noise of the family.
+    pub typical: TypicalNoise,
+    /// Usable time of a record as planned, else the least of a valid one, s.
+    pub planned_s: Option<f64>,
+    /// Declared sample rate, Hz; `None` where it is left open.
+    pub sample_rate_hz: Option<f64>,
+}
+
+impl LengthQuestion {
+    /// Interval of the samples, s: where it is left open, one second.
+    pub fn sample_interval_s(&self) -> f64 {
+        self.sample_rate_hz.map_or(1.0, |hz| 1.0 / hz)
+    }
+}
+
+/// The lengths that limits and typical values ask for, each once; `procedure` is the test that they are for.
+pub fn lengths(set: &LimitSet, procedure: Option<&Procedure>) -> Vec<LengthQuestion> {
+    let slow = |m: &Measurand| {
+        let terms = [NoiseType::Flicker, NoiseType::RateRandomWalk];
+        terms.iter().any(|term| m.power == Some(PowerModel::NoiseTerm(*term)))
+            && procedure.is_none_or(|p| p.measures(m.id, None))
+    };
+    let limits = EffectiveLimits { set: set.clone(), ..EffectiveLimits::default() };
+    let typical = typical_noise(&limits);
+    let conditions = procedure.map(|p| &p.conditions);
+    let planned_s = conditions.and_then(|c| c.planned_duration_s.or(c.minimum_duration_s));
+    let sample_rate_hz = procedure.and_then(|p| p.sample_rate_hz);
+    let question = |measurand, size| LengthQuestion { measurand, size, typical, planned_s, sample_rate_hz };
+    let limited = set.limits.iter().filter(|l| slow(l.measurand));
+    let limited = limited.map(|l| question(l.measurand, Size::Limit(l.limit.clone())));
+    let stated = set.expected.iter().filter(|e| slow(e.measurand) && e.value > 0.0);
+    let stated = stated.map(|e| question(e.measurand, Size::Typical(e.value)));
+    let mut list: Vec<LengthQuestion> = vec![];
+    for question in limited.chain(stated) {
+        if !list.contains(&question) {
+            list.push(question);
         }
     }
     list

@@ -313,7 +313,7 @@ impl Printed {
         }
     }
 
-    fn value(self) -> Value {
+    pub fn value(self) -> Value {
         let quantity = Quantity { number: self.number, printed: self.printed, unit: String::new() };
         Value::from(quantity).strong().detail(Joined::Interval, self.interval)
     }

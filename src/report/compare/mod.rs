@@ -1,6 +1,7 @@
 //! The document of a comparison: Russian beside Allan figures of units, with what explains each ratio, or the published tables.
 
 mod columns;
+mod laboratories;
 mod published;
 mod unit;
 
@@ -41,10 +42,13 @@ impl Documented for Comparison {
     /// The figures of each unit in a row, what is said of each, and the limits.
     fn on_terminal(&self, lang: Lang) -> Vec<Block> {
         let words = Translator { lang };
-        match &self.published {
+        let of_laboratories = self.laboratories.as_ref().map(|l| laboratories::on_terminal(l, words));
+        let rest = match &self.published {
             Some(checked) => published::on_terminal(checked, words),
+            None if self.units.is_empty() => vec![],
             None => unit::on_terminal(&self.units, words),
-        }
+        };
+        of_laboratories.into_iter().flatten().chain(rest).collect()
     }
 }
 
@@ -57,10 +61,18 @@ pub fn csv(comparison: &Comparison) -> String {
     })
 }
 
+/// `agreement.csv`: one row for each quantity that two results of one unit have; `None` for other comparisons.
+pub fn agreement_csv(comparison: &Comparison) -> Option<String> {
+    let words = Translator { lang: Lang::En };
+    Some(page::csv(&laboratories::table(comparison.laboratories.as_ref()?, words)))
+}
+
 fn pages(comparison: &Comparison, figures: &[Figure], words: Translator) -> Page {
     let generator = format!("{} {}", comparison.program.name, comparison.program.version);
     let title = words.t("compare.title");
     let head = Head { kind: words.t("compare.kind"), title: title.clone(), ..Head::default() };
+    let of_laboratories = comparison.laboratories.as_ref();
+    let of_laboratories = of_laboratories.map_or_else(Vec::new, |l| laboratories::blocks(l, words));
     let units = Some(&comparison.units).filter(|units| !units.is_empty());
     let units = units.map_or_else(Vec::new, |units| unit::blocks(units, figures, words));
     let published = comparison.published.as_ref();
@@ -68,7 +80,11 @@ fn pages(comparison: &Comparison, figures: &[Figure], words: Translator) -> Page
     Page {
         title,
         footer: format!("{} · {generator}", date_time(&comparison.compared_at)),
-        blocks: std::iter::once(Block::Head(head)).chain(units).chain(published).collect(),
+        blocks: std::iter::once(Block::Head(head))
+            .chain(of_laboratories)
+            .chain(units)
+            .chain(published)
+            .collect(),
         generator,
     }
 }

@@ -53,6 +53,38 @@ fn a_limits_file_that_decides_nothing_is_indeterminate_and_says_why() {
 }
 
 #[test]
+fn check_says_how_long_a_record_must_be_for_b_and_k() {
+    let dir = tempdir().unwrap();
+    let limits = |name: &str, expected: &str| {
+        let rest = "[[limit]]\nmeasurand = \"bias_instability\"\nmax = \"0.005 deg/h\"\n\
+                    [[limit]]\nmeasurand = \"angle_random_walk\"\nmax = \"0.003 deg/sqrt(h)\"\n";
+        written(dir.path(), name, &format!("{expected}{rest}"))
+    };
+    let known = limits(
+        "known.toml",
+        "[expected]\nangle_random_walk = \"0.002 deg/sqrt(h)\"\nbias_instability = \"0.003 deg/h\"\n",
+    );
+    let checked = sagnac(dir.path(), &["check", &known]);
+    let hours = |beginning: &str, text: &str| -> f64 {
+        let line =
+            text.lines().find(|l| l.trim_start().starts_with(beginning)).unwrap_or_else(|| panic!("{text}"));
+        line.split(" by ").nth(1).unwrap().split(' ').next().unwrap().parse().unwrap()
+    };
+    let decided = hours("bias_instability <= 0.005 deg/h is decided", &checked.out);
+    let resolved = hours("bias_instability = 0.003 deg/h, its typical value, is given a value", &checked.out);
+    assert!((3.0..30.0).contains(&decided) && resolved > decided, "{decided} {resolved}");
+    assert!(checked.out.contains("assumed: N = 0.002 °/√h, one sample per second"), "{}", checked.out);
+    // Angle random walk is no slow term; a procedure states what is planned.
+    assert!(!checked.out.contains("angle_random_walk <="), "{}", checked.out);
+    let with = sagnac(dir.path(), &["check", &procedure(), &known]);
+    assert!(with.out.contains("; planned: 100 h"), "{}", with.out);
+    let unknown = limits("unknown.toml", "");
+    let checked = sagnac(dir.path(), &["check", &unknown, "--lang", "ru"]);
+    assert!(checked.out.contains("для bias_instability <= 0.005 deg/h, неизвестно"), "{}", checked.out);
+    assert_eq!(checked.code, 0);
+}
+
+#[test]
 fn without_limits_nothing_is_asked_and_the_verdict_is_none() {
     let dir = tempdir().unwrap();
     std::fs::write(

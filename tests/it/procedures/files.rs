@@ -79,7 +79,7 @@ fn every_shipped_file_is_sound() {
         }
     }
     let paths: Vec<&Path> = files.iter().map(PathBuf::as_path).collect();
-    let report = check_report(&paths, Lang::En, &|_| None);
+    let report = check_report(&paths, Lang::En, &|_| None, &|_| None);
     assert_eq!(report.failed, 0, "{}", report.text);
     assert_eq!(report.text.matches("; valid").count(), files.len());
 }

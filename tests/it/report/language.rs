@@ -294,6 +294,9 @@ fn english_of_key(key: &str) -> Option<&str> {
 
 /// Entries that are the same in both languages: symbols, names and sentences that are arguments only.
 const SAME: &[&str] = &[
+    "laboratories.en",
+    "laboratories.expanded",
+    "laboratories.reason",
     "follow.row",
     "follow.row_state",
     "follow.value",

@@ -134,6 +134,8 @@ const OPEN: &[&str] = &[
     "history.control",
     "history.kind",
     "history.rule",
+    "laboratories.agreement",
+    "laboratories.kind",
     "transfer_order",
 ];
 
@@ -163,6 +165,8 @@ const NO_KEYS: &[&str] = &[
     "history.control",
     "history.kind",
     "history.rule",
+    "laboratories.agreement",
+    "laboratories.kind",
     "unit.attribute",
     "unit.rec",
 ];
