@@ -28,7 +28,8 @@ const VERB: &str = "analyze";
 
 fn main() -> ExitCode {
     if std::env::args().nth(1).is_some_and(|verb| verb == VERB) {
-        return sagnac::cli::main();
+        let arguments: Vec<_> = std::env::args_os().collect();
+        return sagnac::cli::run(&arguments).into();
     }
     let folder = tempfile::tempdir().expect("a folder");
     let path = folder.path().join("recording.csv");

@@ -5,7 +5,7 @@ use serde::Deserialize;
 use std::f64::consts::{PI, SQRT_2};
 
 /// Columns that hold the output of a gyroscope.
-const OUTPUTS: [&str; 3] = ["rate_deg_h", "x_deg_h", "y_deg_h"];
+const OUTPUTS: [&str; 4] = ["rate_deg_h", "rate_deg_s", "x_deg_h", "y_deg_h"];
 /// Median of the absolute value of a standard normal deviate.
 const MEDIAN_DEVIATE: f64 = 0.674_489_75;
 /// A distance of rows longer than so many of the first is a pause.
