@@ -248,7 +248,7 @@ impl Twin {
             "format = \"bench/1\"\npart = \"{part}\"\n\
              [[device]]\nid = \"gyro\"\nunit_under_test = true\nlink = \"tcp\"\naddress = \"{}\"\nheartbeat = \"5 s\"\n\
              [[device]]\nid = \"table\"\nlink = \"tcp\"\naddress = \"{}\"\nlanguage = \"text\"\n\
-             columns = [\"table_angle_deg\", \"table_rate_deg_s\"]\npoll = \":READ:POS? 1;RATE? 1\"\nperiod = \"500 ms\"\n\
+             columns = [\"table_angle_deg\", \"table_rate_deg_s\"]\npoll = \":READ:POS? 1;RATE? 1\"\nperiod = \"1 s\"\n\
              answer = \"OK\"\nsafe = [\":DEM:RATE 1,0\", \":MODE:OFF 1\"]\n\
              [[device.move]]\nquantity = \"table_rate_deg_s\"\nsend = \":DEM:RATE 1,{{value}}\"\nlowest = -120\nhighest = 120\n\
              tolerance = 0.01\nwithin = \"20 s\"\n\

@@ -17,6 +17,7 @@ const LATIN: &[&str] = &[
     // Verbs, options and their words.
     "Ctrl",
     "follow",
+    "inspect",
     "length",
     "port",
     "behind",

@@ -212,6 +212,7 @@ fn used() -> (BTreeSet<String>, BTreeSet<String>) {
     for folder in [
         "src",
         "crates/sagnac-base/src",
+        "crates/sagnac-bench/src",
         "crates/sagnac-core/src",
         "crates/sagnac-explain/src",
         "crates/sagnac-ingest/src",

@@ -29,6 +29,7 @@ const ENGLISH: &[(&str, &str)] = &[
     ("src/cli/mod.rs", "the help in English, which other languages translate"),
     ("src/lib.rs", "documentation"),
     ("src/config/recording_keys.rs", "meanings of words of keys: documentation, as of procedures"),
+    ("src/config/bench/tables.rs", "meanings of words of keys of benches: documentation, as of procedures"),
     ("src/config/layout/tables.rs", "meanings of words of keys of layouts: documentation, as of procedures"),
     ("src/config/proof/tables.rs", "meanings of words of keys of proofs: documentation, as of procedures"),
     (
