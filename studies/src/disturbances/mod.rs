@@ -230,12 +230,11 @@ mod tests {
             for family in FAMILIES.iter() {
                 // The units of a family have the same columns.
                 let Some(unit) = family.cases.iter().find(|unit| kind.tries(unit)) else { continue };
+                let Some(by) = kind.disturbance.first() else { continue };
                 let Simulated { csv, truths, .. } = (unit.draw)(1);
-                for by in kind.disturbance.first() {
-                    let disturbed = text(csv.clone(), *by, stimulus(&truths), 1);
-                    assert!(disturbed.is_some(), "{}: {}", named(kind, *by), unit.name);
-                    tried += 1;
-                }
+                let disturbed = text(csv, *by, stimulus(&truths), 1);
+                assert!(disturbed.is_some(), "{}: {}", named(kind, *by), unit.name);
+                tried += 1;
             }
         }
         assert!(tried > 20, "{tried}");
