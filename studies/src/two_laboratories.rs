@@ -15,7 +15,7 @@ pub static STUDY: Study = Study {
     id: "two-laboratories",
     title: "Two laboratories, one unit",
     method: "Whole tests: a unit at rest is recorded twice for 10.6 h, with angle random walk of 0.002 deg/√h, flicker and a random walk \
-             drawn anew, and both recordings are evaluated by `static-bias` and compared. Where nothing differs, |E_n| above 1 is asked \
+             drawn anew, and both recordings are evaluated by `static-bias` and compared. Where nothing differs, E_n beyond ±1 is asked \
              in at most 5 % of the pairs, for every row that has an interval; a changed bias or angle random walk shows how \
              large a change is found. Drawn results: values are the sum of an error of a table and of readings, each normal; the two results \
              share the table, or do not. The generators share no formula with the comparison.",
@@ -173,7 +173,7 @@ fn cases() -> Vec<Case> {
         cases.push(Case::new(format!("whole tests, {unit} noise, nothing differs"), move |records, seed| {
             let found = tests(unit, 0.0, 1.0, records, 900_000 * seed);
             let row = |(id, (hits, of)): (String, (u64, u64))| {
-                Row::share(id, "|E_n| above 1 where nothing differs", Asked::AtMost(CHANCE), hits, of)
+                Row::share(id, "E_n beyond ±1 where nothing differs", Asked::AtMost(CHANCE), hits, of)
             };
             found.into_iter().map(row).collect()
         }));
@@ -203,7 +203,7 @@ fn cases() -> Vec<Case> {
             // Of normal errors, a change by r expanded uncertainties is found with probability 1 − Φ(1.96 (1 − r)).
             let found = |low, high| if one_table { Asked::Between(low, high) } else { Asked::Nothing };
             vec![
-                share("|E_n| above 1 where nothing differs", Asked::Between(0.04, 0.06), 0.0),
+                share("E_n beyond ±1 where nothing differs", Asked::Between(0.04, 0.06), 0.0),
                 share(
                     "a change by the expanded uncertainty without the table is found",
                     found(0.48, 0.53),
