@@ -48,6 +48,7 @@ pub const PAGES: &[Page] = pages![
     "guide/python-spark.md",
     "guide/python.md",
     "guide/rate-table.md",
+    "guide/record.md",
     "guide/recordings.md",
     "guide/rehearse.md",
     "guide/report.md",

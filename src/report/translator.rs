@@ -134,10 +134,14 @@ impl Translator {
             return self.with("report.in_band", &[("channel", base), ("from", &from), ("to", &to)]);
         }
         let (axis, level) = place.rsplit_once(':').unwrap_or(("", place));
-        let level = level.parse().map_or_else(|_| level.to_owned(), |l| number::limit(l, self.lang));
+        let stated: Option<f64> = level.parse().ok();
+        let level = stated.map_or_else(|| level.to_owned(), |l| number::limit(l, self.lang));
         if measurand::find(measurand).is_some_and(|m| m.test() == Test::Temperature) {
             let level = self.quantity(&level, "degC");
             return self.with("report.at_temperature", &[("channel", base), ("temperature", &level)]);
+        }
+        if axis.is_empty() && stated.is_none() {
+            return self.with("report.of_channel", &[("channel", base), ("other", place)]);
         }
         let level = if axis.is_empty() { level } else { format!("{axis} {level}") };
         self.with("report.at_level", &[("channel", base), ("level", &level)])

@@ -160,7 +160,6 @@ pub(super) fn agreement(
     ) {
         ((Some(_), Some(interval), _), (None, _, Some(bound)))
         | ((None, _, Some(bound)), (Some(_), Some(interval), _)) => within(interval.low, bound.value),
-        ((None, _, Some(_)), (None, _, Some(_))) => Agreement::Agrees,
         _ => Agreement::Undecided,
     }
 }
