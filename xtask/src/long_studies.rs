@@ -21,6 +21,16 @@ const STUDIES: &[LongStudy] = &[
     },
     LongStudy { name: "kills", title: "A run that is killed 200 times (minutes)", filter: "atomic::" },
     LongStudy {
+        name: "watch-soak",
+        title: "A watched folder with 10 000 recordings, or SAGNAC_SOAK_FILES, over kills of the watcher (an hour)",
+        filter: "a_day_of_recordings",
+    },
+    LongStudy {
+        name: "serve-latency",
+        title: "How long pages of the bench take beside two running tests (minutes)",
+        filter: "pages_answer_beside",
+    },
+    LongStudy {
         name: "store-kills",
         title: "Writers of a store that are killed 300 times (minutes)",
         filter: "300_times",

@@ -5,6 +5,7 @@ mod browser;
 mod flow;
 mod guard;
 mod hostile;
+mod latency;
 mod restart;
 mod starts;
 

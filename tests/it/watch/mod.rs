@@ -3,6 +3,7 @@
 mod complete;
 mod once;
 mod rules;
+mod soak;
 mod told;
 
 use crate::support::quick::Quick;
@@ -68,7 +69,7 @@ impl Bench {
     /// A recording that differs in its first value from that of other numbers.
     pub fn numbered(&self, name: &str, number: usize) {
         let text = fs::read_to_string(&self.quick.recording).unwrap();
-        self.write(name, &text.replacen("\n0,12.", &format!("\n0,12.{number:03}"), 1));
+        self.write(name, &text.replacen("\n0,12.", &format!("\n0,12.{number:06}"), 1));
     }
 
     pub const ONCE: [&str; 7] = ["watch", "in", "--rules", "watch.toml", "--out", "out", "--once"];

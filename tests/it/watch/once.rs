@@ -11,7 +11,7 @@ use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Starts a watcher that goes on, or looks once.
-fn start(bench: &Bench, args: &[&str]) -> Child {
+pub(super) fn start(bench: &Bench, args: &[&str]) -> Child {
     Command::new(program())
         .current_dir(bench.folder())
         .args(args)
