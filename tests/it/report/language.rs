@@ -297,7 +297,7 @@ fn english_of_key(key: &str) -> Option<&str> {
 const SAME: &[&str] = &[
     "laboratories.en",
     "laboratories.expanded",
-    "laboratories.reason",
+    "report.of_channel",
     "follow.row",
     "follow.row_state",
     "follow.value",
