@@ -56,6 +56,7 @@
 pub mod acceptance;
 pub mod cli;
 pub mod config;
+mod confined;
 pub mod executable;
 pub mod i18n;
 pub mod ingest;

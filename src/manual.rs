@@ -43,6 +43,7 @@ pub const PAGES: &[Page] = pages![
     "guide/phases.md",
     "guide/plan.md",
     "guide/procedure.md",
+    "guide/programs.md",
     "guide/prove.md",
     "guide/python-ray.md",
     "guide/python-spark.md",

@@ -32,7 +32,7 @@ pub use csv::csv_line;
 pub use error::OutputError;
 pub use file::StagedFile;
 pub use kind::{CERTIFICATE_STEM, Kind, LIMITS_FILE, MAX_RECORD_BYTES, PROCEDURE_FILE, SIGNATURES_FOLDER};
-pub use parquet::{Column, write_table};
+pub use parquet::{Column, Doubles, write_table};
 pub use part::StagedPart;
 pub use partial::{abandon_all, is_partial, remove_abandoned};
 pub use stores::{STORE_MARKER, outside_stores};

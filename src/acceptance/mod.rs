@@ -8,6 +8,7 @@
 //! | `clock_component` | what the clocks of files beside the recording add to uncertainties |
 //! | `interim` | a growing recording by a plan of looks |
 //! | `derived` | rows by a formula over others |
+//! | `programs`, `handed` | rows that programs of the user give, and the channels that are handed to them |
 //! | `condition` | whether the test was done as required; one condition a file |
 //! | `figures` | plots as data |
 //! | `lot` | a lot from the records of its units |
@@ -29,6 +30,7 @@ mod derived;
 pub mod explained;
 mod external;
 pub mod figures;
+mod handed;
 pub mod history;
 pub mod inspect;
 mod interim;
@@ -39,6 +41,7 @@ mod missing_rows;
 pub mod phases;
 mod pipeline;
 pub mod power;
+mod programs;
 mod reading;
 mod request;
 pub mod siblings;

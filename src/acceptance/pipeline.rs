@@ -9,6 +9,7 @@ use super::derived;
 use super::external;
 use super::interim::{self, Interim};
 use super::missing_rows;
+use super::programs::{self, Given};
 use super::reading::{self, tidy};
 use super::request::{Outcome, Request};
 use super::sinks::{Overview, StabilitySink};
@@ -52,7 +53,8 @@ impl<K: TestKind> Test for K {
             Ok(estimates(&reading, &evidence))
         })?;
         let looks = Interim::of(&reading, &evidence, &found);
-        let rows = rows(&reading, &evidence, &found, looks.as_ref(), K::MISSING_REASON);
+        let given = programs::given(&reading, &mut *progress)?;
+        let rows = rows(&reading, &evidence, &found, (looks.as_ref(), &given), K::MISSING_REASON);
         let figures = evidence.figures(&reading);
         let mut record = build_record(&reading, K::OWN_CHECKS, conditions, rows, &figures, options);
         if let Some(looks) = &looks {
@@ -157,12 +159,12 @@ fn estimates(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<Estimate> {
     estimates
 }
 
-/// Sets each estimate against its limit. `missing` is the key of the reason for a measurand without an estimate.
+/// Sets each estimate, and what programs of the user gave, against its limit. `missing` is the key of the reason for a measurand without an estimate.
 fn rows(
     reading: &Reading<'_>,
     evidence: &dyn Evidence,
     estimates: &[Estimate],
-    looks: Option<&Interim<'_>>,
+    (looks, given): (Option<&Interim<'_>>, &[Given<'_>]),
     missing: &'static str,
 ) -> Vec<MeasurandRecord> {
     let limits = looks.map(|looks| looks.limits(reading.request.limits));
@@ -181,6 +183,7 @@ fn rows(
     let correlation = |one: &_, other: &_| evidence.correlation(one, other);
     rows.extend(derived::rows(procedure, request.limits, &gyros, estimates, &correlation));
     rows.extend(external::rows(procedure, request.limits, &request.unit));
+    rows.extend(programs::rows(given, request.limits));
     if let Some(looks) = looks {
         looks.settle(&mut rows, &externals(request));
     }

@@ -66,7 +66,9 @@ impl Side {
         let folder = file.parent().map(Path::to_owned).unwrap_or_default();
         let named = folder.file_name().or_else(|| file.file_stem());
         let name = named.map(|n| n.to_string_lossy().into_owned()).unwrap_or_default();
-        let test = load(&folder.join(PROCEDURE_FILE)).ok().map(|procedure| {
+        let test = load(&folder.join(PROCEDURE_FILE)).ok().map(|mut procedure| {
+            // Programs that came with the result of another laboratory are not run.
+            procedure.value.programs.clear();
             let limits = folder.join(LIMITS_FILE);
             (procedure, limits.is_file().then(|| load_limits(&limits).ok()).flatten())
         });

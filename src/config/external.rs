@@ -51,6 +51,11 @@ pub struct ExternalSpec {
     pub stated: Option<ExternalResult>,
 }
 
+/// True for what is written as a SHA-256.
+pub(crate) fn is_sha256(text: &str) -> bool {
+    text.len() == SHA256_DIGITS && text.bytes().all(|c| c.is_ascii_hexdigit())
+}
+
 /// Reads what a procedure asks for.
 pub(crate) fn asked(tables: Vec<ExternalKeys>, reader: &mut Reader<'_>) -> Vec<ExternalSpec> {
     let mut found: Vec<ExternalSpec> = vec![];
@@ -100,7 +105,7 @@ fn result(keys: &ExternalKeys, reader: &mut Reader<'_>) -> Option<ExternalResult
         }
     };
     if let Some(sum) = &keys.sha256
-        && (sum.len() != SHA256_DIGITS || !sum.bytes().all(|c| c.is_ascii_hexdigit()))
+        && !is_sha256(sum)
     {
         reader.error(&keys.section.span_of("sha256"), note!("external.sha256", given = shorten(sum)), None);
         return None;

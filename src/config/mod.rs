@@ -15,6 +15,7 @@ mod line_repair;
 pub mod manifest;
 pub mod model;
 pub mod procedure;
+pub mod program;
 pub mod proof;
 pub mod quantity;
 pub(crate) mod read_tables;

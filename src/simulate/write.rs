@@ -3,17 +3,11 @@
 use super::{Rows, SimulateError, Simulation};
 use crate::effect::Column;
 use crate::i18n::{Note, note};
-use crate::output::{OutputError, StagedFile};
-use parquet::basic::{Compression, ZstdLevel};
-use parquet::data_type::DoubleType;
-use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
-use parquet::file::writer::SerializedFileWriter;
+use crate::output::{Doubles, OutputError, StagedFile};
 use std::fmt::Write as _;
 use std::fs::File;
 use std::io::{BufWriter, Write};
 use std::path::Path;
-use std::sync::Arc;
 
 /// Format of a recording that is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -112,17 +106,7 @@ pub fn write(
 /// A file being written.
 enum Sink {
     Csv(BufWriter<File>),
-    Parquet(Box<SerializedFileWriter<File>>),
-}
-
-fn as_io(e: ParquetError) -> std::io::Error {
-    match e {
-        ParquetError::External(inner) => match inner.downcast::<std::io::Error>() {
-            Ok(own) => *own,
-            Err(other) => std::io::Error::other(other),
-        },
-        other => std::io::Error::other(other),
-    }
+    Parquet(Box<Doubles<File>>),
 }
 
 impl Sink {
@@ -132,20 +116,7 @@ impl Sink {
                 writeln!(file, "{}", columns.join(","))?;
                 Ok(Sink::Csv(BufWriter::with_capacity(1 << 20, file)))
             }
-            Format::Parquet => {
-                let fields: String = columns.iter().map(|c| format!("required double {c}; ")).collect();
-                let schema =
-                    parquet::schema::parser::parse_message_type(&format!("message recording {{ {fields}}}"));
-                let schema = schema.map_err(as_io)?;
-                let level = ZstdLevel::try_new(3).map_err(as_io)?;
-                // Noise hardly repeats a value: a dictionary is a third of the work, and given up in the end.
-                let properties = WriterProperties::builder()
-                    .set_compression(Compression::ZSTD(level))
-                    .set_dictionary_enabled(false)
-                    .build();
-                let writer = SerializedFileWriter::new(file, Arc::new(schema), Arc::new(properties));
-                writer.map(|w| Sink::Parquet(Box::new(w))).map_err(as_io)
-            }
+            Format::Parquet => Doubles::begin(file, columns).map(|w| Sink::Parquet(Box::new(w))),
         }
     }
 
@@ -170,29 +141,14 @@ impl Sink {
                 }
                 Ok(())
             }
-            Sink::Parquet(writer) => {
-                // Groups of bounded size, so that a reader need not hold more.
-                let rows = rows.time_s.len();
-                for from in (0..rows).step_by(1 << 20) {
-                    let to = (from + (1 << 20)).min(rows);
-                    let mut group = writer.next_row_group().map_err(as_io)?;
-                    for column in &columns {
-                        let Some(mut own) = group.next_column().map_err(as_io)? else { break };
-                        let part = column.get(from..to).unwrap_or_default();
-                        own.typed::<DoubleType>().write_batch(part, None, None).map_err(as_io)?;
-                        own.close().map_err(as_io)?;
-                    }
-                    group.close().map_err(as_io)?;
-                }
-                Ok(())
-            }
+            Sink::Parquet(writer) => writer.rows(&columns),
         }
     }
 
     fn end(self) -> std::io::Result<()> {
         match self {
             Sink::Csv(mut out) => out.flush(),
-            Sink::Parquet(writer) => writer.close().map(|_| ()).map_err(as_io),
+            Sink::Parquet(writer) => writer.end(),
         }
     }
 }

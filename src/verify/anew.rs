@@ -91,6 +91,9 @@ fn is_of(unit: &LotUnit, path: &Path, hash: Option<&str>) -> bool {
 }
 
 fn of_result(folder: &Folder, run: &RunRecord, how: Anew<'_>) -> Vec<Finding> {
+    if how.procedure.is_none() && runs_programs(folder) {
+        return vec![Finding::Undone("verify.own_program".into())];
+    }
     let stated: Value = read_below(&folder.path, folder.kind.record_file(), MAX_BYTES as u64)
         .ok()
         .and_then(|bytes| serde_json::from_slice(&bytes).ok())
@@ -110,6 +113,17 @@ fn of_result(folder: &Folder, run: &RunRecord, how: Anew<'_>) -> Vec<Finding> {
         return vec![Finding::Undone(note!("verify.cannot_compute", reason = said))];
     };
     compare(&stated, &made, || files(folder, &out))
+}
+
+/// True where a procedure of the folder runs a program: nobody who only checks a folder runs what came with it.
+fn runs_programs(folder: &Folder) -> bool {
+    let has_programs = |name: &str| {
+        let bytes = read_below(&folder.path, name, MAX_BYTES as u64).unwrap_or_default();
+        let table: Option<toml::Table> = toml::from_str(&String::from_utf8_lossy(&bytes)).ok();
+        table.is_some_and(|table| table.contains_key("program"))
+    };
+    let found = found_below(&folder.path).unwrap_or_default();
+    found.iter().any(|(name, _)| name.ends_with(".toml") && has_programs(name))
 }
 
 /// The arguments that the result was made with, as far as its folder tells them.

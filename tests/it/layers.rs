@@ -43,7 +43,7 @@ const PACKAGES: &[(&str, &[&[&str]])] = &[
     (
         "src",
         &[
-            &["executable", "i18n", "manual", "moment"],
+            &["confined", "executable", "i18n", "manual", "moment"],
             &["output"],
             &["record", "signing"],
             &["config"],

@@ -88,7 +88,9 @@ pub(super) fn validate(procedure: &Procedure, reader: &mut Reader<'_>) {
             let help = Some("derived.help.own_id".into());
             reader.error(&at, note!("derived.of_standard", id = spec.id.as_str()), help);
         }
-        if earlier.iter().any(|other| other.id == spec.id) || procedure.external(&spec.id).is_some() {
+        if earlier.iter().any(|other| other.id == spec.id)
+            || procedure.unit_from_elsewhere(&spec.id).is_some()
+        {
             reader.error(&at, note!("derived.twice", id = spec.id.as_str()), None);
         }
         unit_fits(procedure, spec, earlier, reader);
@@ -103,7 +105,7 @@ pub(super) fn validate(procedure: &Procedure, reader: &mut Reader<'_>) {
 /// Why a limit is for no quantity of a procedure, and where that stands; `None` where it is for one.
 pub(super) fn unusable(procedure: &Procedure, limit: &DerivedLimit) -> Option<(Span, Note)> {
     let derived = procedure.derived.iter().find(|d| d.id == limit.derived).map(|d| &d.unit);
-    let Some(unit) = derived.or_else(|| procedure.external(&limit.derived).map(|e| &e.unit)) else {
+    let Some(unit) = derived.or_else(|| procedure.unit_from_elsewhere(&limit.derived)) else {
         let message =
             note!("derived.no_such", id = shorten(&limit.derived), procedure = procedure.id.as_str());
         return Some((limit.span.clone(), message));

@@ -13,6 +13,7 @@ pub use super::tables::conditions::{
 };
 use super::unit_facts::UnitFact;
 use crate::config::external::ExternalSpec;
+use crate::config::program::ProgramSpec;
 use crate::config::table::{Table, words};
 use crate::i18n::LocalText;
 use crate::influence::{ComparisonTest, RepeatabilityTest};
@@ -26,6 +27,7 @@ use crate::recording::Channel;
 use crate::signing::Role;
 use crate::start_up::StartUpTest;
 use crate::temperature::{TemperatureTest, WarmUpTest};
+use crate::units::Unit;
 use chrono::NaiveDate;
 use sagnac_ingest::ReadOptions;
 use std::path::PathBuf;
@@ -109,6 +111,8 @@ pub struct Procedure {
     pub derived: Vec<DerivedSpec>,
     /// Results of other tests that the report states, in the order of the file.
     pub externals: Vec<ExternalSpec>,
+    /// Programs of the user that give rows of their own, in the order of the file.
+    pub programs: Vec<ProgramSpec>,
     /// Limits, references and typical values that stand in the procedure itself.
     pub limits: LimitSet,
     /// Clauses of the standard.
@@ -436,9 +440,11 @@ impl Procedure {
             && self.comparison_test.is_none()
     }
 
-    /// The result of another test of an id.
-    pub fn external(&self, id: &str) -> Option<&ExternalSpec> {
-        self.externals.iter().find(|e| e.id == id)
+    /// The unit of a quantity that another test or a program of the user gives; `None` where none does.
+    pub fn unit_from_elsewhere(&self, id: &str) -> Option<&Unit> {
+        let external = self.externals.iter().find(|e| e.id == id).map(|e| &e.unit);
+        let returns = || self.programs.iter().flat_map(|p| &p.returns);
+        external.or_else(|| returns().find(|(own, _)| own == id).map(|(_, unit)| unit))
     }
 
     /// The channel of an id.

@@ -10,6 +10,7 @@ use super::tables::{ChannelKeys, PROCEDURE_FILE, ProcedureFile};
 use super::{channel, derived, recording_options, validate};
 use crate::config::contained_files;
 use crate::config::external;
+use crate::config::program;
 use crate::config::read_tables::checked;
 use crate::config::table::Table;
 use crate::influence::ComparisonTest;
@@ -87,6 +88,13 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
     read.layout = layout.map(LayoutFile::at);
     let mut limits = limits::read_set(file.limits, file.references, file.expected, None, reader);
     limits.derived = derived::read_limits(file.derived_limits, reader);
+    let externals = external::asked(file.externals, reader);
+    let beside = program::Beside {
+        channels: channels.iter().map(|c| c.channel.id.as_str()).collect(),
+        externals: externals.iter().map(|e| e.id.as_str()).collect(),
+        folder,
+    };
+    let programs = program::read(file.programs, &beside, reader);
     Procedure {
         id: identity.id,
         title: identity.title,
@@ -117,7 +125,8 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         comparison_test: comparison.into_iter().flatten().next(),
         measurands: file.measurands.into_iter().filter_map(MeasurandKeys::spec).collect(),
         derived: derived::read(file.derived, reader),
-        externals: external::asked(file.externals, reader),
+        externals,
+        programs,
         limits,
         clauses: file.clauses.into_iter().map(Into::into).collect(),
         report: file.report,

@@ -10,4 +10,6 @@ mod files;
 mod manifest;
 mod named_files;
 mod phases;
+#[cfg(unix)]
+mod programs;
 mod robustness;

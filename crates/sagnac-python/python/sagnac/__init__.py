@@ -19,6 +19,7 @@ from ._errors import (
     SagnacError,
 )
 from ._inputs import Samples, Source
+from ._measurand import Context, Estimate, Unresolved, measurand, measurand_main
 from ._native import __version__
 from ._program import Check, Verification, plan, verify, watch
 from ._results import (
@@ -48,9 +49,11 @@ __all__ = [
     "Comparison",
     "Condition",
     "ConfigurationError",
+    "Context",
     "DataSheet",
     "Deviations",
     "Effect",
+    "Estimate",
     "Explanation",
     "Figure",
     "Inspection",
@@ -75,6 +78,7 @@ __all__ = [
     "SheetQuantity",
     "Simulation",
     "Source",
+    "Unresolved",
     "Verification",
     "__version__",
     "allan",
@@ -84,6 +88,8 @@ __all__ = [
     "explain",
     "identify",
     "inspect",
+    "measurand",
+    "measurand_main",
     "plan",
     "read",
     "run",

@@ -17,6 +17,7 @@ use super::model::{Analysis, ExplainSpec, Instrument, MeasurandKeys, ReportSpec,
 use super::section::Section;
 use super::site::Site;
 use crate::config::external::ExternalKeys;
+use crate::config::program::ProgramKeys;
 use crate::config::recording_keys::RecordingKeys;
 use crate::config::spec::{TableSpec, Word};
 use crate::config::table::{Table, words};
@@ -134,10 +135,13 @@ pub(in crate::config::procedure) struct ProcedureFile {
     /// Results of other tests that the report states, one table each.
     #[key(name = "external")]
     pub externals: Vec<ExternalKeys>,
+    /// Programs of the user that give rows of their own, one table each.
+    #[key(name = "program")]
+    pub programs: Vec<ProgramKeys>,
     /// Limits. A limits file may replace them.
     #[key(name = "limit")]
     pub limits: Vec<LimitKeys>,
-    /// Limits of quantities by a formula and of results of other tests. A limits file may replace them.
+    /// Limits of quantities by a formula, of results of other tests and of programs of the user. A limits file may replace them.
     #[key(name = "derived_limit")]
     pub derived_limits: Vec<DerivedLimitKeys>,
     /// Published or data-sheet values shown for comparison.
