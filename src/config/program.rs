@@ -4,6 +4,7 @@ use super::contained_files;
 use super::external::is_sha256;
 use super::reader::{Reader, meant, shorten};
 use super::section::Section;
+use super::spec::Kind;
 use super::table::Table;
 use crate::i18n::note;
 use crate::measurand;
@@ -21,7 +22,7 @@ pub(crate) struct ProgramKeys {
     #[key(id, required, example = "drift")]
     pub id: Option<String>,
     /// Command line, word by word; no shell reads it. The first word that is a file beside the procedure is the program.
-    #[key(required, example = ["python3", "drift.py"])]
+    #[key(required, kind = Kind::Command, example = ["python3", "drift.py"])]
     pub command: Vec<String>,
     /// SHA-256 of that file. Another file is not run.
     #[key(required, example = "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855")]

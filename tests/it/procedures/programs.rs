@@ -165,7 +165,7 @@ fn a_program_of_another_hash_is_told_by_check_and_not_run() {
     assert!(rows(dir.path(), "day_drift").to_string().contains("program.hash"));
     let said = sagnac(dir.path(), &["check", "p.toml"]);
     assert!(said.err.contains("p.toml:") && said.err.contains("SHA-256"), "{}{}", said.out, said.err);
-    // One that changes itself while it runs is not taken for the stated one.
+    // Nor is one that is not there.
     fs::remove_file(dir.path().join("drift.sh")).unwrap();
     let said = sagnac(dir.path(), &["check", "p.toml"]);
     assert!(said.err.contains("command"), "{}{}", said.out, said.err);
