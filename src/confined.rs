@@ -243,8 +243,10 @@ fn restrict(reach: &Reach<'_>, abi: landlock::ABI, network: bool) -> Result<(), 
         .map(|_| ())
 }
 
-#[cfg(all(test, unix))]
+#[cfg(test)]
 mod tests {
+    #![cfg(unix)]
+
     use super::*;
 
     fn shell(script: &str, folder: &Path, patience_s: f64) -> Ended {
