@@ -243,10 +243,8 @@ fn restrict(reach: &Reach<'_>, abi: landlock::ABI, network: bool) -> Result<(), 
         .map(|_| ())
 }
 
-#[cfg(test)]
+#[cfg(all(test, unix))]
 mod tests {
-    #![cfg(unix)]
-
     use super::*;
 
     fn shell(script: &str, folder: &Path, patience_s: f64) -> Ended {

@@ -338,6 +338,7 @@ fn every_example_is_accepted_by_its_own_key() {
         for p in &problems.list {
             let whole = [
                 "is declared",
+                "declares no channel",
                 "has the role",
                 "not an option",
                 "not measure",

@@ -104,6 +104,7 @@ fn sources(folder: &Path, out: &mut Vec<PathBuf>) {
 /// The code of a file before its tests, without comments and attributes.
 fn code(text: &str) -> String {
     let body = text.split("#[cfg(test)]\nmod tests").next().unwrap_or(text);
+    let body = body.split("#[cfg(all(test, unix))]\nmod tests").next().unwrap_or(body);
     let body = body.split("#[cfg(test)]\n#[path").next().unwrap_or(body);
     let kept = body.lines().filter(|l| {
         let l = l.trim_start();
