@@ -42,7 +42,7 @@ fn tested(bench: &Bench) -> BTreeMap<String, usize> {
 #[ignore = "takes minutes: cargo xtask study watch-soak"]
 fn a_day_of_recordings_is_tested_once_each() {
     let files: usize = std::env::var("SAGNAC_SOAK_FILES").map_or(10_000, |n| n.parse().unwrap());
-    let bench = Bench::new("");
+    let bench = Bench::new("after = \"1 s\"\n");
     let mut random = Xoshiro256PlusPlus::seed_from_u64(63);
     let begun = Instant::now();
     let mut watcher = start(&bench, &FOREVER);
