@@ -7,6 +7,7 @@ import os
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from datetime import date, time
 from typing import Any, Self, TypeAlias
 
 from . import _native
@@ -98,4 +99,4 @@ def given(document: Given | _Document) -> str | tuple[str, str]:
 
 def _text(value: object) -> str:
     """Dates and times as they stand in a file."""
-    return value.isoformat() if hasattr(value, "isoformat") else str(value)
+    return value.isoformat() if isinstance(value, (date, time)) else str(value)
