@@ -11,10 +11,10 @@ use std::time::{Duration, Instant};
 const KEPT_VARIABLES: [&str; 2] = ["PATH", "LANG"];
 
 /// Pause between two looks at a process.
-const POLL: Duration = Duration::from_millis(10);
+const END_POLL: Duration = Duration::from_millis(10);
 
 /// Longest wait for the rest of what a process wrote, once it has ended.
-const REST: Duration = Duration::from_secs(1);
+const REST_OF_OUTPUT: Duration = Duration::from_secs(1);
 
 /// Most of standard error that is kept, bytes.
 const MAX_SAID_BYTES: usize = 16 << 10;
@@ -113,11 +113,11 @@ pub fn run(task: Task<'_>) -> io::Result<Ended> {
         if began.elapsed() > task.patience {
             break Some(End::Late);
         }
-        std::thread::sleep(POLL);
+        std::thread::sleep(END_POLL);
     };
     end_group(&mut child);
     let status = child.wait()?;
-    let rest = |pipe: Option<Receiver<Vec<u8>>>| pipe.and_then(|p| p.recv_timeout(REST).ok());
+    let rest = |pipe: Option<Receiver<Vec<u8>>>| pipe.and_then(|p| p.recv_timeout(REST_OF_OUTPUT).ok());
     let out = out.or_else(|| rest(written));
     let end = end.unwrap_or(if too_much(&out) { End::TooMuch } else { End::Own(status) });
     let said = String::from_utf8_lossy(&rest(said).unwrap_or_default()).trim().to_owned();

@@ -16,7 +16,7 @@ use std::time::Duration;
 /// Largest distance between the stamp of a driver and the arrival of its line.
 const FURTHEST_STAMP: Duration = Duration::from_secs(60);
 /// Time after which a device that has said nothing so far is asked again.
-const RETRY: Duration = Duration::from_secs(1);
+const RETRY_PAUSE: Duration = Duration::from_secs(1);
 /// Most characters of an unreadable line that are kept.
 const MAX_SHOWN: usize = 200;
 
@@ -204,7 +204,7 @@ impl<'b> Machine<'b> {
     pub fn poll(&mut self, now_ns: i64) -> Result<(), Fault> {
         if !self.is_ready() {
             // It may not be switched on yet.
-            self.pending.retain(|p| now_ns < after(p.asked_ns, RETRY));
+            self.pending.retain(|p| now_ns < after(p.asked_ns, RETRY_PAUSE));
         }
         let Some(text) =
             self.text().filter(|_| self.polls() && now_ns >= self.next_poll_ns && !self.is_polled())

@@ -14,7 +14,7 @@ use std::time::{Duration, Instant};
 /// Longest line, bytes.
 const MAX_LINE: usize = 64 << 10;
 /// Pause between two looks at a file, or at a request to end a thread.
-const POLL: Duration = Duration::from_millis(20);
+const LOOK_PAUSE: Duration = Duration::from_millis(20);
 /// Longest time that a write to a connection may take.
 const WRITE_PATIENCE: Duration = Duration::from_secs(2);
 
@@ -50,7 +50,7 @@ impl Connection {
             }
             Link::Udp(address) => {
                 let socket = UdpSocket::bind(address.as_str())?;
-                socket.set_read_timeout(Some(POLL))?;
+                socket.set_read_timeout(Some(LOOK_PAUSE))?;
                 let peer = Arc::new(Mutex::new(None));
                 let (reader, from) = (socket.try_clone()?, Arc::clone(&peer));
                 read_on(move || datagrams(&reader, &from, &over, &sender));
@@ -110,7 +110,7 @@ impl Connection {
                 let _ = child.wait();
                 return;
             }
-            std::thread::sleep(POLL);
+            std::thread::sleep(LOOK_PAUSE);
         }
     }
 }
@@ -217,7 +217,7 @@ fn tail(mut file: File, over: &AtomicBool, sender: &Sender) {
             }
             match appended(&mut file, &mut at, &mut line, sender) {
                 Ok(true) => {}
-                Ok(false) => std::thread::sleep(POLL),
+                Ok(false) => std::thread::sleep(LOOK_PAUSE),
                 Err(e) => break e.to_string(),
             }
         },

@@ -4,7 +4,7 @@ use serde::Deserialize;
 use serde_json::{Map, Value, json};
 
 /// Version of the protocol.
-const VERSION: u64 = 1;
+const PROTOCOL_VERSION: u64 = 1;
 /// Most channels of a device.
 pub const MAX_CHANNELS: usize = 256;
 
@@ -100,7 +100,7 @@ pub fn parse(line: &str) -> Result<Said, String> {
     let value: Value = serde_json::from_str(line).map_err(|e| e.to_string())?;
     let Value::Object(mut members) = value else { return Err("no JSON object".to_owned()) };
     if let Some(version) = members.remove("v")
-        && version.as_u64() != Some(VERSION)
+        && version.as_u64() != Some(PROTOCOL_VERSION)
     {
         return Err(format!("version {version} of the protocol is not known"));
     }
@@ -140,12 +140,12 @@ fn hello_of(value: Value) -> Result<Hello, String> {
 
 /// A request to move something.
 pub fn set(id: u64, quantity: &str, value: f64) -> String {
-    json!({"v": VERSION, "id": id, "set": {quantity: value}}).to_string()
+    json!({"v": PROTOCOL_VERSION, "id": id, "set": {quantity: value}}).to_string()
 }
 
 /// A request to go into the safe state.
 pub fn safe(id: u64) -> String {
-    json!({"v": VERSION, "id": id, "safe": true}).to_string()
+    json!({"v": PROTOCOL_VERSION, "id": id, "safe": true}).to_string()
 }
 
 /// The numbers of a line of text; `None` where one of them is none.

@@ -15,7 +15,7 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Longest pause of the loop while nothing is due.
-const IDLE: Duration = Duration::from_millis(200);
+const IDLE_PAUSE: Duration = Duration::from_millis(200);
 /// Most unreadable lines of a device that are entered.
 const MAX_UNREADABLE: usize = 100;
 /// Time for the last readings.
@@ -175,7 +175,7 @@ impl<'o> Session<'o> {
             self.machines.iter().filter(|m| m.is_ready()).try_for_each(|machine| machine.check(now))?;
             self.machines.iter_mut().try_for_each(|machine| machine.poll(now))?;
             self.move_on(now)?;
-            self.listen(after(now, IDLE))?;
+            self.listen(after(now, IDLE_PAUSE))?;
         }
         Ok(true)
     }
@@ -198,7 +198,7 @@ impl<'o> Session<'o> {
                 return Ok(true);
             }
             self.machines.iter_mut().try_for_each(|machine| machine.poll(now))?;
-            self.listen(after(now, IDLE))?;
+            self.listen(after(now, IDLE_PAUSE))?;
         }
     }
 
@@ -236,7 +236,7 @@ impl<'o> Session<'o> {
                 return Ok(End::Complete);
             }
             let due = self.machines.iter().map(Machine::next_ns).chain(self.motion.next_ns()).chain(ends);
-            let until = due.min().unwrap_or(i64::MAX).min(part_ends).min(after(now, IDLE * 5));
+            let until = due.min().unwrap_or(i64::MAX).min(part_ends).min(after(now, IDLE_PAUSE * 5));
             // What is due at a moment is seen just behind it.
             self.listen(until.max(now) + 1)?;
         }

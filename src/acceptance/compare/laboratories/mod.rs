@@ -22,7 +22,7 @@ use serde::{Deserialize, Serialize};
 /// Names that a sentence lists.
 const MAX_NAMES: usize = 8;
 /// Share of rows that differ by chance where nothing differs: that of the intervals.
-const CHANCE: f64 = 0.05;
+const CHANCE_OF_DIFFERENCE: f64 = 0.05;
 
 /// Two results of one unit.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
@@ -116,7 +116,7 @@ fn summary(rows: &[PairedRow], same_recording: bool) -> Vec<Note> {
     if same_recording {
         return vec![note!("laboratories.one_recording", n = rows.len(), differ)];
     }
-    let chance = Arg::rounded(CHANCE * (agree + differ) as f64, 2);
+    let chance = Arg::rounded(CHANCE_OF_DIFFERENCE * (agree + differ) as f64, 2);
     let mut said = vec![note!("laboratories.counts", n = rows.len(), agree, differ, open, chance)];
     let kinds = ReasonKind::ALL.into_iter().filter_map(|kind| {
         let of = |r: &&PairedRow| r.reasons.iter().any(|reason| reason.kind == kind && reason.shown);
