@@ -30,6 +30,9 @@ pub static STUDY: Study = Study {
 
 /// Seed of a disturbance beside that of the unit.
 const OF_DISTURBANCE: u64 = 0xd157;
+/// Seeds of a run of the study, and of each of its cases: no two cases share a recording, so that shares over cases can be pooled.
+const SEEDS_OF_RUN: u64 = 1_000_000;
+const SEEDS_OF_CASE: u64 = 1000;
 
 static TABLE: LazyLock<Table> = LazyLock::new(|| {
     toml::from_str(include_str!("../../cases/disturbances.toml"))
@@ -167,14 +170,15 @@ fn cases() -> Vec<Case> {
         let of = move |by: &'static Disturbance| kind.units().map(move |unit| disturbed(kind, *by, unit));
         kind.disturbance.iter().flat_map(of)
     };
-    let case = |unit: Unit| {
+    let case = |(at, unit): (usize, Unit)| {
         Case::new(unit.name.clone(), move |records, seed| {
-            let records = records.min(unit.records as u64) as usize;
-            let tallies = tally::run(&unit, records, 1_000_000 * seed, &by_the_library);
+            let records = records.min(unit.records as u64).min(SEEDS_OF_CASE) as usize;
+            let first = SEEDS_OF_RUN * seed + SEEDS_OF_CASE * at as u64;
+            let tallies = tally::run(&unit, records, first, &by_the_library);
             tallies.iter().flat_map(rows).collect()
         })
     };
-    TABLE.kind.iter().flat_map(each).map(case).collect()
+    TABLE.kind.iter().flat_map(each).enumerate().map(case).collect()
 }
 
 fn rows(t: &Tally) -> Vec<Row> {
@@ -222,6 +226,11 @@ fn exempt(id: &str, edge: Edge) -> Option<&'static str> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn no_two_cases_share_a_seed() {
+        assert!(cases().len() as u64 * SEEDS_OF_CASE <= SEEDS_OF_RUN, "{}", cases().len());
+    }
 
     #[test]
     fn every_kind_disturbs_what_it_is_tried_on() {
