@@ -9,6 +9,7 @@
 mod affected;
 mod allan_curve;
 mod copied_run;
+mod late_output;
 mod long_process;
 mod rate_rounding;
 mod rejected_model;
@@ -23,7 +24,7 @@ mod white_floor;
 pub(crate) use affected::{NOISE_MEASURANDS, SLOW_NOISE};
 
 use crate::estimate::{Estimate, Finding, Objection};
-use crate::evidence::{ComparisonEvidence, GyroEvidence};
+use crate::evidence::{ComparisonEvidence, GyroEvidence, TableEvidence};
 use crate::influence::repeatability::Repeatability;
 
 /// A check of the evidence of one channel; `F` takes the evidence and gives what it contradicts.
@@ -40,6 +41,9 @@ pub type OfGyro = fn(&GyroEvidence) -> Vec<Finding>;
 
 /// Examination of a comparison without and with an influence.
 pub type OfComparison = for<'a> fn(&ComparisonEvidence<'a>) -> Vec<Finding>;
+
+/// Examination of the steps of a rate table.
+pub type OfTable = for<'a> fn(&TableEvidence<'a>) -> Vec<Finding>;
 
 /// Examination of a series of switchings-on.
 pub type OfRuns = fn(&Repeatability) -> Vec<Finding>;
@@ -59,6 +63,9 @@ pub static OF_GYRO: &[Check<OfGyro>] = &[
 
 /// Checks of a comparison without and with an influence.
 pub static OF_COMPARISON: &[Check<OfComparison>] = &[Check { id: "response", examine: response::examine }];
+
+/// Checks of the steps of a rate table.
+pub static OF_TABLE: &[Check<OfTable>] = &[Check { id: "late_output", examine: late_output::examine }];
 
 /// Checks of a series of switchings-on.
 pub static OF_RUNS: &[Check<OfRuns>] = &[Check { id: "copied_run", examine: copied_run::examine }];

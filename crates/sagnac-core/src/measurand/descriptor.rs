@@ -500,7 +500,9 @@ impl Measurand {
 
     /// Its rows on a gyro channel from steps of a rate table; none where they do not show it.
     pub fn evaluate_steps(&self, channel: &TableEvidence<'_>) -> Vec<Estimate> {
-        self.by_steps().map_or_else(Vec::new, |steps| (steps.evaluate)(self, channel))
+        let Some(steps) = self.by_steps() else { return vec![] };
+        let objections = criticism::objections(criticism::OF_TABLE, |examine| examine(channel));
+        criticism::raise(&objections, (steps.evaluate)(self, channel))
     }
 
     /// Its rows on all gyro channels from turns by known angles and positions; none where they do not show it.

@@ -15,6 +15,7 @@ pub mod design;
 pub mod inner_axis;
 pub mod known;
 pub mod largest;
+pub mod late;
 pub mod model;
 pub mod noise;
 pub mod overload;
