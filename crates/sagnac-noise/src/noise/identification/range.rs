@@ -5,14 +5,18 @@
 //! up to the highest frequency, by octaves, at which it passes, where the failure lies above; that part is left out and
 //! said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
 //! root of the misfit (Birge ratio), and that is said too.
+//!
+//! What bends beyond the edge of a cut range begins within it, too weak to be seen there. The white level of the lower half of the
+//! range knows less of it: the interval of N holds that as well.
 
 use super::claims::{LIMIT_COVERAGE, WHITTLE_METHOD};
 use super::joint::{Plateau, expected_power, identify_joint};
 use super::misfit::{Misfit, WhitenedBand};
 use super::options::Options;
+use super::profile::wider;
 use super::result::Identification;
 use super::standard::identify_standard;
-use crate::estimate::{Estimate, Spread, UpperLimit};
+use crate::estimate::{Estimate, Spread, UpperLimit, normal_probability};
 use crate::message::note;
 use crate::noise::composite::Part;
 use crate::noise::data::NoiseType;
@@ -127,7 +131,21 @@ pub fn identify_over(
         None => complete(channel, evidence, options, &range.identification),
     };
     identification.highest_hz = range.highest_hz;
+    if let Some(highest_hz) = range.highest_hz {
+        hold_level_of_half(channel, &evidence.up_to(0.5 * highest_hz), options, &mut identification);
+    }
     with_notes(without_unseen(RangedIdentification { identification, ..*range }, evidence.tau0_s))
+}
+
+/// Widens the interval of the white level so that it holds that of half the range, where this is long enough and shows one.
+fn hold_level_of_half(channel: &str, half: &Evidence, options: &Options, found: &mut Identification) {
+    let level = found.read_angle_random_walk_mut();
+    let Some(value) = level.value.filter(|_| half.dof() >= MIN_DOF) else { return };
+    let of_half = identify(channel, half, options);
+    let other = of_half.read_angle_random_walk();
+    let Some(value_of_half) = other.value else { return };
+    let by_score = |z: f64| other.spread.bound(value_of_half, normal_probability(z)).unwrap_or(value_of_half);
+    level.spread = wider(value, &level.spread, &Spread::by_score(by_score));
 }
 
 /// True when a model of the whole evidence fails above a frequency. A departure that chance made at low frequencies is
@@ -304,6 +322,37 @@ mod tests {
         assert!((n / 0.002 - 1.0).abs() < 0.05, "{n} up to {:?}", ranged.highest_hz);
         assert!(ranged.highest_hz.is_some_and(|f| f < 0.3));
         assert!(estimate.notes.iter().any(|note| note.id == "note.fit_restricted"));
+    }
+
+    /// White noise of 0.002 deg/√h at 1 Hz behind a Butterworth filter of second order with its cut-off at 0.2 Hz.
+    fn behind_a_filter(seed: u64) -> Evidence {
+        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
+        let k = (std::f64::consts::PI * 0.2).tan();
+        let scale = 1.0 / (1.0 + std::f64::consts::SQRT_2 * k + k * k);
+        let a1 = 2.0 * (k * k - 1.0) * scale;
+        let a2 = (1.0 - std::f64::consts::SQRT_2 * k + k * k) * scale;
+        let ([mut x1, mut x2], [mut y1, mut y2]) = ([0.0; 2], [0.0; 2]);
+        let mut next = |_| {
+            let x: f64 = 0.12 * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng);
+            let y = k * k * scale * (x + 2.0 * x1 + x2) - a1 * y1 - a2 * y2;
+            (x2, x1, y2, y1) = (x1, x, y1, y);
+            y
+        };
+        let mean: Vec<f64> = (0..36_000).map(&mut next).collect();
+        let blocks =
+            BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean, rounding: vec![] };
+        Evidence::new(&blocks, None, 1.0, &[])
+    }
+
+    #[test]
+    fn what_bends_beyond_the_edge_of_a_range_is_in_the_interval() {
+        let outside = (0..12).filter(|seed| {
+            let ranged = identify_in_range("rate", &behind_a_filter(*seed), 0.5, &Options::default());
+            assert!(ranged.highest_hz.is_some(), "{seed}");
+            let interval = ranged.identification.read_angle_random_walk().interval95().unwrap();
+            interval.low > 0.002 || interval.high < 0.002
+        });
+        assert!(outside.count() <= 1);
     }
 
     #[test]
