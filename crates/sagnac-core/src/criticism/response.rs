@@ -25,6 +25,16 @@ fn finding(found: Note, advice: Note) -> Vec<Finding> {
 
 pub(super) fn examine(compared: &ComparisonEvidence<'_>) -> Vec<Finding> {
     let bias = compared.bias;
+    if let Some(moves) = bias.moves_before {
+        return finding(
+            note!(
+                "criticism_found.moves_before",
+                time = Arg::figures(moves.time_s, 2),
+                chance = Arg::figures(moves.by_chance, 1)
+            ),
+            note!("criticism_advice.slow_part_removed"),
+        );
+    }
     if let Some(response) = bias.response.as_ref().filter(|r| r.goes_on()) {
         return finding(
             said("criticism_found.still_responding", response),

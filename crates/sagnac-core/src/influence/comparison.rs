@@ -4,7 +4,7 @@ use super::cut::{Cut, cut, span_s, stretches};
 use super::gls;
 use super::intervals::Intervals;
 use super::nuisance::{Course, Following, Nuisance, following};
-use super::response::{ByMeans, Changes, Courses, Response, by_means};
+use super::response::{ByMeans, Changes, Courses, MovesBefore, Response, by_means};
 use super::scale_factor::{self, Turning};
 use super::setup::{ComparisonTest, Law};
 use crate::estimate::chi_square_tail;
@@ -93,6 +93,8 @@ pub struct Comparison {
     pub scatter: bool,
     /// The delay with which the output follows the level; `None` where none is seen.
     pub response: Option<Response>,
+    /// How the bias moves before its level; `None` where it does not.
+    pub moves_before: Option<MovesBefore>,
     /// Per unit of the drive by the plain means of the stretches, a term each; empty where too few are left over.
     pub by_means: Vec<ByMeans>,
     /// How the temperature of the unit goes with the levels; `None` without one.
@@ -294,9 +296,15 @@ pub fn evaluate(
         scale: turning.map(|t| &t.scale),
     };
     let response = courses.find(&by_drive.x);
+    let moves_before = courses.moves_before(&by_drive.x);
+    let suspected_s = match response {
+        Some(_) => None,
+        None => courses.suspected(&by_drive.x, by_drive.first),
+    };
     let coefficients = |x: &DMatrix<f64>, plain: &Fit| -> Vec<Combination> {
         let settled = response.as_ref().and_then(|r| courses.settled(x, r));
-        settled.unwrap_or_else(|| (0..x.ncols()).map(|k| plain.coefficient(k)).collect())
+        let widened = || suspected_s.and_then(|t| courses.widened(x, plain, t));
+        settled.or_else(widened).unwrap_or_else(|| (0..x.ncols()).map(|k| plain.coefficient(k)).collect())
     };
     let of_line = coefficients(&by_drive.x, &line);
     // Of the bias, and behind them of the scale factor.
@@ -330,6 +338,7 @@ pub fn evaluate(
         drift,
         scatter,
         response,
+        moves_before,
         by_means,
         temperature: beside.temperature.as_ref().and_then(|what| course(&cut.temperature, what)),
         others,

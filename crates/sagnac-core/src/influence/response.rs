@@ -4,7 +4,9 @@
 //! bias still moves within the intervals. Slow noise would explain it just as well, and the change between levels would come
 //! out too small. So the course of the lag is set beside the level, over a range of time constants, before the noise gets its
 //! share: `y = … + k·x(t) + a·(z(t) − x(t))`, where z follows the drive x with the time constant and k is the change after it
-//! has settled.
+//! has settled. A lag that shows too little to be told from chance is not taken out, but widens what is stated.
+//!
+//! A bias that moves before its level does follows nothing: a slow part was taken out of the record by means about each instant.
 
 use super::cut::{Cut, span_s, stretches};
 use super::gls;
@@ -17,6 +19,12 @@ use nalgebra::{DMatrix, DVector};
 
 /// Probability by chance, over all time constants, from which a response counts as seen.
 const MAX_CHANCE_OF_RESPONSE: f64 = 2e-3;
+/// Probability by chance, over all time constants, below which the bias moved before its level.
+const MAX_CHANCE_OF_MOVING_BEFORE: f64 = 1e-3;
+/// Standard uncertainties of a lag from which it may be there.
+const SUSPECTED_FROM: f64 = 1.0;
+/// Longest time constant of a lag that may be there, in lengths of the longest interval.
+const MAX_SUSPECTED_INTERVALS: f64 = 0.5;
 /// Share of a step still to come at the end of an interval up to which the response has ended there.
 const MAX_REMAINING_SHARE: f64 = 0.05;
 /// Ratio of neighbouring time constants in the search.
@@ -49,6 +57,15 @@ impl Response {
     pub fn waiting_s(&self) -> f64 {
         -MAX_REMAINING_SHARE.ln() * self.time_constant_s
     }
+}
+
+/// A bias that moves before its level.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct MovesBefore {
+    /// How long before, s: the motion grows by e in this time.
+    pub time_s: f64,
+    /// Probability of it by chance.
+    pub by_chance: f64,
 }
 
 /// When the level changed, and to what.
@@ -118,20 +135,45 @@ impl Changes {
         })
     }
 
-    /// The lags along every axis that move anything.
-    fn columns(&self, cut: &Cut, time_constant_s: f64) -> Vec<DVector<f64>> {
-        let all = (0..self.drives.len()).map(|axis| self.behind(axis, cut, time_constant_s));
-        all.filter(|c| c.amax() > 0.0).map(|c| &c / c.amax()).collect()
+    /// What runs ahead of the drive along one axis, by row: the lag of a time that runs backwards.
+    fn ahead(&self, axis: usize, cut: &Cut, time_constant_s: f64) -> DVector<f64> {
+        let drive = &self.drives[axis];
+        let last = drive.len().saturating_sub(1);
+        let mut ahead = vec![0.0; drive.len()];
+        for k in (0..last).rev() {
+            let passed = self.ends_s[k + 1] - self.ends_s[k];
+            ahead[k] = ahead[k + 1] * (-passed / time_constant_s).exp() + drive[k + 1] - drive[k];
+        }
+        DVector::from_fn(cut.rows.len(), |i, _| {
+            let k = cut.of[i];
+            ahead[k] * (-(self.ends_s[k] - cut.rows.mid_s[i]) / time_constant_s).exp()
+        })
+    }
+
+    /// Of every axis, what moves anything.
+    fn columns(&self, of: impl Fn(usize) -> DVector<f64>) -> Vec<DVector<f64>> {
+        (0..self.drives.len()).map(of).filter(|c| c.amax() > 0.0).map(|c| &c / c.amax()).collect()
     }
 }
 
 impl Courses<'_> {
     fn tried(&self, x: &DMatrix<f64>, time_constant_s: f64) -> Option<Tried> {
-        let mut lags = self.changes.columns(self.cut, time_constant_s);
+        let lags =
+            self.both(self.changes.columns(|axis| self.changes.behind(axis, self.cut, time_constant_s)));
+        self.with(x, lags, time_constant_s)
+    }
+
+    /// Columns on the bias, and the same on the scale factor where rates of a table show it.
+    fn both(&self, mut columns: Vec<DVector<f64>>) -> Vec<DVector<f64>> {
         if let Some(scale) = self.scale {
-            let of_scale: Vec<DVector<f64>> = lags.iter().map(|lag| lag.component_mul(scale)).collect();
-            lags.extend(of_scale);
+            let of_scale: Vec<DVector<f64>> = columns.iter().map(|c| c.component_mul(scale)).collect();
+            columns.extend(of_scale);
         }
+        columns
+    }
+
+    /// A fit with further columns of one time constant, with the probability of so large a share of them by chance.
+    fn with(&self, x: &DMatrix<f64>, lags: Vec<DVector<f64>>, time_constant_s: f64) -> Option<Tried> {
         let first = x.ncols();
         let mut columns: Vec<DVector<f64>> = x.column_iter().map(|c| c.into_owned()).collect();
         columns.extend(lags);
@@ -153,15 +195,62 @@ impl Courses<'_> {
         Some(Tried { time_constant_s, fit, twice_log_likelihood, by_chance })
     }
 
-    /// Looks for a response beside the columns of the drive.
-    pub fn find(&self, x: &DMatrix<f64>) -> Option<Response> {
+    /// Time constants that are tried, up to so many lengths of the longest interval, s.
+    fn time_constants(&self, most_intervals: f64) -> Vec<f64> {
         let mut lengths: Vec<f64> = self.cut.rows.length_s.clone();
         lengths.sort_ascending();
-        let low = *lengths.get(lengths.len() / 2)?;
-        let high = MAX_TIME_CONSTANT_INTERVALS * self.changes.lengths().fold(0.0, f64::max);
+        let Some(low) = lengths.get(lengths.len() / 2) else { return vec![] };
+        let high = most_intervals * self.changes.lengths().fold(0.0, f64::max);
         let count = ((high / low).ln() / SEARCH_RATIO.ln()).ceil().max(1.0) as i32;
-        let tried: Vec<Tried> =
-            (0..=count).filter_map(|i| self.tried(x, low * SEARCH_RATIO.powi(i))).collect();
+        (0..=count).map(|i| low * SEARCH_RATIO.powi(i)).collect()
+    }
+
+    /// Looks for a bias that moves before its level, beside what follows it late.
+    pub fn moves_before(&self, x: &DMatrix<f64>) -> Option<MovesBefore> {
+        let times = self.time_constants(1.0);
+        let all = times.len() as f64;
+        let of = |time_s: &f64| {
+            let behind = self.changes.columns(|axis| self.changes.behind(axis, self.cut, *time_s));
+            let ahead = self.changes.columns(|axis| self.changes.ahead(axis, self.cut, *time_s));
+            let mut known: Vec<DVector<f64>> = x.column_iter().map(|c| c.into_owned()).collect();
+            known.extend(self.both(behind));
+            let found = self.with(&DMatrix::from_columns(&known), self.both(ahead), *time_s)?;
+            Some(MovesBefore { time_s: *time_s, by_chance: (found.by_chance * all).min(1.0) })
+        };
+        let found = times.iter().filter_map(of).min_by(|a, b| a.by_chance.total_cmp(&b.by_chance));
+        found.filter(|f| f.by_chance < MAX_CHANCE_OF_MOVING_BEFORE)
+    }
+
+    /// Time constant of a lag that may be there though chance explains it, s: the likeliest of those that end within an
+    /// interval, where the output still comes nearer to what it settles at. The drives are the columns from `first` on.
+    pub fn suspected(&self, x: &DMatrix<f64>, first: usize) -> Option<f64> {
+        let tried = self.time_constants(MAX_SUSPECTED_INTERVALS).into_iter().filter_map(|t| self.tried(x, t));
+        let best = tried.max_by(|a, b| a.twice_log_likelihood.total_cmp(&b.twice_log_likelihood))?;
+        let lags = x.ncols()..best.fit.coefficients.len();
+        let may_be = lags.enumerate().any(|(k, at)| {
+            let (lag, settled) =
+                (best.fit.coefficient(at), best.fit.coefficient((first + k).min(x.ncols() - 1)));
+            lag.value.abs() > SUSPECTED_FROM * lag.standard && lag.value * settled.value > 0.0
+        });
+        may_be.then_some(best.time_constant_s)
+    }
+
+    /// Coefficients of the columns, each with an interval that holds that of a fit with a lag of a time constant as well.
+    pub fn widened(&self, x: &DMatrix<f64>, plain: &Fit, time_constant_s: f64) -> Option<Vec<Combination>> {
+        let late = self.tried(x, time_constant_s)?.fit;
+        let of = |at: usize| {
+            let (plain, late) = (plain.coefficient(at), late.coefficient(at));
+            let score = normal_quantile(0.5 + 0.5 * COMPARED_COVERAGE);
+            let farthest = (late.value - plain.value).abs() / score + late.standard;
+            Combination { standard: plain.standard.max(farthest), ..plain }
+        };
+        Some((0..x.ncols()).map(of).collect())
+    }
+
+    /// Looks for a response beside the columns of the drive.
+    pub fn find(&self, x: &DMatrix<f64>) -> Option<Response> {
+        let times = self.time_constants(MAX_TIME_CONSTANT_INTERVALS);
+        let tried: Vec<Tried> = times.into_iter().filter_map(|t| self.tried(x, t)).collect();
         let all = tried.len() as f64;
         if !tried.iter().any(|t| t.by_chance * all < MAX_CHANCE_OF_RESPONSE) {
             return None;

@@ -303,6 +303,7 @@ mod tests {
             drift: true,
             scatter: false,
             response: None,
+            moves_before: None,
             by_means: vec![],
             temperature: Some(following(true, [0.3, -0.6], 0.5)),
             others: vec![],
