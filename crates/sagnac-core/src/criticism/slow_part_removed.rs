@@ -30,12 +30,45 @@ const MAX_RATIO: f64 = 0.5;
 /// Share of the frequencies that an empty part reaches up to at most without a doubt about the white noise.
 const MAX_SHARE_BELOW_WHITE: f64 = 0.01;
 
+/// Everything that rests on the course of the bias over temperature.
+const OVER_TEMPERATURE: [&str; 11] = [
+    "bias_temperature_sensitivity",
+    "bias_temperature_sensitivity_max",
+    "bias_temperature_rate_sensitivity",
+    "thermal_lag",
+    "thermal_hysteresis",
+    "bias_over_temperature_peak_to_peak",
+    "bias_over_temperature_rms",
+    "bias_over_temperature_3sigma",
+    "bias_loop_width",
+    "bias_residual_rms",
+    "static_bias",
+];
+
 /// Finds what was taken out.
 pub(super) fn examine(gyro: &GyroEvidence) -> Vec<Finding> {
-    if gyro.over_temperature.is_some() || gyro.warm_up.is_some() || gyro.motion.is_motion() {
+    if gyro.over_temperature.is_some() {
+        return over_temperature(gyro).into_iter().collect();
+    }
+    if gyro.warm_up.is_some() || gyro.motion.is_motion() {
         return vec![];
     }
     polynomial(gyro).into_iter().chain(hole(gyro)).collect()
+}
+
+/// Temperature and its rate without their means about each instant, which describe the record better than the unit's model.
+fn over_temperature(gyro: &GyroEvidence) -> Option<Finding> {
+    let found = gyro.over_temperature.as_ref()?.analysis.as_ref()?.removed?;
+    Some(Finding {
+        measurands: OVER_TEMPERATURE.to_vec(),
+        holds: Holds::Nothing,
+        found: note!(
+            "criticism_found.removed_over_temperature",
+            width_min = Arg::figures(found.width_s / 60.0, 2),
+            percent = Arg::figures(100.0 * found.left, 2)
+        ),
+        advice: note!("criticism_advice.slow_part_removed"),
+    })
 }
 
 /// The degree of a polynomial that the record is square to.

@@ -71,6 +71,7 @@ fn analysis() -> Analysis {
             lags: told(),
             longest_lag_s: 7200.0,
         },
+        removed: None,
         order: 2,
         orders: vec![],
         separation: Some(Separation { rate: 3.0, lag: 4.0, hysteresis: 5.0, condition: 1.0 }),

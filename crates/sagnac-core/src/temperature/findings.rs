@@ -4,6 +4,7 @@ use super::course::{Course, Span, Terms, legendre, legendre_slopes};
 use super::gls::Modes;
 use super::order::{self, Tried};
 use super::posterior::{self, Posterior};
+use super::removed::{self, Removed};
 use super::segments::{self, Segment, Steps};
 use super::separate::{self, Separation};
 use super::test::{SegmentKind, TemperatureTest};
@@ -60,6 +61,8 @@ pub struct Analysis {
     pub level_deg_h: f64,
     /// Residual in means over `average_s`: (time, temperature, deg/h).
     pub residual: Vec<(f64, f64, f64)>,
+    /// A slow part that was taken out before delivery; `None` where none is seen.
+    pub removed: Option<Removed>,
     /// Averaging time of the residual, s.
     pub average_s: f64,
     /// Rms of the residual, every temperature with the same weight, deg/h.
@@ -218,6 +221,7 @@ fn analyse(
         separation,
         order,
         orders,
+        removed: removed::removed(&course, &span, &modelled),
         posterior,
         modelled,
         level_deg_h,

@@ -7,6 +7,7 @@
 //! | [`segments`], [`findings`] | ramps and dwells that were run; everything found over temperature |
 //! | [`course`], [`gls`] | the regressors of a bias over temperature; least squares in noise found beside it |
 //! | [`order`], [`posterior`], [`sampler`], [`read`] | the degree of the polynomial; draws of the model; readings from them |
+//! | [`removed`] | whether the slow part was taken out before delivery |
 //! | [`lag`], [`separate`] | sensitivity by lag; whether rate, lag and hysteresis can be told apart |
 //! | [`compensation`], [`zones`] | coefficients for compensation; white noise by zone of temperature |
 //! | [`warm_up`] | the time that a unit needs after switching on |
@@ -22,6 +23,7 @@ pub mod lag;
 pub mod order;
 pub mod posterior;
 pub mod read;
+pub mod removed;
 pub mod sampler;
 pub mod segments;
 pub mod separate;
