@@ -3,6 +3,7 @@
 
 mod delivered;
 mod noise_floor;
+mod response;
 mod rounding;
 mod slow_noise;
 mod temperature;
