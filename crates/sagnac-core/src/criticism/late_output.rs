@@ -28,7 +28,7 @@ const MATTERS_FROM: f64 = 0.5;
 
 /// Finds an output that follows the table late.
 pub(super) fn examine(table: &TableEvidence<'_>) -> Vec<Finding> {
-    let Some(Late { share }) = Late::of(table.steps, table.gyro) else { return vec![] };
+    let Some(Late { share, .. }) = Late::of(table.steps, table.gyro) else { return vec![] };
     let known = table.line.as_ref().map_or(0.0, |line| line.factor_uncertainty() / line.factor.abs());
     if share.value.abs() < MATTERS_FROM * known {
         return vec![];

@@ -5,59 +5,108 @@
 
 use super::steps::{Part, Step, Steps};
 use crate::estimate::Spread;
+use crate::numeric::order::SortNumbers;
 use crate::numeric::reml::Combination;
 use nalgebra::{DMatrix, DVector};
 
-/// Probability by chance below which the output is late.
+/// Probability by chance, over all time constants, below which the output is late.
 const MAX_CHANCE: f64 = 1e-5;
+/// Time constants that are tried, in lengths of a step: of what is over within a step, and of what goes on through many.
+const TIME_CONSTANTS: [f64; 6] = [0.1, 0.4, 1.0, 3.0, 10.0, 30.0];
 /// Fewest steps beyond the unknowns.
 const MIN_SPARE_STEPS: usize = 4;
-/// A constant, the rate, and the change of rate: what the output of a step may differ by between its parts.
-const UNKNOWNS: usize = 3;
 
-/// What the means of the steps hold of the rate before, as a share of the change of rate.
+/// What the means of the steps hold of rates before.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Late {
-    /// The share; below zero where the output goes too far at first.
+    /// As a share of what was still missing at the beginning of a step; below zero where the output goes too far at first.
     pub share: Combination,
+    /// Probability by chance.
+    pub by_chance: f64,
 }
 
 impl Late {
     /// Of one gyro channel; `None` without enough steps of several parts, or where no share is seen.
     pub fn of(steps: &Steps, gyro: usize) -> Option<Late> {
-        let rows: Vec<(f64, f64, f64)> = steps
-            .list
-            .windows(2)
-            .filter_map(|pair| Some((pair[1].rate, pair[0].rate - pair[1].rate, of_step(&pair[1], gyro)?)))
-            .collect();
-        let dof = rows.len().checked_sub(UNKNOWNS).filter(|spare| *spare >= MIN_SPARE_STEPS)? as f64;
-        let size = rows.iter().fold(0.0, |m: f64, r| m.max(r.0.abs()).max(r.1.abs()));
-        let x = DMatrix::from_fn(rows.len(), UNKNOWNS, |i, j| [1.0, rows[i].0 / size, rows[i].1 / size][j]);
-        let y = DVector::from_fn(rows.len(), |i, _| rows[i].2 / size);
-        let normal = (x.transpose() * &x).cholesky()?;
-        let fitted = normal.solve(&(x.transpose() * &y));
-        let left = (&y - &x * &fitted).norm_squared() / dof;
-        let at = UNKNOWNS - 1;
-        let standard = (left * normal.inverse()[(at, at)]).sqrt();
-        if standard <= 0.0 {
-            return None;
-        }
-        let share = Combination { value: fitted[at], standard, dof };
-        let spread = Spread::StudentT { standard_uncertainty: standard, dof };
-        let chance = 2.0 * spread.probability_above(0.0, share.value.abs())?;
-        (chance < MAX_CHANCE).then_some(Late { share })
+        let later: Vec<Option<Differs>> = steps.list.iter().map(|step| Differs::of(step, gyro)).collect();
+        let mut lengths: Vec<f64> =
+            steps.list.windows(2).map(|pair| pair[1].from_s - pair[0].from_s).collect();
+        lengths.sort_ascending();
+        let length_s = *lengths.get(lengths.len() / 2)?;
+        let of = |lengths: &f64| with_missing(steps, &later, &missing(steps, lengths * length_s));
+        let all = TIME_CONSTANTS.len() as f64;
+        let best = TIME_CONSTANTS.iter().filter_map(of).min_by(|a, b| a.by_chance.total_cmp(&b.by_chance))?;
+        (best.by_chance * all < MAX_CHANCE).then_some(best)
     }
 }
 
-/// Output of a whole step less that of its later half, the motion of the table taken out, deg/h.
-fn of_step(step: &Step, gyro: usize) -> Option<f64> {
-    let off = |p: &Part| p.gyro.get(gyro).map(|g| g - p.rate).filter(|off| off.is_finite());
-    let parts: Vec<(f64, f64)> =
-        step.parts.iter().filter_map(|p| Some((p.length_s, off(p)?))).filter(|p| p.0 > 0.0).collect();
-    let later = parts.get(parts.len().div_ceil(2)..).filter(|later| !later.is_empty())?;
-    let mean =
-        |of: &[(f64, f64)]| of.iter().map(|(l, v)| l * v).sum::<f64>() / of.iter().map(|p| p.0).sum::<f64>();
-    Some(mean(&parts) - mean(later))
+/// What the output still lacks of the rate when each step begins, deg/h, behind a lag of first order.
+fn missing(steps: &Steps, time_constant_s: f64) -> Vec<f64> {
+    let mut lacks = vec![0.0; steps.list.len()];
+    for (k, pair) in steps.list.windows(2).enumerate() {
+        let kept = (-(pair[1].from_s - pair[0].from_s) / time_constant_s).exp();
+        lacks[k + 1] = kept * lacks[k] + pair[0].rate - pair[1].rate;
+    }
+    lacks
+}
+
+/// Least squares of what steps differ by from their later halves: on a constant, the rate, what was missing of it, and what the
+/// temperature does to bias and scale factor meanwhile.
+fn with_missing(steps: &Steps, later: &[Option<Differs>], missing: &[f64]) -> Option<Late> {
+    let rows: Vec<(f64, f64, Differs)> = steps
+        .list
+        .iter()
+        .zip(later)
+        .zip(missing)
+        .skip(1)
+        .filter_map(|((step, differs), lacks)| Some((step.rate, *lacks, (*differs)?)))
+        .collect();
+    let size = rows.iter().fold(0.0, |m: f64, r| m.max(r.0.abs()).max(r.1.abs()));
+    let warmest = rows.iter().fold(0.0, |m: f64, r| m.max(r.2.temperature.abs()));
+    let warms = warmest > 0.0 && rows.iter().all(|r| r.2.temperature.is_finite());
+    let columns = |(rate, lacks, differs): &(f64, f64, Differs)| {
+        let warmer = differs.temperature / warmest;
+        [lacks / size, 1.0, rate / size, warmer, warmer * rate / size]
+    };
+    let unknowns = if warms { 5 } else { 3 };
+    let dof = rows.len().checked_sub(unknowns).filter(|spare| *spare >= MIN_SPARE_STEPS)? as f64;
+    let x = DMatrix::from_fn(rows.len(), unknowns, |i, j| columns(&rows[i])[j]);
+    let y = DVector::from_fn(rows.len(), |i, _| rows[i].2.output / size);
+    let normal = (x.transpose() * &x).cholesky()?;
+    let fitted = normal.solve(&(x.transpose() * &y));
+    let left = (&y - &x * &fitted).norm_squared() / dof;
+    let standard = (left * normal.inverse()[(0, 0)]).sqrt();
+    let share = Combination { value: fitted[0], standard, dof };
+    let spread = Spread::StudentT { standard_uncertainty: standard, dof };
+    let by_chance = 2.0 * spread.probability_above(0.0, share.value.abs()).filter(|_| standard > 0.0)?;
+    Some(Late { share, by_chance })
+}
+
+/// A whole step less its later half.
+#[derive(Debug, Clone, Copy)]
+struct Differs {
+    /// Of the output, the motion of the table taken out, deg/h.
+    output: f64,
+    /// Of the temperature, degC; NaN without one.
+    temperature: f64,
+}
+
+impl Differs {
+    fn of(step: &Step, gyro: usize) -> Option<Differs> {
+        let off = |p: &Part| p.gyro.get(gyro).map(|g| g - p.rate).filter(|off| off.is_finite());
+        let parts: Vec<(f64, f64, f64)> = step
+            .parts
+            .iter()
+            .filter_map(|p| Some((p.length_s, off(p)?, p.temperature)))
+            .filter(|p| p.0 > 0.0)
+            .collect();
+        let later = parts.get(parts.len().div_ceil(2)..).filter(|later| !later.is_empty())?;
+        let mean = |of: &[(f64, f64, f64)], value: fn(&(f64, f64, f64)) -> f64| {
+            of.iter().map(|p| p.0 * value(p)).sum::<f64>() / of.iter().map(|p| p.0).sum::<f64>()
+        };
+        let differs = |value: fn(&(f64, f64, f64)) -> f64| mean(&parts, value) - mean(later, value);
+        Some(Differs { output: differs(|p| p.1), temperature: differs(|p| p.2) })
+    }
 }
 
 #[cfg(test)]
@@ -97,6 +146,27 @@ mod tests {
         let late = Late::of(&table(3.0, 1.0, 1), 0).unwrap();
         let left = |from: f64| 3.0 / (20.0 - from) * ((-from / 3.0f64).exp() - (-20.0 / 3.0f64).exp());
         within(late.share.value, left(0.0) - left(10.0), 0.02);
+    }
+
+    #[test]
+    fn an_output_that_takes_many_steps_to_follow_is_seen() {
+        assert!(Late::of(&table(300.0, 0.1, 1), 0).is_some());
+    }
+
+    #[test]
+    fn a_scale_factor_that_changes_while_the_unit_warms_is_not_late() {
+        let mut heated = table(1e-3, 1e-3, 5);
+        let mut warm = 0.0;
+        for step in &mut heated.list {
+            for part in &mut step.parts {
+                warm += ((part.rate / 1000.0).powi(2) - warm) * 0.2;
+                part.temperature = 25.0 + warm;
+                part.gyro[0] += 1e-4 * warm * part.rate;
+            }
+        }
+        assert_eq!(Late::of(&heated, 0), None);
+        heated.list.iter_mut().flat_map(|s| &mut s.parts).for_each(|p| p.temperature = f64::NAN);
+        assert!(Late::of(&heated, 0).is_some(), "without the temperature the two are alike");
     }
 
     #[test]
