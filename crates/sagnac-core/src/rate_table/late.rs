@@ -155,7 +155,7 @@ mod tests {
 
     #[test]
     fn a_scale_factor_that_changes_while_the_unit_warms_is_not_late() {
-        let mut heated = table(1e-3, 1e-3, 5);
+        let mut heated = table(1e-9, 1e-3, 5);
         let mut warm = 0.0;
         for step in &mut heated.list {
             for part in &mut step.parts {
