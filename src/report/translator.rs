@@ -114,6 +114,12 @@ impl Translator {
         joined(number, unit)
     }
 
+    /// A name with the channel behind it, where there is one: rows of a formula or of a program have none.
+    pub fn in_channel(self, name: String, channel: &str, measurand: &str) -> String {
+        let channel = self.channel(channel, measurand);
+        if channel.is_empty() { name } else { format!("{name} · {channel}") }
+    }
+
     /// A channel as it is read. Rows of a test with several temperatures, ramps or levels name theirs behind the channel,
     /// as limits do: `rate@-40`.
     pub fn channel(self, channel: &str, measurand: &str) -> String {

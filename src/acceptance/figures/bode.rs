@@ -1,6 +1,7 @@
 //! Gain and phase of the response over frequency with the model.
 
 use super::draw;
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::figure::{Figure, Style};
 use crate::rate_table::transfer::{Band, Transfer, decibel};
 
@@ -16,7 +17,7 @@ pub fn figure(found: &Transfer, several: bool) -> Figure {
         found.bands.iter().map(|b| (b.frequency_hz, of(b))).collect::<Vec<(f64, f64)>>()
     };
     let intervals = |of: &dyn Fn(&Band) -> f64, scale: f64| {
-        let half = |b: &Band| 1.96 * scale * b.standard;
+        let half = |b: &Band| SCORE_TWO_SIDED_95 * scale * b.standard;
         let ends = |b: &Band| (b.frequency_hz, of(b) - half(b), of(b) + half(b));
         found.bands.iter().map(ends).collect::<Vec<(f64, f64, f64)>>()
     };

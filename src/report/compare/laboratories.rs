@@ -31,7 +31,7 @@ pub(super) fn table(labs: &Laboratories, words: Translator) -> Table {
     let quantity = |row: &PairedRow| {
         let (name, unit) = (words.name("measurand", &row.first.id), words.unit(&row.first.unit));
         let name = if unit.is_empty() { name } else { format!("{name}, {unit}") };
-        if several { format!("{name} · {}", words.channel(&row.first.channel, &row.first.id)) } else { name }
+        if several { words.in_channel(name, &row.first.channel, &row.first.id) } else { name }
     };
     let value = |of: &MeasurandRecord| of_record(of, words).value();
     let of_score = |row: &PairedRow, of: fn(&Score) -> f64| {
@@ -152,17 +152,21 @@ fn why(labs: &Laboratories, words: Translator) -> Vec<String> {
     labs.rows.iter().flat_map(of_row).chain(keys).collect()
 }
 
+/// Title of what is below.
+pub(super) fn title(labs: &Laboratories, words: Translator) -> String {
+    words.with("laboratories.title", &[("serial", &labs.serial)])
+}
+
 /// Everything on pages.
 pub(super) fn blocks(labs: &Laboratories, words: Translator) -> Vec<Block> {
     let say = |notes: &[Note]| Block::remarks(notes.iter().map(|n| words.say(n)));
-    let title = words.with("laboratories.title", &[("serial", &labs.serial)]);
     let mut below = vec![Block::Hint(words.t("laboratories.hint"))];
     below.extend(say(&labs.summary));
     below.push(Block::Table(sides(labs, words)));
     if !labs.rows.is_empty() {
         below.push(Block::Table(table(labs, words).only(&SHOWN)));
     }
-    let mut all = vec![Block::section("", title, below)];
+    let mut all = vec![Block::section("", words.t("laboratories.rows"), below)];
     let why = Block::remarks(why(labs, words));
     all.extend(why.map(|list| Block::section("", words.t("laboratories.reasons"), vec![list])));
     let missing = say(&labs.missing);
@@ -174,7 +178,6 @@ pub(super) fn blocks(labs: &Laboratories, words: Translator) -> Vec<Block> {
 pub(super) fn on_terminal(labs: &Laboratories, words: Translator) -> Vec<Block> {
     let said = labs.summary.iter().map(|n| words.say(n));
     let said = said.chain(why(labs, words)).chain(labs.missing.iter().map(|n| words.say(n)));
-    let title = words.with("laboratories.title", &[("serial", &labs.serial)]);
     let table = (!labs.rows.is_empty()).then(|| Block::Table(table(labs, words).only(&SHOWN)));
-    std::iter::once(Block::heading(title)).chain(table).chain(Block::remarks(said)).collect()
+    std::iter::once(Block::heading(title(labs, words))).chain(table).chain(Block::remarks(said)).collect()
 }

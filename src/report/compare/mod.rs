@@ -69,9 +69,9 @@ pub fn agreement_csv(comparison: &Comparison) -> Option<String> {
 
 fn pages(comparison: &Comparison, figures: &[Figure], words: Translator) -> Page {
     let generator = format!("{} {}", comparison.program.name, comparison.program.version);
-    let title = words.t("compare.title");
-    let head = Head { kind: words.t("compare.kind"), title: title.clone(), ..Head::default() };
     let of_laboratories = comparison.laboratories.as_ref();
+    let title = of_laboratories.map_or_else(|| words.t("compare.title"), |l| laboratories::title(l, words));
+    let head = Head { kind: words.t("compare.kind"), title: title.clone(), ..Head::default() };
     let of_laboratories = of_laboratories.map_or_else(Vec::new, |l| laboratories::blocks(l, words));
     let units = Some(&comparison.units).filter(|units| !units.is_empty());
     let units = units.map_or_else(Vec::new, |units| unit::blocks(units, figures, words));

@@ -52,7 +52,7 @@ impl<'a> Row<'a> {
     /// Name, and the channel where there are several.
     pub fn name_in(&self, several_channels: bool, words: Translator) -> String {
         let name = self.name(words);
-        if several_channels { format!("{name} · {}", self.channel(words)) } else { name }
+        if several_channels { words.in_channel(name, &self.of.channel, &self.of.id) } else { name }
     }
 
     /// The method by which it was obtained, in words.
@@ -272,8 +272,7 @@ pub fn reason(m: &MeasurandRecord, several_channels: bool, words: Translator) ->
         _ => return None,
     };
     let name = words.name("measurand", &m.id);
-    let name =
-        if several_channels { format!("{name} · {}", words.channel(&m.channel, &m.id)) } else { name };
+    let name = if several_channels { words.in_channel(name, &m.channel, &m.id) } else { name };
     let value = if m.value.is_some() { value(m, words) } else { bound_alone(m, words) };
     let mut value = if value.is_empty() { value } else { words.quantity(&value, &m.unit) };
     let interval = interval(m, words);

@@ -1,6 +1,7 @@
 //! The steps of a rate table, printed.
 
 use super::part::Part;
+use crate::estimate::SCORE_TWO_SIDED_95;
 use crate::record::TableStepRecord;
 use crate::report::number::{Rounding, align, digits, limit_digits};
 use crate::report::page::{Block, Column, Table};
@@ -85,7 +86,7 @@ fn approach(step: &TableStepRecord) -> &'static str {
 /// Residual, ppm of full scale, and its 95 % interval.
 fn residual(step: &TableStepRecord, words: Translator) -> (String, String) {
     let lang = words.lang;
-    let u = 1.96 * step.standard_uncertainty_deg_h * step.residual_ppm.abs()
+    let u = SCORE_TWO_SIDED_95 * step.standard_uncertainty_deg_h * step.residual_ppm.abs()
         / step.residual_deg_h.abs().max(f64::MIN_POSITIVE);
     let (low, high) = (step.residual_ppm - u, step.residual_ppm + u);
     let rounding = Rounding::of(step.residual_ppm, Some((low, high)));
