@@ -95,8 +95,11 @@ fn outcome(case: &Case, seed: u64, test: &Tester) -> Vec<Outcome> {
         .collect()
 }
 
-/// What a row of a result states.
+/// What a row of a result states. A row that a check contradicts shows its numbers as contradicted, and states none of them.
 fn stated(row: &MeasurandRecord) -> Stated {
+    if !row.objections.is_empty() {
+        return Stated::Withheld;
+    }
     let finite = |v: f64| Some(v).filter(|v| v.is_finite());
     let interval = row.interval.and_then(|i| Some((finite(i.low)?, finite(i.high)?)));
     let low = row.lower_limit.and_then(|l| finite(l.value));

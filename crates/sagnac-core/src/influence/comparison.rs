@@ -298,13 +298,12 @@ pub fn evaluate(
     let response = courses.find(&by_drive.x);
     let moves_before = courses.moves_before(&by_drive.x);
     let suspected_s = match response {
-        Some(_) => None,
+        Some(_) => vec![],
         None => courses.suspected(&by_drive.x, by_drive.first),
     };
     let coefficients = |x: &DMatrix<f64>, plain: &Fit| -> Vec<Combination> {
         let settled = response.as_ref().and_then(|r| courses.settled(x, r));
-        let widened = || suspected_s.and_then(|t| courses.widened(x, plain, t));
-        settled.or_else(widened).unwrap_or_else(|| (0..x.ncols()).map(|k| plain.coefficient(k)).collect())
+        settled.unwrap_or_else(|| courses.widened(x, plain, &suspected_s))
     };
     let of_line = coefficients(&by_drive.x, &line);
     // Of the bias, and behind them of the scale factor.

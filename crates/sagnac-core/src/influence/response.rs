@@ -22,9 +22,9 @@ const MAX_CHANCE_OF_RESPONSE: f64 = 2e-3;
 /// Probability by chance, over all time constants, below which the bias moved before its level.
 const MAX_CHANCE_OF_MOVING_BEFORE: f64 = 1e-3;
 /// Standard uncertainties of a lag from which it may be there.
-const SUSPECTED_FROM: f64 = 1.0;
+const SUSPECTED_FROM: f64 = 1.5;
 /// Longest time constant of a lag that may be there, in lengths of the longest interval.
-const MAX_SUSPECTED_INTERVALS: f64 = 0.5;
+const MAX_SUSPECTED_INTERVALS: f64 = 1.0;
 /// Share of a step still to come at the end of an interval up to which the response has ended there.
 const MAX_REMAINING_SHARE: f64 = 0.05;
 /// Ratio of neighbouring time constants in the search.
@@ -221,30 +221,38 @@ impl Courses<'_> {
         found.filter(|f| f.by_chance < MAX_CHANCE_OF_MOVING_BEFORE)
     }
 
-    /// Time constant of a lag that may be there though chance explains it, s: the likeliest of those that end within an
-    /// interval, where the output still comes nearer to what it settles at. The drives are the columns from `first` on.
-    pub fn suspected(&self, x: &DMatrix<f64>, first: usize) -> Option<f64> {
-        let tried = self.time_constants(MAX_SUSPECTED_INTERVALS).into_iter().filter_map(|t| self.tried(x, t));
-        let best = tried.max_by(|a, b| a.twice_log_likelihood.total_cmp(&b.twice_log_likelihood))?;
+    /// Time constants of a lag that may be there though chance explains it, s: those in question of the ones that end within an
+    /// interval, where the output still comes nearer to what it settles at; none otherwise. The drives are the columns from
+    /// `first` on.
+    pub fn suspected(&self, x: &DMatrix<f64>, first: usize) -> Vec<f64> {
+        let times = self.time_constants(MAX_SUSPECTED_INTERVALS);
+        let mut tried: Vec<Tried> = times.into_iter().filter_map(|t| self.tried(x, t)).collect();
+        tried.sort_descending_by(|t| t.twice_log_likelihood);
+        let Some(best) = tried.first() else { return vec![] };
         let lags = x.ncols()..best.fit.coefficients.len();
         let may_be = lags.enumerate().any(|(k, at)| {
             let (lag, settled) =
                 (best.fit.coefficient(at), best.fit.coefficient((first + k).min(x.ncols() - 1)));
             lag.value.abs() > SUSPECTED_FROM * lag.standard && lag.value * settled.value > 0.0
         });
-        may_be.then_some(best.time_constant_s)
+        let top = best.twice_log_likelihood;
+        tried.retain(|t| may_be && top - t.twice_log_likelihood <= IN_QUESTION);
+        tried.iter().map(|t| t.time_constant_s).collect()
     }
 
-    /// Coefficients of the columns, each with an interval that holds that of a fit with a lag of a time constant as well.
-    pub fn widened(&self, x: &DMatrix<f64>, plain: &Fit, time_constant_s: f64) -> Option<Vec<Combination>> {
-        let late = self.tried(x, time_constant_s)?.fit;
+    /// Coefficients of the columns, each with an interval that holds those of fits with a lag as well.
+    pub fn widened(&self, x: &DMatrix<f64>, plain: &Fit, time_constants_s: &[f64]) -> Vec<Combination> {
+        let late: Vec<Fit> = time_constants_s.iter().filter_map(|t| Some(self.tried(x, *t)?.fit)).collect();
+        let score = normal_quantile(0.5 + 0.5 * COMPARED_COVERAGE);
         let of = |at: usize| {
-            let (plain, late) = (plain.coefficient(at), late.coefficient(at));
-            let score = normal_quantile(0.5 + 0.5 * COMPARED_COVERAGE);
-            let farthest = (late.value - plain.value).abs() / score + late.standard;
-            Combination { standard: plain.standard.max(farthest), ..plain }
+            let plain = plain.coefficient(at);
+            let farthest = |fit: &Fit| {
+                let late = fit.coefficient(at);
+                (late.value - plain.value).abs() / score + late.standard
+            };
+            Combination { standard: late.iter().map(farthest).fold(plain.standard, f64::max), ..plain }
         };
-        Some((0..x.ncols()).map(of).collect())
+        (0..x.ncols()).map(of).collect()
     }
 
     /// Looks for a response beside the columns of the drive.
