@@ -15,6 +15,7 @@ mod rate_rounding;
 mod rejected_model;
 mod response;
 mod slow_part_removed;
+mod smoothed_output;
 mod step;
 pub mod temperature;
 mod warm_up;
@@ -53,6 +54,7 @@ pub static OF_GYRO: &[Check<OfGyro>] = &[
     Check { id: temperature::CHECK_ID, examine: temperature::examine },
     Check { id: "rate_rounding", examine: rate_rounding::examine },
     Check { id: "slow_part_removed", examine: slow_part_removed::examine },
+    Check { id: "smoothed_output", examine: smoothed_output::examine },
     Check { id: "rejected_model", examine: rejected_model::examine },
     Check { id: "white_floor", examine: white_floor::examine },
     Check { id: "allan_curve", examine: allan_curve::examine },

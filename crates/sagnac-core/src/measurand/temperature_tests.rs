@@ -429,6 +429,7 @@ fn zones_state_their_noise_or_bound_it() {
         slow_share,
         average_s: 4.0,
         count: 9,
+        smoothed: false,
     };
     let zones = vec![
         zone(-40.0, Some(reading.clone()), false, 0.004),

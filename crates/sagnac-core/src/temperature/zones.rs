@@ -24,6 +24,12 @@ const MAX_ABSENT_SHARE: f64 = 0.05;
 const MAX_LOG_DEVIATION: f64 = 0.5;
 /// Lags of second differences that are counted as correlated.
 const CORRELATED_LAGS: usize = 12;
+/// Correlation of neighbouring second differences beyond that of the noise from which the output was smoothed: so much, and so many
+/// of its deviations.
+const SMOOTHED_CORRELATION: f64 = 0.08;
+const SMOOTHED_DEVIATIONS: f64 = 5.0;
+/// Deviation of that correlation times the root of the number of second differences: less than this for white noise.
+const DEVIATION_OF_CORRELATION: f64 = 0.6;
 
 /// White noise in one zone of temperature.
 #[derive(Debug, Clone, PartialEq)]
@@ -40,6 +46,9 @@ pub struct Zone {
     pub average_s: f64,
     /// Second differences.
     pub count: usize,
+    /// True where the output was smoothed over more than one mean, as all zones together show: their level is not that of the white
+    /// noise.
+    pub smoothed: bool,
 }
 
 /// Covariance over a lag of second differences of neighbouring means, from that of the means over lags.
@@ -115,6 +124,13 @@ fn states_of(draws: &[Draw], log_deviation: f64, average_h: f64) -> Vec<[f64; 2]
         .collect()
 }
 
+/// Correlation of neighbouring second differences that white noise of a level has beside slow noise.
+fn correlation(level: f64, [b, k]: [f64; 2], average_h: f64) -> f64 {
+    let shapes = covariances();
+    let at = |c: &[f64; 3]| level * c[0] + b * b * c[1] + k * k * average_h * c[2];
+    at(&shapes[1]) / at(&shapes[0])
+}
+
 /// The zones that are asked for; `draws` hold the slow noise of the whole recording, and B has the deviation of its logarithm
 /// given.
 pub fn zones(
@@ -137,8 +153,10 @@ pub fn zones(
         nearest.map(|(i, _)| i)
     };
     let mut sums = vec![(0.0, 0usize); centres.len()];
+    let (mut products, mut pairs, mut before) = (0.0, 0usize, None);
     for (w, t) in y.windows(3).zip(t.windows(3)) {
         let second = w[2] - 2.0 * w[1] + w[0];
+        let mut kept = None;
         if let Some(zone) = zone_of(t[1]).filter(|_| second.is_finite() && t[1].is_finite()) {
             // A zone reaches half way to its neighbours, and as far beyond the outermost.
             let gap = centres
@@ -150,11 +168,30 @@ pub fn zones(
             if (t[1] - centres[zone]).abs() <= 0.5 * gap.min(50.0) {
                 sums[zone].0 += second * second;
                 sums[zone].1 += 1;
+                kept = Some(second);
+                if let Some(before) = before {
+                    products += before * second;
+                    pairs += 1;
+                }
             }
         }
+        before = kept;
     }
     let average_h = short.block_s / 3600.0;
     let states = states_of(draws, log_deviation, average_h);
+    let (squares, counted) = sums.iter().fold((0.0, 0), |(s, n), zone| (s + zone.0, n + zone.1));
+    let smoothed = pairs >= MIN_DIFFERENCES && squares > 0.0 && {
+        let seen = squares / (6.0 * counted as f64);
+        let expected = |state: &[f64; 2]| {
+            let slow = correlation(0.0, *state, average_h).max(correlation(1.0, [0.0; 2], average_h));
+            let level = seen - (state[0].powi(2) * covariances()[0][1] + state[1].powi(2) * average_h) / 6.0;
+            if level > 0.0 { correlation(level, *state, average_h) } else { slow }
+        };
+        let most = states.iter().map(expected).fold(f64::NEG_INFINITY, f64::max);
+        let found = products / pairs as f64 / (squares / counted as f64);
+        let by_chance = SMOOTHED_DEVIATIONS * DEVIATION_OF_CORRELATION / (pairs as f64).sqrt();
+        found - most > by_chance.max(SMOOTHED_CORRELATION)
+    };
     centres
         .iter()
         .zip(sums)
@@ -172,6 +209,7 @@ pub fn zones(
                 n: found.map(|f| f.0),
                 average_s: short.block_s,
                 count,
+                smoothed,
             }
         })
         .collect()
@@ -190,6 +228,37 @@ mod tests {
         assert!((shapes[0][1] - flicker).abs() < 1e-9, "{:?}", shapes[0]);
         // White ones are correlated by −4/6 and 1/6.
         assert!((shapes[1][0] + 4.0).abs() < 1e-12 && (shapes[2][0] - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn a_smoothed_output_is_told_from_white_noise_with_and_without_slow_noise() {
+        use crate::evidence::test_evidence::asked;
+        use rand::SeedableRng;
+        use rand_distr::{Distribution, StandardNormal};
+        let smoothed = |walk: f64, keep: f64, seed: u64| {
+            let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
+            let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
+            let (mut slow, mut followed) = (0.0, 0.0);
+            let next = |_| {
+                slow += walk * normal();
+                followed = keep * followed + (1.0 - keep) * (normal() + slow);
+                followed
+            };
+            let rate: Vec<f64> = (0..1500).map(next).collect();
+            let values = vec![rate, vec![20.0; 1500]];
+            let means = Means { block_s: 60.0, samples: 1, first_s: 0.0, values };
+            let test = TemperatureTest { zones_deg_c: vec![20.0], ..asked() };
+            let draw = Draw {
+                shape: vec![],
+                noise: [0.0, 0.0, walk / (1.0f64 / 60.0).sqrt()],
+                coefficients: nalgebra::DVector::zeros(0),
+                covariance: nalgebra::DMatrix::zeros(0, 0),
+            };
+            zones(&means, (0, 1), (&[draw], 0.0), &test)[0].smoothed
+        };
+        assert!((0..100).all(|seed| !smoothed(0.0, 0.0, seed)));
+        assert!((0..100).all(|seed| !smoothed(0.5, 0.0, seed)), "a random walk is no filter");
+        assert!((0..20).all(|seed| smoothed(0.0, 0.5, seed)));
     }
 
     #[test]
