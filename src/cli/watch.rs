@@ -40,6 +40,9 @@ use std::time::{Duration, Instant};
 
 /// Pause between two looks for a request to end.
 const REQUEST_POLL: Duration = Duration::from_millis(50);
+/// Pause after a pass in the time that writing its page took: the page of a day with thousands of tests may not take the time of
+/// the tests.
+const PAUSE_IN_WRITINGS: u32 = 9;
 
 #[derive(Debug, Args)]
 pub struct WatchArgs {
@@ -82,7 +85,9 @@ pub fn main(args: &WatchArgs, lang: Lang) -> Result<u8, String> {
         if let Err(message) = done {
             place::eprint_diagnostic(&message);
         }
-        while !ending::is_asked() && looked.elapsed() < watch.poll {
+        let ended = Instant::now();
+        let waits = || looked.elapsed() < watch.poll || ended.elapsed() < watch.writing * PAUSE_IN_WRITINGS;
+        while !ending::is_asked() && waits() {
             std::thread::sleep(REQUEST_POLL.min(watch.poll));
         }
         if ending::is_asked() {
@@ -166,6 +171,8 @@ pub struct Watch<'a> {
     pub journal: Journal,
     lang: Lang,
     poll: Duration,
+    /// Time that the last look spent on the page of the day.
+    writing: Duration,
     still: Stillness,
     put_off: BTreeMap<String, PutOff>,
     shown: Option<BTreeSet<(String, String)>>,
@@ -206,6 +213,7 @@ impl<'a> Watch<'a> {
             journal,
             lang,
             poll,
+            writing: Duration::ZERO,
             still: Stillness::default(),
             put_off: BTreeMap::new(),
             shown: None,
@@ -226,11 +234,14 @@ impl<'a> Watch<'a> {
         let shown: BTreeSet<(String, String)> =
             untested.iter().map(|u| (u.recording.clone(), u.why.0.say(Lang::En))).collect();
         let is_new = self.shown.as_ref() != Some(&shown);
+        self.writing = Duration::ZERO;
         if ready.is_empty() && self.due().is_empty() && !is_new {
             return Ok(super::exit::PASS);
         }
-        let (outcome, watch) = (&PassOutcome::default(), &mut *self);
+        let (outcome, begun) = (&PassOutcome::default(), Instant::now());
+        let watch = &mut *self;
         let code = execute(&args.output, lang, move |_| Ok(Pass::new(watch, ready, untested, outcome)))?;
+        self.writing = begun.elapsed().saturating_sub(outcome.testing.get());
         self.shown = Some(shown);
         Ok(code)
     }
@@ -334,6 +345,8 @@ const MAX_SHOWN_CHARACTERS: usize = 500;
 pub struct PassOutcome {
     worst: Cell<Verdict>,
     failed: Cell<bool>,
+    /// Time until all tests were made and told.
+    testing: Cell<Duration>,
 }
 
 /// A pass: recordings that are ready, and those that are not.
@@ -372,6 +385,7 @@ impl Job for Pass<'_, '_> {
     fn run(&self, _: &StagedFolder, frame: &mut Frame<'_>) -> Result<Made, String> {
         let mut watch = self.watch.borrow_mut();
         let (watch, today) = (&mut **watch, day(frame.now));
+        let begun = Instant::now();
         let mut untested = self.untested.take();
         watch.journal.tests_of(&today);
         for ready in self.ready.take() {
@@ -388,6 +402,7 @@ impl Job for Pass<'_, '_> {
             tell(watch, self.outcome, frame);
         }
         tell(watch, self.outcome, frame);
+        self.outcome.testing.set(begun.elapsed());
         let watched = watch.folder().display().to_string();
         let tests = watch.journal.tests_of(&today).to_vec();
         Ok(Results::of(record(today, watched, frame.stamp(), tests, untested), vec![], vec![]).into())
@@ -463,7 +478,9 @@ fn one(
         let kept = active.keeper.keep(&place, frame.printer);
         kept.map_err(|reason| note!("watch.not_kept", reason = reason.trim()))?;
     }
-    let unit = lot::of_record(&record, unit.from, found.name.clone(), folder);
+    let mut unit = lot::of_record(&record, unit.from, found.name.clone(), folder);
+    // A day keeps all its tests in memory; their budgets stand in their results.
+    unit.measurands.iter_mut().for_each(|row| row.budget.clear());
     let hook = if rule.hook.is_empty() { HookState::None } else { HookState::Pending };
     outcome.worst.set(outcome.worst.get().max(record.verdict));
     let done = unit_done(&unit, frame.lang);
