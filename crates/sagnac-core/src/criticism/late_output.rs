@@ -25,12 +25,14 @@ const OF_STEPS: [&str; 15] = [
 ];
 /// Share of the change of rate over the relative standard uncertainty of the scale factor from which it matters.
 const MATTERS_FROM: f64 = 0.5;
+/// Relative standard uncertainty of a scale factor that counts at most: what is later than steps are long makes it large itself.
+const MOST_UNCERTAINTY: f64 = 0.01;
 
 /// Finds an output that follows the table late.
 pub(super) fn examine(table: &TableEvidence<'_>) -> Vec<Finding> {
     let Some(Late { share, .. }) = Late::of(table.steps, table.gyro) else { return vec![] };
     let known = table.line.as_ref().map_or(0.0, |line| line.factor_uncertainty() / line.factor.abs());
-    if share.value.abs() < MATTERS_FROM * known {
+    if share.value.abs() < MATTERS_FROM * known.min(MOST_UNCERTAINTY) {
         return vec![];
     }
     vec![Finding {
