@@ -6,8 +6,10 @@
 use super::course::{Course, Span};
 use nalgebra::{DMatrix, DVector};
 
-/// Widths of the means that are tried, as shares of the record.
-const WIDTHS: [f64; 6] = [0.03, 0.06, 0.12, 0.24, 0.36, 0.5];
+/// Widths of the means that are tried, as shares of the record: from the widest, each so much less than the one before.
+const WIDEST_SHARE: f64 = 0.5;
+const WIDTH_RATIO: f64 = 1.25;
+const WIDTHS: i32 = 16;
 /// Twice the gain of log-likelihood over the model of the unit from which the slow part counts as removed.
 const MIN_GAIN: f64 = 60.0;
 
@@ -26,7 +28,8 @@ pub fn removed(course: &Course, span: &Span, modelled: &[f64]) -> Option<Removed
     let n = course.len();
     let causes = causes(course, span);
     let left_by_model: f64 = course.rate_deg_h.iter().zip(modelled).map(|(y, m)| (y - m).powi(2)).sum();
-    let tried = WIDTHS.iter().filter_map(|share| {
+    let tried = (0..WIDTHS).filter_map(|i| {
+        let share = WIDEST_SHARE * WIDTH_RATIO.powi(-i);
         let half = (0.5 * share * n as f64) as usize;
         let columns: Vec<Vec<f64>> = causes.iter().map(|c| without_mean(c, half)).collect();
         let left = left(&columns, &course.rate_deg_h)? / left_by_model;
