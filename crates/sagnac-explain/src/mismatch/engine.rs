@@ -213,9 +213,8 @@ fn with_table_courses(
     let mut out = base.clone();
     for _ in 0..MAX_COURSES {
         let candidates = candidates::among(&out, spectra, applies);
-        let family = 2.0 * EFFECTS.len() as f64;
         match candidates.into_iter().next() {
-            Some(leader) if select::passes(&leader, family, options.alpha) => out = leader.tried,
+            Some(leader) if select::passes(&leader, drivers, options.alpha) => out = leader.tried,
             _ => break,
         }
     }

@@ -1,5 +1,6 @@
 //! Recording and claim brought together: residual, spectral data, and the claim's own fit.
 
+use super::corner::round_corner;
 use super::departures::{self, Departure};
 use super::finding::UnusableColumn;
 use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
@@ -79,6 +80,8 @@ impl Problem {
             let parameters: Vec<f64> = stated.effect.params().iter().map(named).collect();
             let aside = curvature_within_average(stated.effect, &parameters, &drivers);
             aside.into_iter().for_each(|i| usable[i] = false);
+            let about_corner = corner(stated.effect, &parameters, &drivers, &residual, &usable);
+            about_corner.into_iter().for_each(|i| usable[i] = false);
         }
         let rows = usable.iter().filter(|u| **u).count();
         // A response to the sensed rate follows the bias that the gyro has, of which the claim knows only so much.
@@ -134,7 +137,7 @@ impl Problem {
 
     /// Probability of as large a departure from a hypothesis by any test of its residual.
     pub fn departure_probability(&self, tried: &FittedHypothesis) -> f64 {
-        departures::family(&self.departures(tried, self.level.as_deref()))
+        departures::family(&self.departures(tried, self.level.as_deref()), &self.drivers)
     }
 
     /// A hypothesis fitted to what the problem has become.
@@ -251,11 +254,14 @@ impl Problem {
 
     /// Sets the samples aside of which the columns do not tell the courses of a hypothesis; true where there are any.
     pub fn without_bends(&mut self, tried: &FittedHypothesis) -> bool {
+        let left = inverse_dct2(&tried.residual(&self.spectra));
         let of = |course: &MeanTerm| {
             let Model::Mean(model) = course.effect.model() else { return vec![] };
             let parameters =
                 model.parameters(&course.nonlinear_parameters, &course.coefficients, &self.drivers);
-            curvature_within_average(course.effect, &parameters, &self.drivers)
+            let mut aside = curvature_within_average(course.effect, &parameters, &self.drivers);
+            aside.extend(corner(course.effect, &parameters, &self.drivers, &left, &self.usable));
+            aside
         };
         let aside: Vec<usize> = tried.hypothesis.courses.iter().flat_map(of).collect();
         if aside.is_empty() {
@@ -291,6 +297,19 @@ fn curvature_within_average(effect: &dyn Effect, parameters: &[f64], drivers: &D
     let Model::Mean(course) = effect.model() else { return vec![] };
     let samples = course.curvature_within_average(parameters, drivers);
     if samples.len() as f64 > MAX_SHARE * drivers.samples as f64 { vec![] } else { samples }
+}
+
+/// Samples about the corner of an effect in which a residual is larger than its noise; none for an effect without a corner.
+fn corner(
+    effect: &dyn Effect,
+    parameters: &[f64],
+    drivers: &Drivers,
+    residual: &[f64],
+    usable: &[bool],
+) -> Vec<usize> {
+    let Model::Mean(course) = effect.model() else { return vec![] };
+    let distance = course.distance_from_corner(parameters, drivers);
+    distance.map_or_else(Vec::new, |distance| round_corner(&distance, residual, usable))
 }
 
 /// Samples at either end that filters make different from noise that is even about the ends.
