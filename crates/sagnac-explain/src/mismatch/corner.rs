@@ -12,15 +12,20 @@ const FIRST_GROUP: usize = 16;
 const MIN_CORNER_RATIO: f64 = 4.0;
 /// The same from which a further group still belongs to the corner.
 const MIN_GROUP_RATIO: f64 = 1.5;
-/// Largest share of a record that a corner may be.
+/// Largest share of a record that its corners may be.
 const MAX_CORNER_SHARE: f64 = 0.1;
+
+/// Samples that may still be set aside about corners, of a record of so many of which some are.
+pub(super) fn most_about_corners(samples: usize, aside: usize) -> usize {
+    ((MAX_CORNER_SHARE * samples as f64) as usize).saturating_sub(aside)
+}
 
 /// Median of χ² with one degree of freedom.
 const MEDIAN_SQUARE: f64 = 0.454_936;
 
-/// Samples about a corner in which a residual is larger than its noise; `distance` is that of each sample from the corner, in the law's
-/// own driver.
-pub(super) fn round_corner(distance: &[f64], residual: &[f64], usable: &[bool]) -> Vec<usize> {
+/// Samples about a corner in which a residual is larger than its noise, at most so many; `distance` is that of each sample from the
+/// corner, in the law's own driver.
+pub(super) fn round_corner(distance: &[f64], residual: &[f64], usable: &[bool], most: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..residual.len().min(distance.len()))
         .filter(|i| usable.get(*i) == Some(&true) && distance[*i].is_finite())
         .collect();
@@ -29,7 +34,7 @@ pub(super) fn round_corner(distance: &[f64], residual: &[f64], usable: &[bool]) 
     // The median square, which what bends about a corner hardly moves.
     let noise = median(order.iter().map(square).collect()) / MEDIAN_SQUARE;
     order.sort_ascending_by(|i| distance[*i].abs());
-    let most = (MAX_CORNER_SHARE * order.len() as f64) as usize;
+    let most = most.min(order.len());
     let (mut inside, mut group, mut least) = (0, FIRST_GROUP, MIN_CORNER_RATIO);
     while inside < most {
         let near = &order[inside..(inside + group).min(most)];
@@ -63,18 +68,22 @@ mod tests {
         let distance: Vec<f64> = (0..n).map(|i| f64::from(i * 1597 % n) / f64::from(n) - 0.2).collect();
         let noise: Vec<f64> = distance.iter().map(|_| StandardNormal.sample(&mut rng)).collect();
         let usable = vec![true; n as usize];
-        assert!(round_corner(&distance, &noise, &usable).is_empty());
+        assert!(round_corner(&distance, &noise, &usable, 400).is_empty());
         // 300 deviations at the corner, e-folding in 0.004: below one deviation from 0.023.
         let bent: Vec<f64> =
             distance.iter().zip(&noise).map(|(d, e)| e + 300.0 * (-d.abs() / 0.004).exp()).collect();
-        let aside = round_corner(&distance, &bent, &usable);
+        let aside = round_corner(&distance, &bent, &usable, 400);
         let reach = aside.iter().map(|i| distance[*i].abs()).fold(0.0, f64::max);
         assert!((0.015..0.05).contains(&reach), "{reach}");
         // Samples that do not count are not looked at.
-        assert!(round_corner(&distance, &bent, &vec![false; n as usize]).is_empty());
-        // A residual that is large everywhere has no corner, and one that is large in a third is cut at a tenth.
+        assert!(round_corner(&distance, &bent, &vec![false; n as usize], 400).is_empty());
+        // A residual that is large everywhere has no corner, and one that is large in a third is cut.
         let large: Vec<f64> = distance.iter().map(|d| if *d < 0.1 { 9.0 } else { 0.1 }).collect();
-        assert_eq!(round_corner(&distance, &large, &usable).len(), 400);
-        assert!(round_corner(&distance, &vec![9.0; n as usize], &usable).is_empty());
+        assert_eq!(round_corner(&distance, &large, &usable, 400).len(), 400);
+        assert_eq!(
+            (most_about_corners(4000, 0), most_about_corners(4000, 300), most_about_corners(4000, 500)),
+            (400, 100, 0)
+        );
+        assert!(round_corner(&distance, &vec![9.0; n as usize], &usable, 400).is_empty());
     }
 }
