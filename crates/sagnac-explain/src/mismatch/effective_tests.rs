@@ -28,13 +28,13 @@ struct Rates {
 }
 
 const RATES: Rates = Rates {
-    noise: 2.2,
+    noise: 2.0,
     time: 1.2,
-    temperature: 2.9,
-    table: 2.7,
-    column: 1.5,
-    residual: 6.8,
-    residual_of_column: 0.25,
+    temperature: 3.3,
+    table: 2.3,
+    column: 1.6,
+    residual: 6.6,
+    residual_of_column: 0.57,
 };
 
 /// Number of tests that the search for effects amounts to in a record with such columns.

@@ -10,7 +10,6 @@ use super::noise_fit::Noise;
 use super::quantization_grid::{self, QuantizationGrid};
 use super::regular::{Grid, Regular};
 use super::spectral_data::{SpectralData, smoothed};
-use super::terms::MeanTerm;
 use super::terms::SpectralTerm;
 use super::usable::unusable;
 use crate::claim::{Claim, Stated};
