@@ -7,6 +7,7 @@ use super::engine::{AGAIN, explain_folder};
 use super::folder;
 use super::score::Score;
 use super::seal::{opened, seal};
+use super::searches::{Least, Search, rates};
 use super::tally;
 use super::truth::{Family, Half, Strength};
 use clap::{Args, Subcommand};
@@ -36,6 +37,12 @@ pub enum Command {
         /// Explains with augmented.toml once more.
         #[arg(long)]
         again: bool,
+    },
+    /// Prints the number of independent tests that each kind of search amounts to, from the answers to claims that are right.
+    LaboratorySearches {
+        /// Folder of the cases.
+        #[arg(value_name = "DIR")]
+        folder: PathBuf,
     },
     /// Scores the answers in the folders: explain.json, correction.csv, again.txt.
     LaboratoryScore {
@@ -87,6 +94,7 @@ impl Command {
             Command::LaboratoryWrite(asked) => write(asked),
             Command::LaboratorySeal { folder, keys } => sealed(folder, keys),
             Command::LaboratoryExplain { folder, again } => explain(folder, *again),
+            Command::LaboratorySearches { folder } => searches(folder),
             Command::LaboratoryScore { folder, keys, wrong } => score(folder, keys.as_deref(), *wrong),
         }
     }
@@ -194,6 +202,28 @@ fn score(folder: &Path, keys: Option<&Path>, list_wrong: bool) -> Result<(), Str
     for s in scores.iter().filter(|_| list_wrong).filter(wrong) {
         println!("{:<48} first: {:<24} explained {:?}", s.case, s.first, s.explained);
     }
+    Ok(())
+}
+
+/// Rates of the kinds of search, and the quartiles of the probability that they give to the same records.
+fn searches(folder: &Path) -> Result<(), String> {
+    let mut all = vec![];
+    for at in folders(folder).map_err(|e| format!("{}: {e}", folder.display()))? {
+        let Ok(text) = std::fs::read_to_string(at.join("explain.json")) else { continue };
+        let report = serde_json::from_str(&text).map_err(|e| format!("{}: {e}", at.display()))?;
+        all.extend(Least::of(&report));
+    }
+    if all.is_empty() {
+        return Err(format!("{}: no explain.json", folder.display()));
+    }
+    let found = rates(&all);
+    for (search, (rate, won)) in Search::ALL.iter().zip(found) {
+        println!("{search:?} {rate:.2} ({won} of {})", all.len());
+    }
+    let mut p: Vec<f64> = all.iter().map(|l| l.probability(&found.map(|f| f.0))).collect();
+    p.sort_by(f64::total_cmp);
+    let quartile = |q: usize| p[(q * p.len() / 4).min(p.len() - 1)];
+    println!("quartiles of p: {:.2} {:.2} {:.2}", quartile(1), quartile(2), quartile(3));
     Ok(())
 }
 

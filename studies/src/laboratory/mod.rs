@@ -24,6 +24,7 @@ pub mod process;
 pub mod real_noise;
 pub mod score;
 pub mod seal;
+pub mod searches;
 pub mod study;
 pub mod subjects;
 pub mod tally;

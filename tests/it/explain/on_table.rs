@@ -71,6 +71,18 @@ fn a_limit_that_a_slow_sine_exceeds() {
     near(&all, 0, "limit_deg_s", 11.7);
 }
 
+/// As in any unit the corner is round: half of the loss at the limit itself, over 0.02 deg/s, a hundred times the noise and more.
+#[test]
+fn a_limit_with_a_round_corner_has_no_unknown_and_no_bursts_beside_it() {
+    let dir = tempdir().unwrap();
+    let table = |t: f64| 12.0 * (TAU * t / 900.0).sin();
+    let lost = |rate: f64| 0.02 * ((rate.abs() - 11.7) / 0.02).exp().ln_1p();
+    let gyro = |t: f64| 1.02 + 3600.0 * (table(t) - lost(table(t)).copysign(table(t)));
+    let all = recorded(dir.path(), 8000, table, gyro);
+    assert_eq!(kinds(&all), ["saturation"], "{all}");
+    near(&all, 0, "limit_deg_s", 11.7);
+}
+
 #[test]
 fn a_scale_factor_that_bends_has_no_comb_of_the_table_beside_it() {
     let dir = tempdir().unwrap();

@@ -94,7 +94,6 @@ fn a_ring_laser_unit_is_told_where_its_lines_are() {
 }
 
 #[test]
-#[ignore = "a miss since named laws come first: docs/validation/explanation.md"]
 fn a_ring_laser_unit_has_its_lines_and_its_quantisation_named_where_more_effects_are_allowed() {
     let Some(report) = ring_laser(&["--max-effects", "5"]) else { return };
     let effects = report["effects"].as_array().unwrap();

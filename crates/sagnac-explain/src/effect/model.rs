@@ -143,7 +143,7 @@ pub enum Later {
 pub enum Family {
     /// Coherent sinusoids.
     Line,
-    /// Changes of the spectrum of the noise.
+    /// Changes of the spectrum of the noise. Rounding has a shape of its own, and is none.
     Spectrum,
     /// Single jumps.
     Jump,
@@ -447,6 +447,12 @@ pub trait MeanModel: Effect {
     /// the fit. `parameters` in the order of [`Effect::params`](super::Effect::params).
     fn curvature_within_average(&self, _parameters: &[f64], _drivers: &Drivers) -> Vec<usize> {
         vec![]
+    }
+
+    /// Distance of each sample from the value of its driver at which the course bends, for a course with a corner: a unit bends there over
+    /// a small range. `parameters` as above.
+    fn distance_from_corner(&self, _parameters: &[f64], _drivers: &Drivers) -> Option<Vec<f64>> {
+        None
     }
 
     /// The line that claimed parameters describe, for an effect that is one.

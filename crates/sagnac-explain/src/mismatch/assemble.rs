@@ -6,6 +6,7 @@ use super::columns;
 use super::contribution;
 use super::departures::{self, Departure};
 use super::draw::{self, FigureData};
+use super::effective_tests;
 use super::estimates;
 use super::experiment;
 use super::finding::{
@@ -21,7 +22,7 @@ use super::options::Options;
 use super::outcome::Outcome;
 use super::problem::Problem;
 use super::samples;
-use super::select::{self, Chosen, MOST_EQUIVALENTS, Selection, Slot};
+use super::select::{Chosen, MOST_EQUIVALENTS, Selection, Slot};
 use super::several::least_of;
 use super::single_cause;
 use super::unnamed;
@@ -98,7 +99,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
     let gained = best.fit.log_likelihood - base.fit.log_likelihood + local_gain;
     let (mut findings, rest) = causes(&found.named, gained, problem, after, options);
     let rest = rest.or_else(|| bend_of_law(best, gained, problem, found.level.as_deref()));
-    let family = smallest_p(&selection.first, before);
+    let family = smallest_p(&selection.first, before, problem);
     if findings.is_empty() && family < options.alpha {
         findings.extend(unnamed::of_all_together(before, family, problem, options));
     }
@@ -135,7 +136,7 @@ pub(super) fn assemble(parts: Evidence<'_>) -> Outcome {
             baseline,
         },
         family_p_value: family,
-        family_p_value_after: if something { departures::family(after) } else { family },
+        family_p_value_after: if something { departures::family(after, &problem.drivers) } else { family },
         alpha: options.alpha,
         candidates: ranked,
         tests: tests(before, after),
@@ -234,7 +235,11 @@ fn bend_of_law(
     let clearest = departures.iter().min_by(|a, b| a.ln_p.total_cmp(&b.ln_p))?;
     let share = (best.fit.log_likelihood - straight.fit.log_likelihood) / gained.max(1e-300);
     let places = vec![PlaceRecord::of(&clearest.place)];
-    Some(Rest { p_value: departures::family(&departures), share: share.clamp(0.0, 1.0), places })
+    Some(Rest {
+        p_value: departures::family(&departures, &problem.drivers),
+        share: share.clamp(0.0, 1.0),
+        places,
+    })
 }
 
 fn verdict(causes: &[Finding]) -> MismatchVerdict {
@@ -357,9 +362,10 @@ fn by_law(
     (reported, places(law.effect, slot, &free, chosen, problem))
 }
 
-fn smallest_p(first: &[FittedCandidate], before: &[Departure]) -> f64 {
+/// Probability of the least p-value of everything that was looked at.
+fn smallest_p(first: &[FittedCandidate], before: &[Departure], problem: &Problem) -> f64 {
     let named = first.iter().map(|c| c.p_value).fold(1.0, f64::min);
-    least_of(named, select::family(first)).min(least_of(departures::family(before), 2.0))
+    least_of(named.min(departures::smallest(before)), effective_tests::of_record(&problem.drivers))
 }
 
 /// Figures of a fit; `local_gain` is what effects on single samples gained beside it.

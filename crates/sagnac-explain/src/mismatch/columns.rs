@@ -1,14 +1,20 @@
 //! Status of each recorded column: it drives something that was found, it is silent, or it cannot be used and why.
 
-use super::finding::{ColumnRecord, ColumnStatus, Finding, UnusableColumn};
+use super::finding::{ColumnRecord, ColumnStatus, Finding, ParameterValue, UnusableColumn};
 use super::fitted_hypothesis::FittedHypothesis;
 use super::named::NamedEffect;
 use super::problem::Problem;
 use super::select::MOST_EQUIVALENTS;
-use crate::effect::{COLUMN_TEXT, Column, any_column_driver, find};
+use crate::effect::{COLUMN_TEXT, Column, ResponseLaw, any_column_driver, find};
 use crate::estimate::SCORE_ONE_SIDED_95;
 use crate::numeric::cosine::dct2;
 use crate::series::ReadFrom;
+use std::collections::BTreeMap;
+
+/// Parameter of every effect that adds to the rate.
+const RMS: &str = "rms_deg_h";
+/// Coefficient of the law of any column.
+const COEFFICIENT: &str = "coefficient";
 
 /// Every column with its part in what was found. `best` is what was selected, `read_from` the names in the file.
 pub(super) fn records(
@@ -51,7 +57,7 @@ fn other_name(column: Column, read_from: &[ReadFrom]) -> Option<&str> {
 }
 
 /// Names the column of the file in a cause that follows the temperature, where the thermometer is not on the unit: there it may
-/// say as little of the unit as any other column.
+/// say as little of the unit as any other column, and the cause is that of any other column. The law stays among the equivalents.
 pub(super) fn as_recorded(findings: &mut [Finding], read_from: &[ReadFrom]) {
     let is_elsewhere = |c: &Column| read_from.iter().any(|r| r.name == c.name() && r.elsewhere);
     let elsewhere = |c: &Column| other_name(*c, read_from).filter(|_| is_elsewhere(c));
@@ -68,10 +74,39 @@ pub(super) fn as_recorded(findings: &mut [Finding], read_from: &[ReadFrom]) {
         finding.column = Some(name.to_owned());
         finding.law = Some(law.id().to_owned());
         if let Some(driver) = any_column_driver() {
-            finding.equivalents.insert(0, driver.kind().to_owned());
+            by_any_column(finding, driver.kind(), law);
         }
-        finding.equivalents.truncate(MOST_EQUIVALENTS);
     }
+}
+
+/// Makes a law of the temperature the law of any column: its kind, its coefficient, and the probability of all such laws together.
+fn by_any_column(finding: &mut Finding, driver: &str, law: ResponseLaw) {
+    let is_law = |kind: &String| find(kind).and_then(|e| e.law()).is_some();
+    let together: f64 = finding
+        .probabilities
+        .iter()
+        .filter(|(kind, _)| is_law(kind))
+        .map(|(_, probability)| probability)
+        .sum();
+    finding.probabilities.retain(|kind, _| !is_law(kind));
+    if together > 0.0 {
+        *finding.probabilities.entry(driver.to_owned()).or_default() += together;
+    }
+    let own = std::mem::replace(&mut finding.kind, driver.to_owned());
+    finding.equivalents.retain(|kind| *kind != driver && *kind != own);
+    finding.equivalents.insert(0, own);
+    finding.equivalents.truncate(MOST_EQUIVALENTS);
+    // Of a rate of change it is per hour, as of any column.
+    let scale = if law == ResponseLaw::Rate { 1.0 / 60.0 } else { 1.0 };
+    let (sizes, coefficients): (BTreeMap<_, _>, BTreeMap<_, _>) =
+        std::mem::take(&mut finding.parameters).into_iter().partition(|(name, _)| name == RMS);
+    finding.parameters = sizes;
+    let coefficient = coefficients.into_values().next();
+    let coefficient = coefficient.filter(|_| matches!(law, ResponseLaw::Linear | ResponseLaw::Rate));
+    finding.parameters.extend(coefficient.map(|ParameterValue { value, ci95, .. }| {
+        let unit = String::new();
+        (COEFFICIENT.to_owned(), ParameterValue { value: scale * value, unit, ci95: ci95.map(|c| scale * c) })
+    }));
 }
 
 /// One-sided 95 % limit of what is proportional to a column, rms over the record, deg/h.
@@ -105,8 +140,15 @@ mod tests {
             formula: None,
             shape: None,
             equivalents: ["temp_rate", "temp_polynomial", "unobserved_driver"].map(str::to_owned).to_vec(),
-            probabilities: std::collections::BTreeMap::new(),
-            parameters: std::collections::BTreeMap::new(),
+            probabilities: [("temp_linear", 0.6), ("temp_rate", 0.2), ("excess_rrw", 0.1)]
+                .map(|(kind, p)| (kind.to_owned(), p))
+                .into(),
+            parameters: [("coefficient_deg_h_per_degC", 3.0), ("rms_deg_h", 2.0)]
+                .map(|(name, value)| {
+                    let unit = "deg/h".to_owned();
+                    (name.to_owned(), ParameterValue { value, unit, ci95: [0.5 * value, 2.0 * value] })
+                })
+                .into(),
             places: vec![],
             delta_bic: 100.0,
             p_value: 1e-9,
@@ -127,7 +169,19 @@ mod tests {
         }
         let of_rack = after(&finding, "rack_degC");
         assert_eq!((of_rack.column.as_deref(), of_rack.law.as_deref()), (Some("rack_degC"), Some("linear")));
-        assert_eq!(of_rack.equivalents, ["column_driver", "temp_rate", "temp_polynomial"]);
+        assert_eq!(of_rack.kind, "column_driver");
+        assert_eq!(of_rack.equivalents, ["temp_linear", "temp_rate", "temp_polynomial"]);
+        let probabilities = &of_rack.probabilities;
+        assert!((probabilities["column_driver"] - 0.8).abs() < 1e-12 && probabilities.len() == 2);
+        let parameter = |f: &Finding, name: &str| f.parameters.get(name).map(|p| (p.value, p.ci95));
+        assert_eq!(parameter(&of_rack, "coefficient"), Some((3.0, [1.5, 6.0])));
+        assert_eq!(parameter(&of_rack, "rms_deg_h"), Some((2.0, [1.0, 4.0])));
+        assert_eq!(of_rack.parameters.len(), 2);
+        // Per hour in place of per minute; a loop has no coefficient.
+        finding.kind = "temp_rate".to_owned();
+        assert_eq!(parameter(&after(&finding, "rack_degC"), "coefficient"), Some((0.05, [0.025, 0.1])));
+        finding.kind = "temp_hysteresis".to_owned();
+        assert_eq!(parameter(&after(&finding, "rack_degC"), "coefficient"), None);
         finding.kind = "noise_variance_driver".to_owned();
         finding.column = Some(Column::Temperature.name().to_owned());
         let level = after(&finding, "rack_degC");

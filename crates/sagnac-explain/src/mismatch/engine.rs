@@ -24,6 +24,9 @@ use std::collections::BTreeMap;
 /// Rounds of setting samples aside that a course bends within, of drawing what is not there, and of finding the course again.
 const MAX_ROUNDS: usize = 3;
 
+/// Rounds where a corner is set aside, of which the draws hold a good part of what tells of it: each halves about what they hold wrong.
+const MAX_BEND_ROUNDS: usize = 12;
+
 /// Explains a recording against a claim.
 ///
 /// # Errors
@@ -50,14 +53,20 @@ pub fn explain(
     progress(Progress { doing: "explain.progress.trying", done: 1, total: 3 });
     // What the table does at low frequencies looks like a filter of the noise while no course says so.
     let mut moved = with_table_courses(&base, &problem.spectra, options);
-    for _ in 0..MAX_ROUNDS {
+    for round in 1..=MAX_BEND_ROUNDS {
         // The draws for them follow the course as it was found with them, so it is found again.
         let bent = problem.without_bends(&moved);
         if !problem.reimpute_until_stable(&moved) && !bent {
             break;
         }
         base = problem.refitted(&base);
-        moved = with_table_courses(&base, &problem.spectra, options);
+        let again = with_table_courses(&base, &problem.spectra, options);
+        let settled =
+            if problem.has_round_corner() { same_shapes(&moved, &again) } else { round >= MAX_ROUNDS };
+        moved = again;
+        if settled {
+            break;
+        }
     }
     let mut held_base = Halves::new(&problem).judge(&base);
     let filtered = filtered::behind(&problem, &moved, options);
@@ -213,13 +222,23 @@ fn with_table_courses(
     let mut out = base.clone();
     for _ in 0..MAX_COURSES {
         let candidates = candidates::among(&out, spectra, applies);
-        let family = 2.0 * EFFECTS.len() as f64;
         match candidates.into_iter().next() {
-            Some(leader) if select::passes(&leader, family, options.alpha) => out = leader.tried,
+            Some(leader) if select::passes(&leader, drivers, options.alpha) => out = leader.tried,
             _ => break,
         }
     }
     out
+}
+
+/// True for courses whose shapes are the same but for next to nothing.
+fn same_shapes(one: &FittedHypothesis, other: &FittedHypothesis) -> bool {
+    const MAX_CHANGE: f64 = 1e-7;
+    let shapes = |t: &FittedHypothesis| -> Vec<f64> {
+        t.hypothesis.courses.iter().flat_map(|c| c.nonlinear_parameters.clone()).collect()
+    };
+    let (one, other) = (shapes(one), shapes(other));
+    let near = |(a, b): (&f64, &f64)| (a - b).abs() <= MAX_CHANGE * a.abs().max(b.abs());
+    one.len() == other.len() && one.iter().zip(&other).all(near)
 }
 
 /// The same on a problem from which something was taken since.

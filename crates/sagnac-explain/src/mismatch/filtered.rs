@@ -51,7 +51,7 @@ fn leading_filter(problem: &Problem, tried: &FittedHypothesis, options: &Options
         return None;
     }
     let leader = candidates::among(tried, &problem.spectra, |e| wanted(e, options)).into_iter().next()?;
-    select::passes(&leader, EFFECTS.len() as f64, options.alpha).then_some(leader)
+    select::passes(&leader, &spectral.drivers, options.alpha).then_some(leader)
 }
 
 /// The hypothesis with the course that explains more than a filter does, where there is one. Noise that was fitted too large in its
@@ -64,8 +64,9 @@ fn with_better_course(
 ) -> Option<FittedHypothesis> {
     let wanted = |e: &dyn Effect| matches!(e.model(), Model::Mean(_)) && options.allows(e.kind());
     let leader = candidates::among(tried, &problem.spectra, wanted).into_iter().next()?;
+    let drivers = &problem.spectra.full.drivers;
     let better = leader.tried.rank(problem.spectra.rows) < filter.tried.rank(problem.spectra.rows);
-    (better && select::passes(&leader, EFFECTS.len() as f64, options.alpha)).then_some(leader.tried)
+    (better && select::passes(&leader, drivers, options.alpha)).then_some(leader.tried)
 }
 
 /// The claim behind the filter that it leaves out, where there is one and the ends of the record matter; fitted to what is

@@ -6,9 +6,9 @@
 //! | step | files |
 //! |---|---|
 //! | rows on the grid of the claim, rounding, averages | `regular`, `quantization_grid`, `coarse` |
-//! | residual in cosine modes, missing samples imputed | `spectral_data`, `impute` |
+//! | residual in cosine modes, missing samples imputed, round corners set aside | `spectral_data`, `impute`, `corner` |
 //! | claim plus effects, fitted: noise by Whittle, means by least squares | `terms`, `noise_fit`, `hypothesis`, `fitted_hypothesis`, `problem`, `law_error`, `discrepancy` |
-//! | tests that name no physics | `departures` |
+//! | tests that name no physics, and the number of tests that all searches amount to | `effective_tests`, `departures` |
 //! | every effect tried as an addition | `nonlinear_search`, `candidates`, `filtered` |
 //! | prediction of blocks that are held out | `heldout`, `prediction` |
 //! | the fewest effects that explain the recording, and the probabilities of their names | `select`, `posterior` |
@@ -28,9 +28,11 @@ pub mod candidates;
 pub mod coarse;
 mod columns;
 mod contribution;
+mod corner;
 pub mod departures;
 pub mod discrepancy;
 pub mod draw;
+mod effective_tests;
 pub mod engine;
 pub mod estimates;
 pub(crate) mod experiment;

@@ -1,5 +1,6 @@
 //! Recording and claim brought together: residual, spectral data, and the claim's own fit.
 
+use super::corner::{most_about_corners, round_corner};
 use super::departures::{self, Departure};
 use super::finding::UnusableColumn;
 use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
@@ -9,7 +10,6 @@ use super::noise_fit::Noise;
 use super::quantization_grid::{self, QuantizationGrid};
 use super::regular::{Grid, Regular};
 use super::spectral_data::{SpectralData, smoothed};
-use super::terms::MeanTerm;
 use super::terms::SpectralTerm;
 use super::usable::unusable;
 use crate::claim::{Claim, Stated};
@@ -52,6 +52,8 @@ pub struct Problem {
     pub unusable: Vec<(Column, UnusableColumn)>,
     /// The grid that the values lie on.
     pub quantization_grid: Option<QuantizationGrid>,
+    /// Number of samples that are set aside about round corners.
+    about_corners: usize,
     /// The filters, stated or found, for which the ends of the record were drawn.
     filters: Vec<SpectralTerm>,
     /// Both resolutions.
@@ -74,11 +76,16 @@ impl Problem {
             }
         }
         let mut usable = regular.grid.present.clone();
+        let mut about_corners = 0;
         for stated in &claim.effects {
             let named = |p: &Param| number(&stated.values, p.name).unwrap_or(f64::NAN);
             let parameters: Vec<f64> = stated.effect.params().iter().map(named).collect();
             let aside = curvature_within_average(stated.effect, &parameters, &drivers);
             aside.into_iter().for_each(|i| usable[i] = false);
+            let most = most_about_corners(usable.len(), about_corners);
+            let about_corner = corner(stated.effect, &parameters, &drivers, &residual, &usable, most);
+            about_corners += about_corner.len();
+            about_corner.into_iter().for_each(|i| usable[i] = false);
         }
         let rows = usable.iter().filter(|u| **u).count();
         // A response to the sensed rate follows the bias that the gyro has, of which the claim knows only so much.
@@ -111,9 +118,15 @@ impl Problem {
             level,
             unusable,
             quantization_grid,
+            about_corners,
             filters,
             spectra,
         }
+    }
+
+    /// True where samples are set aside about a round corner.
+    pub fn has_round_corner(&self) -> bool {
+        self.about_corners > 0
     }
 
     /// The effect of jumps that the claim states without saying when, with what it states.
@@ -134,7 +147,7 @@ impl Problem {
 
     /// Probability of as large a departure from a hypothesis by any test of its residual.
     pub fn departure_probability(&self, tried: &FittedHypothesis) -> f64 {
-        departures::family(&self.departures(tried, self.level.as_deref()))
+        departures::family(&self.departures(tried, self.level.as_deref()), &self.drivers)
     }
 
     /// A hypothesis fitted to what the problem has become.
@@ -249,16 +262,22 @@ impl Problem {
         samples.iter().map(|i| course[*i].powi(2)).sum::<f64>() / (2.0 * variance)
     }
 
-    /// Sets the samples aside of which the columns do not tell the courses of a hypothesis; true where there are any.
+    /// Sets the samples aside of which the columns do not tell the courses of a hypothesis, and draws what is set aside anew about them;
+    /// true where there are any.
     pub fn without_bends(&mut self, tried: &FittedHypothesis) -> bool {
-        let of = |course: &MeanTerm| {
-            let Model::Mean(model) = course.effect.model() else { return vec![] };
+        let left = inverse_dct2(&tried.residual(&self.spectra));
+        let (mut aside, mut about) = (vec![], vec![]);
+        for course in &tried.hypothesis.courses {
+            let Model::Mean(model) = course.effect.model() else { continue };
             let parameters =
                 model.parameters(&course.nonlinear_parameters, &course.coefficients, &self.drivers);
-            curvature_within_average(course.effect, &parameters, &self.drivers)
-        };
-        let aside: Vec<usize> = tried.hypothesis.courses.iter().flat_map(of).collect();
-        if aside.is_empty() {
+            aside.extend(curvature_within_average(course.effect, &parameters, &self.drivers));
+            let most = most_about_corners(self.usable.len(), self.about_corners + about.len());
+            about.extend(corner(course.effect, &parameters, &self.drivers, &left, &self.usable, most));
+        }
+        self.about_corners += about.len();
+        aside.extend(about);
+        if aside.is_empty() && !self.has_round_corner() {
             return false;
         }
         self.without(&aside, tried);
@@ -291,6 +310,20 @@ fn curvature_within_average(effect: &dyn Effect, parameters: &[f64], drivers: &D
     let Model::Mean(course) = effect.model() else { return vec![] };
     let samples = course.curvature_within_average(parameters, drivers);
     if samples.len() as f64 > MAX_SHARE * drivers.samples as f64 { vec![] } else { samples }
+}
+
+/// Samples about the corner of an effect in which a residual is larger than its noise; none for an effect without a corner.
+fn corner(
+    effect: &dyn Effect,
+    parameters: &[f64],
+    drivers: &Drivers,
+    residual: &[f64],
+    usable: &[bool],
+    most: usize,
+) -> Vec<usize> {
+    let Model::Mean(course) = effect.model() else { return vec![] };
+    let distance = course.distance_from_corner(parameters, drivers);
+    distance.map_or_else(Vec::new, |distance| round_corner(&distance, residual, usable, most))
 }
 
 /// Samples at either end that filters make different from noise that is even about the ends.

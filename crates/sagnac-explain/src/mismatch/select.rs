@@ -7,6 +7,7 @@
 
 use super::candidates;
 use super::discrepancy;
+use super::effective_tests;
 use super::fitted_hypothesis::{Candidate, FittedHypothesis, SpectralDataSet};
 use super::heldout::Halves;
 use super::hypothesis::{Hypothesis, fit};
@@ -19,7 +20,7 @@ use super::problem::Problem;
 use super::several::least_of;
 use super::terms::MeanTerm;
 use super::terms::SpectralTerm;
-use crate::effect::{Effect, Model, SpectrumAct};
+use crate::effect::{Drivers, Effect, Model, SpectrumAct};
 use crate::numeric::order::SortByNumber;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -84,8 +85,13 @@ pub struct Selection {
 
 /// True for a candidate that may be added: without it, as large a gain anywhere in the family has a probability below α. This is the
 /// rule that decides; BIC only orders what passes.
-pub fn passes(candidate: &Candidate, family: f64, alpha: f64) -> bool {
-    least_of(candidate.p_value, family) < alpha
+pub fn passes(candidate: &Candidate, drivers: &Drivers, alpha: f64) -> bool {
+    !is_chance(candidate.p_value, drivers, alpha)
+}
+
+/// True for a p-value that something in a record with such columns has by chance, more often than a significance.
+fn is_chance(p_value: f64, drivers: &Drivers, alpha: f64) -> bool {
+    least_of(p_value, effective_tests::of_record(drivers)) >= alpha
 }
 
 /// The slots that a hypothesis has beyond its claim.
@@ -185,6 +191,16 @@ fn has_free_form(tried: &FittedHypothesis) -> bool {
     slots(&tried.hypothesis).iter().any(|(_, e)| e.is_free_form())
 }
 
+/// True for a hypothesis with a free form that has no kind in the format of explanations.
+fn has_nameless_form(tried: &FittedHypothesis) -> bool {
+    slots(&tried.hypothesis).iter().any(|(_, e)| is_nameless(*e))
+}
+
+/// True for a free form that has no kind in the format of explanations.
+fn is_nameless(effect: &dyn Effect) -> bool {
+    effect.is_free_form() && !effect.in_format()
+}
+
 /// Every addition to one hypothesis.
 struct Tried {
     set: Vec<&'static str>,
@@ -199,14 +215,12 @@ struct Search<'a> {
     halves: Halves,
     options: &'a Options,
     tried: RefCell<Vec<Tried>>,
-    /// Effects that were looked for at first, those in single samples included.
-    family: f64,
 }
 
 impl<'a> Search<'a> {
     fn new(problem: &'a Problem, options: &'a Options) -> Search<'a> {
         let (spectra, halves) = (&problem.spectra, Halves::new(problem));
-        Search { problem, spectra, halves, options, tried: RefCell::new(vec![]), family: 1.0 }
+        Search { problem, spectra, halves, options, tried: RefCell::new(vec![]) }
     }
 
     /// Every addition to a hypothesis, the best first.
@@ -217,15 +231,14 @@ impl<'a> Search<'a> {
             return known.candidates.clone();
         }
         let mut found = candidates::all(before, self.spectra, self.options);
-        let (rows, family) = (self.spectra.rows, family(&found));
-        prediction::weigh(&mut found, &self.halves, rows, |c| passes(c, family, self.options.alpha));
+        prediction::weigh(&mut found, &self.halves, self.spectra.rows, |c| self.passes(c));
         let candidates = Rc::new(found);
         self.tried.borrow_mut().push(Tried { set, log_likelihood, candidates: candidates.clone() });
         candidates
     }
 
     fn passes(&self, candidate: &Candidate) -> bool {
-        passes(candidate, self.family, self.options.alpha)
+        passes(candidate, &self.spectra.full.drivers, self.options.alpha)
     }
 
     /// Grows a hypothesis by the wanted effects, and drops what became needless.
@@ -268,7 +281,38 @@ impl<'a> Search<'a> {
             }
             beam = next;
         }
-        pruned(best, self.spectra, rows)
+        let all = pruned(best, self.spectra, rows);
+        let mut best = self.justified(all.clone());
+        // Something else may explain what an effect stood for that went again.
+        while slots(&best.hypothesis).len() < slots(&all.hypothesis).len() {
+            let candidates = self.candidates(&best);
+            let beside = candidates.iter().filter(|c| self.passes(c) && wanted(c.effect)).map(|c| &c.tried);
+            let Some(next) = beside.min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows))) else { break };
+            let next = self.justified(pruned(next.clone(), self.spectra, rows));
+            if next.rank(rows) >= best.rank(rows) - MIN_DELTA_BIC {
+                break;
+            }
+            best = next;
+        }
+        best
+    }
+
+    /// A hypothesis without the effects that the rule would not add to the others: what came first may have stood for what came after.
+    fn justified(&self, mut best: FittedHypothesis) -> FittedHypothesis {
+        while slots(&best.hypothesis).len() > 1 {
+            let each = slots(&best.hypothesis).into_iter().map(|(slot, effect)| {
+                let less = without(&best, slot, self.spectra);
+                let own = self.candidates(&less).iter().find(|c| c.effect.kind() == effect.kind()).cloned();
+                (own.map_or(1.0, |c| c.p_value), less)
+            });
+            let Some((p_value, less)) = each.max_by(|a, b| a.0.total_cmp(&b.0)) else { break };
+            if is_chance(p_value, &self.spectra.full.drivers, self.options.alpha) {
+                best = less;
+            } else {
+                break;
+            }
+        }
+        best
     }
 
     /// The plain hypothesis, unless a free one explains or predicts clearly more, or leaves ordinary noise where the plain one does not.
@@ -309,11 +353,14 @@ impl<'a> Search<'a> {
 
 /// Grows a hypothesis on `base`, which is the claim with what was found in single samples before.
 pub fn select(base: &FittedHypothesis, problem: &Problem, options: &Options) -> Selection {
-    let mut search = Search::new(problem, options);
+    let search = Search::new(problem, options);
     let rows = search.spectra.rows;
     let first = search.candidates(base);
-    search.family = family(&first);
     let mut best = search.grown(base, |_| true);
+    if has_nameless_form(&best) {
+        let named = search.grown(base, |e| !is_nameless(e));
+        best = search.plainest(named, best, base);
+    }
     if has_free_form(&best) {
         let plain = search.grown(base, |e| !e.is_free_form());
         best = search.plainest(plain, best, base);
@@ -323,7 +370,11 @@ pub fn select(base: &FittedHypothesis, problem: &Problem, options: &Options) -> 
     for _ in 0..MAX_EXCHANGES {
         let better = chosen.iter().filter_map(|c| c.better.as_ref());
         let Some(better) = better.min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows))) else { break };
-        best = search.smallest(pruned(better.clone(), search.spectra, rows));
+        let exchanged = search.smallest(search.justified(pruned(better.clone(), search.spectra, rows)));
+        if exchanged.rank(rows) >= best.rank(rows) {
+            break;
+        }
+        best = exchanged;
         chosen = self::chosen(&best, base, &first, &search);
     }
     let first = first.to_vec();
@@ -353,12 +404,6 @@ fn beam_survivors<'a>(passing: &[&'a Candidate]) -> Vec<&'a Candidate> {
 /// True for a jump that a second one may take back.
 fn is_jump(effect: &dyn Effect) -> bool {
     effect.reversed_pair().is_some()
-}
-
-/// Number of tests that were made: of the effects that were tried, those in single samples included, and as many for the tests of the
-/// residual that name no effect.
-pub fn family(first: &[Candidate]) -> f64 {
-    2.0 * (first.len().max(1) as f64 + 8.0)
 }
 
 /// Drops effects that became needless, by what hypotheses are ordered by: of a pair of which each explains the record alone, the
@@ -449,7 +494,8 @@ fn chosen(
     first: &[Candidate],
     search: &Search<'_>,
 ) -> Vec<Chosen> {
-    let (spectra, family) = (search.spectra, search.family);
+    let spectra = search.spectra;
+    let tests = effective_tests::of_record(&spectra.full.drivers);
     let rows = spectra.rows;
     let all_slots = slots(&best.hypothesis);
     let single = all_slots.len() == 1;
@@ -460,7 +506,7 @@ fn chosen(
             let without = if single { base.clone() } else { without(best, slot, spectra) };
             let rivals = if single { first.to_vec() } else { search.candidates(&without).to_vec() };
             let own = rivals.iter().find(|c| c.effect.kind() == effect.kind());
-            let p_value = own.map_or(1.0, |c| least_of(c.p_value, family));
+            let p_value = own.map_or(1.0, |c| least_of(c.p_value, tests));
             let modes = modes_of_process(slot, best, spectra);
             let near = |c: &Candidate| {
                 bic_of_rival(c, spectra) - bic_excess(c, best, modes, rows) < best.bic(rows) + MIN_DELTA_BIC

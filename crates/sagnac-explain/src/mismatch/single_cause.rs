@@ -32,12 +32,6 @@ pub(super) struct Together {
     pub places: Vec<Place>,
 }
 
-/// The family of a finding. Rounding that the values themselves show is no part of the shape of a spectrum.
-fn family(named: &NamedEffect) -> Option<Family> {
-    let by_values = named.effect.rounding().is_some() && frequency(named).is_none();
-    named.effect.family().filter(|_| !by_values)
-}
-
 /// The hull of the places of some findings, one in each domain, at most three.
 fn hull(named: &[NamedEffect], members: &[usize]) -> Vec<Place> {
     let mut out: Vec<Place> = vec![];
@@ -75,7 +69,8 @@ fn neighbours(named: &[NamedEffect], lines: &[usize]) -> Vec<Vec<usize>> {
 
 /// Positions of the only two jumps, by time, if the second takes back what the first brought.
 fn reversible_step_pair(named: &[NamedEffect]) -> Option<[usize; 2]> {
-    let jumps: Vec<usize> = (0..named.len()).filter(|i| family(&named[*i]) == Some(Family::Jump)).collect();
+    let jumps: Vec<usize> =
+        (0..named.len()).filter(|i| named[*i].effect.family() == Some(Family::Jump)).collect();
     // A gyro that was turned and turned back changed its heading twice.
     let steps = jumps.iter().all(|i| named[*i].effect.reversed_pair().is_some());
     let [a, b] = jumps[..] else { return None };
@@ -144,7 +139,7 @@ pub(super) fn together(named: &[NamedEffect], allowed: usize) -> Vec<Together> {
     // Where more findings were allowed than one family took, it was not cut short: each is what it is named.
     let many = MIN_FAMILY_FINDINGS.max(allowed);
     let of = |wanted: Family| -> Vec<usize> {
-        (0..named.len()).filter(|i| family(&named[*i]) == Some(wanted)).collect()
+        (0..named.len()).filter(|i| named[*i].effect.family() == Some(wanted)).collect()
     };
     let mut groups: Vec<Vec<usize>> = vec![];
     let lines = of(Family::Line);
@@ -226,6 +221,18 @@ mod tests {
         assert_eq!(groups(&[1.14, 1.0]), [[1, 0]]);
         assert!(groups(&[1.16, 1.0]).is_empty());
         assert_eq!(groups(&[1.0, 5.0, 20.0]), [[0, 1, 2]]);
+        // Rounding beside two resonances is no third part of a spectrum that no kind has; a third resonance is.
+        let of = |kinds: [&str; 3]| {
+            let found = |(kind, hz): (&str, f64)| NamedEffect {
+                effect: find(kind).unwrap(),
+                stated_as: find(kind).unwrap(),
+                ..line(hz)
+            };
+            let named: Vec<NamedEffect> = kinds.into_iter().zip([9.2, 20.7, 29.9]).map(found).collect();
+            together(&named, 3).len()
+        };
+        assert_eq!(of(["quasi_periodic", "quantization", "quasi_periodic"]), 0);
+        assert_eq!(of(["quasi_periodic"; 3]), 1);
         // Allowed five, three were all there were.
         let named: Vec<NamedEffect> = [1.0, 5.0, 20.0].map(line).into();
         assert!(together(&named, 5).is_empty());

@@ -17,7 +17,7 @@ static PARAMS: [Param; 1] = [Param::reported("lsb_arcsec", "arcsec", 0.0, 1e6)];
 describe! {
     Quantization, "quantization", Spectrum in Amplitude, needs [],
     confusers [ExcessArw, DeadZone],
-    properties [carried_over, family Spectrum],
+    properties [carried_over],
     with {
         fn rounding(&self) -> Option<&'static dyn Rounding> {
             Some(&Quantization)

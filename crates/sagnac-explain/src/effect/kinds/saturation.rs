@@ -86,6 +86,11 @@ impl MeanModel for Saturation {
         vec![1e-3 * largest_rate(drivers)]
     }
 
+    fn distance_from_corner(&self, parameters: &[f64], drivers: &Drivers) -> Option<Vec<f64>> {
+        let (limit, rate) = (parameters.first()?, drivers.table_rate.as_ref()?);
+        Some(rate.iter().map(|r| r.abs() - limit).collect())
+    }
+
     /// Samples in which the rate passes the limit on its way from one neighbour to the other: how long it was beyond within the sample,
     /// its mean does not say. None where too few samples lie beyond altogether to do without them.
     fn curvature_within_average(&self, parameters: &[f64], drivers: &Drivers) -> Vec<usize> {
@@ -137,6 +142,8 @@ mod tests {
             Saturation.curvature_within_average(&[limit], &drivers)
         };
         let steps = vec![0.0, 2.0, 4.0, 5.0, 5.0, 5.0, 3.0, -3.0, -5.0, -5.0, -5.0];
+        let drivers = Drivers { table_rate: Some(vec![-4.0, 5.0]), ..Drivers::default() };
+        assert_eq!(Saturation.distance_from_corner(&[4.5], &drivers), Some(vec![-0.5, 0.5]));
         assert_eq!(told(steps.clone(), 4.5), [2, 3, 5, 6, 7, 8, 10, 11]);
         assert!(told(steps, 6.0).is_empty());
         let tops = [0.0, 5.0].repeat(40);

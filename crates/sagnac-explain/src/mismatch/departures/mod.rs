@@ -13,10 +13,11 @@ mod tracks;
 
 pub use departure::{Departure, Shape, White};
 
+use super::effective_tests;
 use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use super::several::{least_of, ln_least_of};
 use super::spectral_data::SpectralData;
-use crate::effect::{Domain, Place};
+use crate::effect::{Domain, Drivers, Place};
 use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided, normal_two_sided};
 use crate::numeric::sums::cumulated;
 use departure::{ln_at_least, windows};
@@ -271,17 +272,20 @@ fn skewness(spectral: &SpectralData, white: &White, allowed: f64) -> Option<Depa
     scan.done("skewness", Domain::Time).map(|d| Departure { beside: Some(size), ..d })
 }
 
-/// Probability of the smallest of several p-values.
-pub fn family(departures: &[Departure]) -> f64 {
-    let smallest = departures.iter().map(Departure::p_value).fold(1.0, f64::min);
-    least_of(smallest, departures.len() as f64)
+/// The smallest of several p-values.
+pub fn smallest(departures: &[Departure]) -> f64 {
+    departures.iter().map(Departure::p_value).fold(1.0, f64::min)
+}
+
+/// Probability of the smallest p-value of the tests of a residual, in a record with such columns.
+pub fn family(departures: &[Departure], drivers: &Drivers) -> f64 {
+    least_of(smallest(departures), effective_tests::of_residual(drivers))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    use crate::effect::Drivers;
     use crate::numeric::cosine::dct2;
 
     fn white(series: Vec<f64>) -> White {
@@ -363,8 +367,11 @@ mod tests {
     fn the_smallest_of_several_probabilities_is_judged_by_their_number() {
         let place = Place { domain: Domain::Time, from: 0.0, to: 1.0 };
         let of = |p: f64| Departure { test: "level", place, beside: None, ln_p: p.ln(), shape: None };
-        // 1 − 0.99³, 1 − 0.5².
-        assert!((family(&[of(0.5), of(0.01), of(0.2)]) - 0.029_701).abs() < 1e-12);
-        assert!((family(&[of(0.5), of(0.9)]) - 0.75).abs() < 1e-12);
+        let drivers = spectral(64).drivers;
+        let tests = effective_tests::of_residual(&drivers);
+        for some in [&[of(0.5), of(0.01), of(0.2)][..], &[of(0.01)]] {
+            let together = family(some, &drivers);
+            assert!((together - (1.0 - 0.99f64.powf(tests))).abs() < 1e-12, "{together}");
+        }
     }
 }

@@ -14,7 +14,7 @@ const NOTICE_PROBABILITY: f64 = 0.95;
 pub(super) struct Gate {
     /// Rows of the recording.
     pub rows: usize,
-    /// Effects that are looked for.
+    /// Tests that everything amounts to that is looked at.
     pub family: f64,
     /// Probability at which a correct claim is called a mismatch.
     pub alpha: f64,

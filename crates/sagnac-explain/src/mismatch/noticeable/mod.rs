@@ -23,10 +23,11 @@ mod values;
 #[cfg(test)]
 mod tests;
 
+use super::effective_tests;
 use super::noticeable_record::{Basis, NotComputed, NoticeableSize, WhyNot};
 use super::options::Options;
 use super::problem::Problem;
-use super::select::{Selection, family};
+use super::select::Selection;
 use crate::effect::{Detector, Domain, EFFECTS, Effect, Model, Resolution};
 use crate::numeric::parallel;
 use gate::Gate;
@@ -66,7 +67,11 @@ pub(super) fn sizes(
     let full = NullModel::new(best, spectra, Resolution::FullRate, share);
     let null_models = NullModels {
         problem,
-        gate: Gate { rows: spectra.rows, family: family(&selection.first), alpha: options.alpha },
+        gate: Gate {
+            rows: spectra.rows,
+            family: effective_tests::of_record(&spectra.full.drivers),
+            alpha: options.alpha,
+        },
         averaged: NullModel::new(best, spectra, Resolution::Averaged, share),
         expected: Expected::new(best, spectra, &full),
         full,
