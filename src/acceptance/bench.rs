@@ -159,10 +159,10 @@ impl OnBench<'_> {
     /// Whether the bench was released, by the checks that were found; `None` where nobody looked for any. The latest check of the bench before the recording decides: one that failed takes back what
     /// an earlier one released.
     pub fn release<'c>(&self, checks: Option<&'c [BenchCheck]>) -> Release<'c> {
-        let Some(name) = self.name() else { return refused("bench.no_name".into(), None) };
+        let Some(name) = self.name() else { return refused("bench.no_name".into()) };
         let procedure = self.bench.check.as_str();
         let about = |key: &'static str| Note::new(key).with("bench", name).with("procedure", procedure);
-        let Some(found) = checks else { return refused(about("bench.not_looked"), None) };
+        let Some(found) = checks else { return refused(about("bench.not_looked")) };
         let (of_procedure, others): (Vec<&BenchCheck>, Vec<&BenchCheck>) =
             found.iter().partition(|c| c.releases_for_s(procedure).is_some());
         let own = of_procedure.iter().copied().filter(|c| c.bench().is_some_and(|b| is_same(b, name)));
@@ -175,17 +175,17 @@ impl OnBench<'_> {
         }
         if let Some((check, ended)) = timed.first() {
             let key = if ended.is_some() { "bench.later" } else { "bench.no_time" };
-            return refused(about(key).with("check", check.folder.as_str()), Some(*check));
+            return refused(about(key).with("check", check.folder.as_str()));
         }
         let mut benches: Vec<&str> = of_procedure.iter().map(|c| c.bench().unwrap_or("–")).collect();
         benches.sort_unstable();
         benches.dedup();
         match (benches.is_empty(), others.first()) {
-            (false, _) => refused(about("bench.of_others").with("others", benches.join(", ")), None),
+            (false, _) => refused(about("bench.of_others").with("others", benches.join(", "))),
             (true, Some(other)) => {
-                refused(about("bench.no_check").with("check", other.folder.as_str()), None)
+                refused(about("bench.no_check").with("check", other.folder.as_str()))
             }
-            (true, None) => refused(about("bench.none"), None),
+            (true, None) => refused(about("bench.none")),
         }
     }
 
@@ -262,8 +262,8 @@ impl OnBench<'_> {
     }
 }
 
-fn refused(note: Note, check: Option<&BenchCheck>) -> Release<'_> {
-    Release { status: ConditionStatus::Invalid, note, check, age_s: None, is_dated: false }
+fn refused<'c>(note: Note) -> Release<'c> {
+    Release { status: ConditionStatus::Invalid, note, check: None, age_s: None, is_dated: false }
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ use crate::acceptance::bench::BenchCheck;
 use crate::config::procedure::Procedure;
 use crate::i18n::{Lang, Note};
 use crate::moment;
-use crate::output::{Kind, SIGNATURES_FOLDER};
+use crate::output::{CHECKSUMS_FILE, Kind, SIGNATURES_FOLDER, sha256_below};
 use crate::record::read;
 use crate::store::address::address;
 use crate::store::{Filter, Store, StoreError};
@@ -55,6 +55,9 @@ pub fn bench_checks<'p>(
 
 /// The check in a folder, with what is wrong with its hashes, its signatures and its verdict.
 fn of_folder(path: &Path) -> Result<BenchCheck, Note> {
+    if !path.exists() {
+        read::open(path).map_err(|e| e.note(path))?;
+    }
     let folder = Folder::at(path)?;
     let file = folder.path.join(Kind::Result.record_file());
     let record = read::open(&file).map_err(|e| e.note(&file))?;
@@ -62,9 +65,11 @@ fn of_folder(path: &Path) -> Result<BenchCheck, Note> {
     findings.extend(signatures(&folder, Signing { signers: None, at: moment::now() }));
     findings.extend(verdict(&record));
     let fault = findings.iter().find(|f| f.differs()).map(|f| f.note().clone());
+    let mut files = stated_hashes(&folder.path);
+    files.extend(sha256_below(&folder.path, CHECKSUMS_FILE).ok().map(|hash| (CHECKSUMS_FILE.to_owned(), hash)));
     Ok(BenchCheck {
         folder: folder.path.display().to_string(),
-        address: address(&stated_hashes(&folder.path)),
+        address: address(&files),
         record,
         fault,
     })

@@ -18,7 +18,7 @@ impl Condition for ReleasedBench {
         });
         let checked = on_bench.bench.releases_for_s.map(|for_s| {
             let (status, note) = on_bench.releases(for_s);
-            ConditionRecord { evidence: Some(Evidence::Declared), ..record("bench", status, &[], None, note) }
+            record("bench", status, &[], None, note)
         });
         demanded.into_iter().chain(checked).collect()
     }
