@@ -182,9 +182,7 @@ impl OnBench<'_> {
         benches.dedup();
         match (benches.is_empty(), others.first()) {
             (false, _) => refused(about("bench.of_others").with("others", benches.join(", "))),
-            (true, Some(other)) => {
-                refused(about("bench.no_check").with("check", other.folder.as_str()))
-            }
+            (true, Some(other)) => refused(about("bench.no_check").with("check", other.folder.as_str())),
             (true, None) => refused(about("bench.none")),
         }
     }

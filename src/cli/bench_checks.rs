@@ -66,11 +66,8 @@ fn of_folder(path: &Path) -> Result<BenchCheck, Note> {
     findings.extend(verdict(&record));
     let fault = findings.iter().find(|f| f.differs()).map(|f| f.note().clone());
     let mut files = stated_hashes(&folder.path);
-    files.extend(sha256_below(&folder.path, CHECKSUMS_FILE).ok().map(|hash| (CHECKSUMS_FILE.to_owned(), hash)));
-    Ok(BenchCheck {
-        folder: folder.path.display().to_string(),
-        address: address(&files),
-        record,
-        fault,
-    })
+    files.extend(
+        sha256_below(&folder.path, CHECKSUMS_FILE).ok().map(|hash| (CHECKSUMS_FILE.to_owned(), hash)),
+    );
+    Ok(BenchCheck { folder: folder.path.display().to_string(), address: address(&files), record, fault })
 }

@@ -45,7 +45,11 @@ fn states() -> Vec<State> {
     let state = |name, bench, at_limit| State { name, bench, at_limit };
     vec![
         state("a sound bench", sound(), None),
-        state("thermometers with an error that lasts a minute", BenchCheck { noise: (0.01, 0.05), ..sound() }, None),
+        state(
+            "thermometers with an error that lasts a minute",
+            BenchCheck { noise: (0.01, 0.05), ..sound() },
+            None,
+        ),
         state("a difference that drifts by 0.2 K", BenchCheck { drift: 0.2, ..sound() }, None),
         state("readings of 0.1 K", BenchCheck { digit: 0.1, noise: (0.002, 0.0), ..sound() }, None),
         state("a reference gyro with flicker", table(RateTable { b: 0.01, ..reference(0) }), None),
@@ -72,7 +76,8 @@ impl State {
         let folder = tempfile::tempdir().ok()?;
         let path = folder.path().join("r.csv");
         std::fs::write(&path, bench.csv()).ok()?;
-        let result = procedure.run(&Recording::open(&path).ok()?, &UnitUnderTest::with_serial("REF-1")).ok()?;
+        let result =
+            procedure.run(&Recording::open(&path).ok()?, &UnitUnderTest::with_serial("REF-1")).ok()?;
         Some((result.record().clone(), truths))
     }
 
@@ -103,7 +108,13 @@ impl State {
         match self.at_limit {
             Some(id) => {
                 rows.push(Row::share(id, "passes at its limit", Asked::AtMost(0.05), passed(Some(id)), of));
-                rows.push(Row::share("bench", "is released at a limit", Asked::AtMost(0.05), passed(None), of));
+                rows.push(Row::share(
+                    "bench",
+                    "is released at a limit",
+                    Asked::AtMost(0.05),
+                    passed(None),
+                    of,
+                ));
             }
             None => rows.push(Row::share("bench", "is released", Asked::AtLeast(0.95), passed(None), of)),
         }
