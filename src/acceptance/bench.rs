@@ -77,7 +77,7 @@ fn begin(files: &[RecordingFile]) -> Option<DateTime<Utc>> {
 /// When a recording ended, where every file declares its date.
 fn end(files: &[RecordingFile]) -> Option<DateTime<Utc>> {
     let one = |f: &RecordingFile| {
-        let length = Duration::try_milliseconds((1000.0 * f.duration_s) as i64)?;
+        let length = Duration::try_milliseconds((1000.0 * f.duration_s).round() as i64)?;
         parsed(f.start.as_deref()?)?.checked_add_signed(length)
     };
     files.iter().map(one).collect::<Option<Vec<_>>>()?.into_iter().max()
@@ -228,7 +228,7 @@ impl OnBench<'_> {
     /// When the release by a check that is being made ends, and whether the recording declares the date that it counts from.
     fn until(&self, for_s: f64) -> Moment {
         let ended = moment(end(self.files), None).unwrap_or(Moment { at: self.now, is_dated: false });
-        let length = Duration::try_milliseconds((1000.0 * for_s) as i64).unwrap_or_default();
+        let length = Duration::try_milliseconds((1000.0 * for_s).round() as i64).unwrap_or_default();
         Moment { at: ended.at.checked_add_signed(length).unwrap_or(ended.at), ..ended }
     }
 

@@ -4,6 +4,8 @@ use crate::support::pairs::sample_once;
 use crate::support::{Said, altered, measurand, result, sagnac, shipped};
 use sagnac_studies::bench::bench_check::{BenchCheck, reference};
 use sagnac_studies::bench::rate_table::RateTable;
+use sagnac_studies::bench_checks::STUDY;
+use sagnac_studies::study::Verdict;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -194,6 +196,19 @@ fn a_recording_without_a_date_is_said_to_have_none() {
         None => assert!(code == 3 && told.contains("ended after"), "{told}"),
         Some(age) if age > 12.0 => assert!(code == 3 && told.contains("held for"), "{told}"),
         Some(_) => assert!(code == 0 && told.contains("no date"), "{told}"),
+    }
+}
+
+#[test]
+fn intervals_of_a_check_hold_and_a_bench_at_its_limit_is_not_released() {
+    let cases = (STUDY.cases)();
+    assert_eq!(cases.len(), 8);
+    for case in cases {
+        let rows = (case.run)(6, 7);
+        assert_eq!(rows.iter().filter(|r| r.of == 6).count(), rows.len(), "{}", case.name);
+        for row in rows {
+            assert!(row.verdict != Verdict::Misses, "{}: {row:?}", case.name);
+        }
     }
 }
 
