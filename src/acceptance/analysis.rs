@@ -66,6 +66,7 @@ impl Prepared {
             now,
             taus: None,
             exact: false,
+            bench_checks: None,
         }
     }
 }

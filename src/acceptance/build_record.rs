@@ -32,10 +32,12 @@ pub(super) fn build_record(
     let (verdict, summary) = verdict::with_idle_limits(judged, request.limits.idle.as_ref());
     let use_stamps = ("recording.use_stamps", request.use_stamps.to_string());
     let option = |(name, value): (&str, String)| OptionRecord { name: name.to_owned(), value };
+    let files = recording(reading);
     RunRecord {
         verdict,
         summary: summary.into_iter().map(Into::into).collect(),
-        recording: recording(reading),
+        bench: request.on_bench(&files).map(|on| on.record(request.bench_checks, verdict)),
+        recording: files,
         conditions,
         checks: if request.is_run() { reading.checks.records(own_checks) } else { vec![] },
         integrity: reading.report.integrity.clone().with_texts(FaultText::from),
@@ -111,7 +113,7 @@ fn unread(path: &Path) -> RecordingFile {
 }
 
 /// The files of the recording.
-fn recording(reading: &Reading<'_>) -> Vec<RecordingFile> {
+pub(super) fn recording(reading: &Reading<'_>) -> Vec<RecordingFile> {
     let report = &reading.report;
     let several = report.files.len() > 1;
     let columns: Vec<ColumnRecord> = report

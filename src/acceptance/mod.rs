@@ -6,6 +6,7 @@
 //! | `analysis`, `column_choice` | what stands in for a procedure where there is none |
 //! | `kinds` | what each kind of test adds to that way; one file or folder a kind, one list |
 //! | `clock_component` | what the clocks of files beside the recording add to uncertainties |
+//! | `bench`, `thermometer_pairs` | whether the bench was released for the test; what two of its thermometers differ by |
 //! | `interim` | a growing recording by a plan of looks |
 //! | `derived` | rows by a formula over others |
 //! | `programs`, `handed` | rows that programs of the user give, and the channels that are handed to them |
@@ -17,6 +18,7 @@
 //! | `compare`, `inspect` | results side by side; what a file holds and which tests it can support |
 
 pub mod analysis;
+pub mod bench;
 mod build_record;
 pub mod changes;
 pub mod claimed;
@@ -48,6 +50,7 @@ pub mod siblings;
 mod sinks;
 pub mod tables;
 mod test_kind;
+mod thermometer_pairs;
 pub mod verdict;
 
 pub use request::{Outcome, Request, RunError, Table, session};

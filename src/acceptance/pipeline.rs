@@ -1,6 +1,6 @@
 //! The way from a recording to its record, the same for every kind of test: collect, judge, measure, record.
 
-use super::build_record::build_record;
+use super::build_record::{self, build_record};
 use super::clock_component;
 use super::condition::checks::CheckLog;
 use super::condition::thermometer::Thermometer;
@@ -14,6 +14,7 @@ use super::reading::{self, tidy};
 use super::request::{Outcome, Request};
 use super::sinks::{Overview, StabilitySink};
 use super::test_kind::{Evidence, Progress, Reading, Run, TestKind};
+use super::thermometer_pairs::{self, PairSink};
 use super::verdict;
 use crate::config::procedure::limits::gyro_of;
 use crate::estimate::Estimate;
@@ -79,14 +80,15 @@ fn collect<'r, K: TestKind>(
     let mut read = |plan: &Plan<'_>| -> Run<_> {
         let mut overview = Overview::new(procedure, &channels, tidy(nominal_s));
         let stability = StabilitySink::new(procedure, &channels, tidy(nominal_s), plan.start_s());
-        let inside = (stability, kind.collector(request, &channels, nominal_s)?);
+        let pairs = PairSink::new(procedure, &channels);
+        let inside = (stability, (pairs, kind.collector(request, &channels, nominal_s)?));
         let mut windowed = Windowed::new(inside, reading::window(procedure), plan.start_s(), nominal_s);
         let report = plan.stream(&mut [&mut overview, &mut windowed], progress)?;
         Ok(((overview, windowed), report))
     };
     let ((overview, windowed), report) = reading::read_at_measured_interval(&mut plan, &mut read)?;
     let start_s = plan.start_s();
-    let ((stability, collected), mut window) = windowed.finish();
+    let ((stability, (pairs, collected)), mut window) = windowed.finish();
     reading::name_pauses(&mut window, &report);
     let (stability, statuses) = stability.finish();
     let mut reading = Reading {
@@ -99,6 +101,7 @@ fn collect<'r, K: TestKind>(
         window,
         stability,
         statuses,
+        thermometer_pairs: pairs.finish(),
         envelopes: overview.finish(),
         checks: CheckLog::default(),
     };
@@ -116,6 +119,7 @@ fn judge(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<ConditionRecord>
     let (columns, stated_serials) =
         if request.is_run() { (columns(reading), request.source.stated_serials()) } else { (vec![], vec![]) };
     let thermometers = thermometers(reading);
+    let files = build_record::recording(reading);
     conditions.extend(judge_all(&Facts {
         procedure: request.procedure,
         integrity: &reading.report.integrity,
@@ -138,6 +142,8 @@ fn judge(reading: &Reading<'_>, evidence: &dyn Evidence) -> Vec<ConditionRecord>
         serial_of_recording: request.serial_of_recording,
         schedule: rest.schedule,
         today: request.now.date_naive(),
+        on_bench: request.on_bench(&files),
+        bench_checks: request.bench_checks,
         checks: &reading.checks,
     }));
     if !request.is_run() {
@@ -183,6 +189,7 @@ fn rows(
     let correlation = |one: &_, other: &_| evidence.correlation(one, other);
     rows.extend(derived::rows(procedure, request.limits, &gyros, estimates, &correlation));
     rows.extend(external::rows(procedure, request.limits, &request.unit));
+    rows.extend(thermometer_pairs::rows(procedure, &reading.thermometer_pairs, request.limits));
     rows.extend(programs::rows(given, request.limits));
     if let Some(looks) = looks {
         looks.settle(&mut rows, &externals(request));

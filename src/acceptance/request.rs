@@ -1,12 +1,13 @@
 //! A request, its outcome, and the reasons why there may be none.
 
+use super::bench::{BenchCheck, OnBench};
 use crate::config::procedure::model::Taus;
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::figure::Figure;
 use crate::i18n::{Lang, Localize, Note};
 use crate::ingest::{IngestError, Source};
 use crate::noise::tau_grid::{TauGrid, TauGridError};
-use crate::record::{ProcedureRecord, RunKind, RunRecord, Session, UnitUnderTest};
+use crate::record::{ProcedureRecord, RecordingFile, RunKind, RunRecord, Session, UnitUnderTest};
 use chrono::{DateTime, Utc};
 use std::fmt;
 
@@ -39,6 +40,8 @@ pub struct Request<'a> {
     pub taus: Option<TauGrid>,
     /// Sum every term at any length.
     pub exact: bool,
+    /// The checks of benches that were found; `None` where nobody looked for any.
+    pub bench_checks: Option<&'a [BenchCheck]>,
 }
 
 impl Request<'_> {
@@ -55,6 +58,12 @@ impl Request<'_> {
             Taus::All => TauGrid::All,
             Taus::List(taus) => TauGrid::List(taus.clone()),
         })
+    }
+
+    /// The test on its bench, where the procedure states one; an analysis has none.
+    pub(super) fn on_bench<'f>(&'f self, files: &'f [RecordingFile]) -> Option<OnBench<'f>> {
+        let bench = self.procedure.bench.as_ref().filter(|_| self.is_run())?;
+        Some(OnBench { bench, station: self.station.as_deref(), files, now: self.now })
     }
 
     /// A sentence about the recording, with its path.

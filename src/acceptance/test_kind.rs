@@ -6,6 +6,7 @@ use super::condition::status_track::StatusTrack;
 use super::condition::{GyroFact, WarmUpFact};
 use super::power::Situation;
 use super::request::{Request, RunError, Table};
+use super::thermometer_pairs::PairFacts;
 use crate::config::procedure::Procedure;
 use crate::config::procedure::model::MeasurandSpec;
 use crate::estimate::Estimate;
@@ -38,6 +39,8 @@ pub(super) struct Reading<'r> {
     pub stability: BTreeMap<StabilityKey, StabilityFacts>,
     /// Status words, one for each condition of them.
     pub statuses: Vec<StatusTrack>,
+    /// What the thermometers that are compared differ by, pair by pair; `None` where a pair was not read.
+    pub thermometer_pairs: Vec<Option<PairFacts>>,
     /// Curves drawn over time, by position of the channel.
     pub envelopes: BTreeMap<usize, Envelope>,
     /// Which checks were made.

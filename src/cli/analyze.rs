@@ -93,6 +93,7 @@ impl Job for Analysis<'_> {
             unit: UnitUnderTest { serial: manifest.and_then(|m| m.serial), ..UnitUnderTest::default() },
             taus: self.taus.clone(),
             exact: args.grid.exact,
+            bench_checks: None,
             ..prepared.request(&source, &limits, frame.now)
         };
         let reading = note!("cli.reading").say(lang);

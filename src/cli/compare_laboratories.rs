@@ -160,6 +160,7 @@ fn again(
         now: frame.now,
         taus: None,
         exact: false,
+        bench_checks: None,
     };
     let label = note!("progress.of_unit", n, all = 3_usize).say(lang);
     let outcome =

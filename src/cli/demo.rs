@@ -48,6 +48,7 @@ pub fn main(args: DemoArgs, lang: Lang) -> Result<u8, String> {
         serial: Some("SN-0001".to_owned()),
         lot: None,
         unit_data: None,
+        bench_check: None,
         operator: None,
         station: None,
         out: Some(report),

@@ -1,6 +1,7 @@
 //! The command line: one file a verb. The only place that prints and that knows exit codes.
 
 mod analyze;
+mod bench_checks;
 mod check;
 mod columns;
 mod compare;

@@ -1,5 +1,6 @@
 //! A procedure of several phases, ready to be run on manifests: each phase on its files.
 
+use super::bench_checks::bench_checks;
 use super::evaluate::Evaluated;
 use super::inputs::{Inputs, Serial};
 use super::place;
@@ -38,7 +39,7 @@ impl<'a> PhasedTest<'a> {
     /// The diagnostics, in words.
     pub fn load(args: &'a RunArgs, now: DateTime<Utc>, lang: Lang) -> Result<PhasedTest<'a>, String> {
         let error = |note: Note| place::error(&note, lang);
-        let setup = Setup::load(args, now, lang)?;
+        let mut setup = Setup::load(args, now, lang)?;
         say_which(&[&args.procedure], lang);
         let phased = load_phased(&args.procedure).map_err(|p| p.say(lang))?;
         if args.limits.is_some() {
@@ -47,6 +48,7 @@ impl<'a> PhasedTest<'a> {
         if let Some(odd) = phased.phases.iter().find(|p| p.procedure.value.explain.is_some()) {
             return Err(error(note!("phases.explain", id = odd.id.as_str())));
         }
+        setup.bench_checks = bench_checks(args, phased.phases.iter().map(|p| &p.procedure.value), lang)?;
         let limits: Vec<EffectiveLimits> =
             phased.phases.iter().map(|p| effective(&p.procedure, p.limits.as_ref())).collect();
         for (phase, limits) in phased.phases.iter().zip(&limits) {

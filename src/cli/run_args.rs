@@ -49,6 +49,9 @@ pub struct RunArgs {
     /// Test station where the recording was made
     #[arg(long, value_name = "NAME")]
     pub station: Option<String>,
+    /// Result of the check that released the bench, where the procedure demands one [default: the latest in the store]
+    #[arg(long, value_name = "DIR")]
+    pub bench_check: Option<PathBuf>,
     /// Output folder [default: named after procedure, serial number and UTC time]
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,

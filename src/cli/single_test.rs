@@ -1,5 +1,6 @@
 //! A procedure with its limits, ready to be run on recordings.
 
+use super::bench_checks::bench_checks;
 use super::evaluate::{Against, Evaluated};
 use super::inputs::{Inputs, Serial};
 use super::place;
@@ -36,7 +37,7 @@ impl<'a> SingleTest<'a> {
     /// # Errors
     /// The diagnostics, in words.
     pub fn load(args: &'a RunArgs, now: DateTime<Utc>, lang: Lang) -> Result<SingleTest<'a>, String> {
-        let setup = Setup::load(args, now, lang)?;
+        let mut setup = Setup::load(args, now, lang)?;
         let named: Vec<&Path> =
             std::iter::once(args.procedure.as_path()).chain(args.limits.as_deref()).collect();
         say_which(&named, lang);
@@ -52,6 +53,7 @@ impl<'a> SingleTest<'a> {
             }
         };
         let model = procedure.value.explain.as_ref().map(|spec| explained::model(spec, lang)).transpose()?;
+        setup.bench_checks = bench_checks(args, std::iter::once(&procedure.value), lang)?;
         let effective = effective(&procedure, limits.as_ref());
         for warning in procedure.warnings.iter().chain(&effective.warnings) {
             place::eprint_diagnostic(&format!("{}\n", warning.say(lang)));

@@ -4,6 +4,7 @@ use super::evaluate::{Against, Evaluated, evaluate};
 use super::inputs::{Inputs, completed};
 use super::progress::Progress;
 use super::run_args::RunArgs;
+use crate::acceptance::bench::BenchCheck;
 use crate::acceptance::{Request, RunError, Table};
 use crate::config::manifest::Manifest;
 use crate::config::procedure::missing_columns::missing_columns;
@@ -64,6 +65,8 @@ pub struct Setup<'a> {
     args: &'a RunArgs,
     taus: Option<TauGrid>,
     units: UnitData,
+    /// The checks of benches that were found; `None` where none is demanded, or nobody says where to look.
+    pub bench_checks: Option<Vec<BenchCheck>>,
     /// When the evaluation runs.
     pub now: DateTime<Utc>,
 }
@@ -74,7 +77,8 @@ impl<'a> Setup<'a> {
     /// # Errors
     /// The diagnostics, in words.
     pub fn load(args: &'a RunArgs, now: DateTime<Utc>, lang: Lang) -> Result<Setup<'a>, String> {
-        Ok(Setup { args, taus: args.grid.grid(lang)?, units: args.units(lang)?, now })
+        let (taus, units) = (args.grid.grid(lang)?, args.units(lang)?);
+        Ok(Setup { args, taus, units, bench_checks: None, now })
     }
 
     /// The inputs of every result, so far without procedure, recording and unit.
@@ -124,6 +128,7 @@ impl<'a> Setup<'a> {
             now: self.now,
             taus: self.taus.clone(),
             exact: self.args.grid.exact,
+            bench_checks: self.bench_checks.as_deref(),
         };
         let mut evaluated = if let Some(error) = refused {
             Evaluated::refused(&request, &error)

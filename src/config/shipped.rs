@@ -58,6 +58,7 @@ macro_rules! shipped {
 pub static SHIPPED_PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
     "acceleration"
     "acceptance"
+    "bench-check"
     "bias-repeatability"
     "electromagnetic-immunity"
     "magnetic-sensitivity"

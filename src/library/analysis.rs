@@ -69,6 +69,7 @@ impl Analysis {
             unit: UnitUnderTest { serial, ..UnitUnderTest::default() },
             taus: self.taus.clone(),
             exact: self.exact,
+            bench_checks: None,
             ..prepared.request(source, &limits, self.evaluated_at.unwrap_or_else(moment::now))
         };
         Ok(RunResult::new(execute(&request, progress)?))

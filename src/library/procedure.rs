@@ -154,6 +154,7 @@ impl Procedure {
             now: self.evaluated_at.unwrap_or_else(moment::now),
             taus: None,
             exact: false,
+            bench_checks: None,
         };
         let mut outcome = execute(&request, progress)?;
         outcome.record.explained = self.explained(recording)?;

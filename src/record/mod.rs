@@ -5,6 +5,7 @@
 //! template.
 
 mod attempt;
+mod bench;
 mod check;
 mod comparison;
 mod context;
@@ -31,6 +32,7 @@ mod siblings;
 mod table_step;
 
 pub use attempt::{AttemptRecord, EarlierAttempt};
+pub use bench::{BenchCheckRecord, BenchRecord};
 pub use check::{CheckRecord, CheckStatus};
 pub use comparison::{
     Agreement, CoherentLine, ComparisonRecord, FloorRecord, MinimumRecord, ModelRecord, OctaveRecord,
@@ -121,6 +123,9 @@ pub struct RunRecord {
     /// The unit beside the others of its lot, where a store has enough of them.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub siblings: Option<SiblingsRecord>,
+    /// The bench, where the procedure checks it or demands that it was checked.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bench: Option<BenchRecord>,
     /// The files that were read.
     pub recording: Vec<RecordingFile>,
     /// Worst verdict of all rows and conditions.

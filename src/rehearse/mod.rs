@@ -249,6 +249,7 @@ fn tested(order: &Order<'_>, bench: &Bench<'_>, source: &Source) -> Option<RunRe
         now: order.now,
         taus: None,
         exact: false,
+        bench_checks: None,
     };
     execute(&request, &mut |_, _| {}).ok().map(|outcome| outcome.record)
 }

@@ -310,6 +310,8 @@ fn of_simulation(procedure: &Procedure, drivers: &[Profile]) -> Result<Procedure
     simulated.recording.read = ReadOptions::default();
     simulated.exclusions.clear();
     simulated.explain = None;
+    // No simulated unit stands on a bench.
+    simulated.bench = None;
     simulated.waivers.clear();
     let mut kept = vec![];
     let mut gyros = 0;

@@ -139,6 +139,14 @@ fn arguments(command: &mut Command, folder: &Folder, run: &RunRecord, stated: &V
             if let Some(limits) = how.limits.map(Path::to_owned).or(copy) {
                 command.arg("--limits").arg(limits);
             }
+            // A bench is named by its station where the procedure does not name it, and was released by a check.
+            if let Some(bench) = &run.bench {
+                if let Some(station) = &run.session.station {
+                    command.args(["--station", station]);
+                }
+                let check = bench.check.as_ref().map(|c| c.folder.as_str()).filter(|c| Path::new(c).is_dir());
+                command.args(check.into_iter().flat_map(|folder| ["--bench-check", folder]));
+            }
             // A number that only the recording states is an input no more than any other column of it.
             if let Some(serial) = stated.pointer("/inputs/unit").and_then(Value::as_str) {
                 command.args(["--serial", serial]);

@@ -5,6 +5,7 @@
 
 pub mod allan_intervals;
 pub mod bench;
+pub mod bench_checks;
 pub mod comparison;
 pub mod coverage;
 pub mod disturbances;
@@ -82,4 +83,5 @@ pub static STUDIES: &[&Study] = &[
     &sibling_alarms::STUDY,
     &interim::STUDY,
     &two_laboratories::STUDY,
+    &bench_checks::STUDY,
 ];

@@ -206,6 +206,7 @@ fn run(rate: Vec<f64>, tau0_s: f64, limits: &EffectiveLimits) -> RunRecord {
         now: chrono::DateTime::UNIX_EPOCH,
         taus: None,
         exact: false,
+        bench_checks: None,
     };
     execute(&request, &mut |_, _| {}).expect("an outcome").record
 }

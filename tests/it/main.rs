@@ -2,6 +2,7 @@
 
 mod atomic;
 mod bad_files;
+mod bench_release;
 mod bounds;
 mod cases;
 mod changing_files;

@@ -99,6 +99,7 @@ fn pairs() -> Vec<Pair> {
         "acceleration",
         "transfer-function",
         "start-up",
+        "bench-check",
     ] {
         for (name, exit) in [("pass", 0), ("fail", 1)] {
             add(procedure, &format!("{procedure}-{name}.csv"), Some("SN-1"), None, exit);

@@ -16,6 +16,7 @@ RECORDINGS = sorted((ROOT / "samples").glob("*.csv"))
 
 PROCEDURES = {
     "acceleration": ("acceleration", None),
+    "bench-check": ("bench-check", None),
     "bias-repeatability": ("bias-repeatability", None),
     "electromagnetic-immunity": ("electromagnetic-immunity", None),
     "magnetic-sensitivity": ("magnetic-sensitivity", None),

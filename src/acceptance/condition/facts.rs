@@ -3,6 +3,7 @@
 use super::checks::CheckLog;
 use super::stability_track::{StabilityFacts, StabilityKey};
 use super::status_track::StatusTrack;
+use crate::acceptance::bench::{BenchCheck, OnBench};
 use crate::config::procedure::{EffectiveLimits, Procedure};
 use crate::i18n::{Lang, Localize, Note};
 use crate::noise::tails::TailShape;
@@ -71,6 +72,10 @@ pub struct Facts<'a> {
     pub schedule: Option<&'a Schedule>,
     /// Day of the test.
     pub today: NaiveDate,
+    /// The test on its bench, where the procedure states one.
+    pub on_bench: Option<OnBench<'a>>,
+    /// The checks of benches that were found; `None` where nobody looked for any.
+    pub bench_checks: Option<&'a [BenchCheck]>,
     /// Where each check notes that it was made, or why not.
     pub checks: &'a CheckLog,
 }

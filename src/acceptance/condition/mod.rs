@@ -4,6 +4,7 @@
 //! A condition is met only when it is shown to be met, the sensor's uncertainty included. One that is not makes the
 //! whole indeterminate: a test that was not done right neither passes nor fails a unit.
 
+mod bench;
 pub mod checks;
 mod clock;
 mod duration;
@@ -57,6 +58,7 @@ pub static ALL_CONDITIONS: &[&dyn Condition] = &[
     &output::Output,
     &faults::Faults,
     &instruments::Instruments,
+    &bench::ReleasedBench,
 ];
 
 /// Judges every condition that the procedure asks for.

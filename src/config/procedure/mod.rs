@@ -1,6 +1,7 @@
 //! Procedures and limits as data: what is recorded, under which conditions, what is determined, by which limits it is
 //! judged. TOML in, typed values in inside units out; every problem of a file is reported at once with its place.
 
+pub mod bench;
 pub(crate) mod channel;
 pub mod check;
 pub mod derived;
@@ -14,6 +15,7 @@ pub mod limits;
 mod load;
 pub mod missing_columns;
 pub mod model;
+mod named_channel;
 pub mod obtainable;
 pub mod pairs;
 mod parse;
@@ -25,8 +27,10 @@ pub mod schema;
 pub mod site;
 pub mod slips;
 pub mod tables;
+pub mod thermometer_pair;
 pub mod unit_facts;
 mod validate;
+mod validate_bench;
 
 pub use crate::config::diagnostics;
 pub use crate::config::quantity;

@@ -1,5 +1,6 @@
 //! A procedure after reading: plain values in inside units (deg/h, s, degC, Hz).
 
+use super::bench::Bench;
 use super::derived_rows::DerivedSpec;
 use super::diagnostics::{Problem, SourceText, Span};
 pub use super::instrument::Instrument;
@@ -11,6 +12,7 @@ use super::spec::Word;
 pub use super::tables::conditions::{
     Bounds, Conditions, FaultBudget, RangeCondition, StatusCondition, SupplyCondition, TemperatureCondition,
 };
+use super::thermometer_pair::ThermometerPair;
 use super::unit_facts::UnitFact;
 use crate::config::external::ExternalSpec;
 use crate::config::program::ProgramSpec;
@@ -83,6 +85,10 @@ pub struct Procedure {
     pub site: Option<Site>,
     /// Instruments used.
     pub instruments: Vec<Instrument>,
+    /// The bench that the test is made on, where it is checked or must be.
+    pub bench: Option<Bench>,
+    /// Thermometers that are compared, in the order of the file.
+    pub thermometer_pairs: Vec<ThermometerPair>,
     /// How a test on a rate table is evaluated; `None`: the unit rests.
     pub rate_table: Option<crate::rate_table::Setup>,
     /// Options of the analysis.
@@ -440,11 +446,13 @@ impl Procedure {
             && self.comparison_test.is_none()
     }
 
-    /// The unit of a quantity that another test or a program of the user gives; `None` where none does.
+    /// The unit of a quantity without an entry in the registry and without a formula: a result of another test, the difference of two
+    /// thermometers, or what a program of the user gives; `None` for any other.
     pub fn unit_from_elsewhere(&self, id: &str) -> Option<&Unit> {
         let external = self.externals.iter().find(|e| e.id == id).map(|e| &e.unit);
+        let pair = || self.thermometer_pairs.iter().find(|p| p.id == id).map(|p| &p.unit);
         let returns = || self.programs.iter().flat_map(|p| &p.returns);
-        external.or_else(|| returns().find(|(own, _)| own == id).map(|(_, unit)| unit))
+        external.or_else(pair).or_else(|| returns().find(|(own, _)| own == id).map(|(_, unit)| unit))
     }
 
     /// The channel of an id.

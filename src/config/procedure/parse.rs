@@ -112,6 +112,8 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
         exclusions: file.exclusions.into_iter().map(Into::into).collect(),
         site: file.site,
         instruments: file.instruments,
+        bench: file.bench,
+        thermometer_pairs: file.thermometer_pairs.into_iter().filter_map(Into::into).collect(),
         rate_table: file.rate_table.map(|keys| keys.setup(by_angle)),
         analysis: file.analysis,
         explain,

@@ -4,10 +4,11 @@ use super::diagnostics::{Problem, SourceText};
 use super::model::{
     ChannelSpec, EarthRate, MeasurandOptions, MeasurandSpec, Procedure, RangeCondition, Taus,
 };
+use super::named_channel::channel_of;
 use super::reader::{Reader, meant, shorten};
 use super::section::Section;
 use crate::config::table::Table;
-use crate::i18n::{Note, note};
+use crate::i18n::note;
 use crate::measurand::{self, EARTH_RATE_OPTION, Options, Test};
 use crate::recording::{ColumnRef, Role};
 use sagnac_core::spelling::nearest;
@@ -22,6 +23,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     measurands(procedure, root, reader);
     limits(procedure, reader);
     super::derived::validate(procedure, reader);
+    super::validate_bench::validate(procedure, root, reader);
     waivers(procedure, root, reader);
     averaging_times(procedure, root, reader);
     super::tables::acceleration::validate(procedure, root, reader);
@@ -131,41 +133,6 @@ fn sample_rate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     }
 }
 
-/// Checks that a named channel is declared with a role that suits; says what is there otherwise.
-fn channel_of(
-    section: &Section,
-    procedure: &Procedure,
-    root: &Section,
-    suits: fn(Role) -> bool,
-    wanted: &'static str,
-    reader: &mut Reader<'_>,
-) {
-    let Some(id) = section.text("channel") else { return };
-    let at = section.span_of("channel");
-    let declared = root.tables("channel").iter().find(|s| s.text("id").as_deref() == Some(id.as_str()));
-    let Some(declared) = declared else {
-        let known: Vec<String> = root.tables("channel").iter().filter_map(|s| s.text("id")).collect();
-        let help = match nearest(&id, known.iter().map(String::as_str)) {
-            Some(near) => meant(near),
-            None => note!("check.help.declared", channels = known.join(", ")),
-        };
-        reader.error(&at, note!("check.undeclared", id = shorten(&id)), Some(help));
-        return;
-    };
-    let role = Role::ALL.iter().copied().find(|r| Some(r.id()) == declared.word("role"));
-    if let Some(role) = role.filter(|r| !suits(*r)) {
-        let message = Note::new(wanted).with("id", id.as_str()).with("role", role.id());
-        let fits: Vec<&str> = procedure
-            .channels
-            .iter()
-            .filter(|c| suits(c.channel.role))
-            .map(|c| c.channel.id.as_str())
-            .collect();
-        let help = note!("check.help.suiting", channels = fits.join(", "));
-        reader.error(&at, message, (!fits.is_empty()).then_some(help));
-    }
-}
-
 fn conditions(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     if let Some(section) = root.table("conditions") {
         if let (Some(least), Some(warm_up)) = (section.number("minimum_duration"), section.number("warm_up"))
@@ -181,19 +148,40 @@ fn conditions(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
             reader.error(&section.span_of("planned_duration"), "check.planned_duration", None);
         }
         for held in section.tables("temperature") {
-            channel_of(held, procedure, root, |r| r == Role::Temperature, "check.needs_temperature", reader);
+            channel_of(
+                (held, "channel"),
+                procedure,
+                root,
+                |r| r == Role::Temperature,
+                "check.needs_temperature",
+                reader,
+            );
             provable(held, "degC", reader);
         }
         for held in section.tables("supply") {
-            channel_of(held, procedure, root, |r| r == Role::Supply, "check.needs_supply", reader);
+            channel_of(
+                (held, "channel"),
+                procedure,
+                root,
+                |r| r == Role::Supply,
+                "check.needs_supply",
+                reader,
+            );
             provable(held, "V", reader);
         }
         for (held, condition) in section.tables("range").iter().zip(&procedure.conditions.ranges) {
-            channel_of(held, procedure, root, |_| true, "check.needs_supply", reader);
+            channel_of((held, "channel"), procedure, root, |_| true, "check.needs_supply", reader);
             range(held, condition, procedure, reader);
         }
         for (held, condition) in section.tables("status").iter().zip(&procedure.conditions.statuses) {
-            channel_of(held, procedure, root, |r| r == Role::Status, "check.needs_status", reader);
+            channel_of(
+                (held, "channel"),
+                procedure,
+                root,
+                |r| r == Role::Status,
+                "check.needs_status",
+                reader,
+            );
             if condition.failure_mask == 0.0 && condition.valid_mask == 0.0 {
                 reader.error(&held.span.clone(), "check.no_mask", None);
             }
@@ -212,7 +200,7 @@ fn conditions(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
 fn temperature_test(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     let is_temperature = |r| r == Role::Temperature;
     if let Some(section) = root.table("temperature_test") {
-        channel_of(section, procedure, root, is_temperature, "check.needs_temperature", reader);
+        channel_of((section, "channel"), procedure, root, is_temperature, "check.needs_temperature", reader);
         if let Some(command) = section.text("command")
             && !procedure
                 .channels
@@ -337,7 +325,7 @@ fn site(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     }
     let mut seen: Vec<String> = vec![];
     for axis in site.tables("axis") {
-        channel_of(axis, procedure, root, Role::is_gyro, "check.needs_gyro", reader);
+        channel_of((axis, "channel"), procedure, root, Role::is_gyro, "check.needs_gyro", reader);
         let id = axis.text("channel").unwrap_or_default();
         if seen.contains(&id) {
             let message = note!("check.second_direction", id = id.as_str());
@@ -351,7 +339,7 @@ fn measurands(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     let sections = root.tables("measurand");
     let has_site = root.entry("site").is_some();
     for (i, section) in sections.iter().enumerate() {
-        channel_of(section, procedure, root, Role::is_gyro, "check.needs_gyro", reader);
+        channel_of((section, "channel"), procedure, root, Role::is_gyro, "check.needs_gyro", reader);
         let Some(measurand) = section.measurand("id") else { continue };
         let clash = sections[..i].iter().any(|other| {
             let (a, b) = (other.text("channel"), section.text("channel"));

@@ -2,6 +2,7 @@
 //!
 //! The shipped samples come from these generators, so what they draw, and in which order, stays as it is.
 
+pub mod bench_check;
 pub mod chamber;
 pub mod chance;
 mod drift;

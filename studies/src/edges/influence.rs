@@ -8,6 +8,8 @@ use serde::Deserialize;
 
 /// deg/sqrt(h)
 const N: f64 = 0.002;
+/// Band of the noise without and with vibration, Hz.
+const BAND_HZ: (f64, f64) = (0.5, 2.0);
 
 /// A test of an influence or of repeatability.
 #[derive(Deserialize)]
@@ -156,6 +158,8 @@ impl Turns {
             truths.push(Truth::new("bias_shift", self.per_unit * self.drive(*level)).on(&channel));
             if self.kind == Kind::Shaker {
                 truths.push(Truth::new("angle_random_walk_shift", N * self.louder * level).on(&channel));
+                let band = format!("{channel}:{}-{}Hz", BAND_HZ.0, BAND_HZ.1);
+                truths.push(Truth::new("noise_density_ratio", 1.0 + self.louder * level).on(&band));
             }
         }
         truths
@@ -163,8 +167,14 @@ impl Turns {
 
     fn procedure(&self) -> String {
         let Named { sensitivity, test, role, unit, reference } = self.kind.named();
-        let louder =
-            if self.kind == Kind::Shaker { "[[measurand]]\nid = \"angle_random_walk_shift\"\n" } else { "" };
+        let louder = match self.kind {
+            Kind::Shaker => format!(
+                "[[measurand]]\nid = \"angle_random_walk_shift\"\n[[measurand]]\nid = \"noise_density_ratio\"\n\
+                 [[noise_test.band]]\nfrom = \"{} Hz\"\nto = \"{} Hz\"\n",
+                BAND_HZ.0, BAND_HZ.1
+            ),
+            _ => String::new(),
+        };
         let allowed =
             self.allowed.map_or(String::new(), |a| format!("temperature_coefficient = \"{a} deg/h/degC\"\n"));
         procedure(&format!(

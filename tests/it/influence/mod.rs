@@ -7,6 +7,7 @@ mod declared;
 mod study;
 
 use crate::support::pairs::sample_once;
+use crate::support::{altered, sagnac, shipped};
 use sagnac_studies::bench::influence::{
     FIELD, NOISE, PRESSURE, SUPPLY, SWITCHED, series, shaken, turned, turns,
 };
@@ -15,6 +16,7 @@ use serde_json::Value;
 use std::fmt::Write;
 use std::path::PathBuf;
 use std::process::Command;
+use tempfile::tempdir;
 
 fn root(path: &str) -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR")).join(path)
@@ -173,11 +175,30 @@ fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
                     holds(result, "vibration_sensitivity", 0.001);
                     // N at 2 g is 1.1 times that at rest.
                     holds(result, "angle_random_walk_shift", 0.1 * NOISE.n);
+                    holds(result, "noise_density_ratio", 1.1);
                 }
-                _ => holds(result, "angle_random_walk_shift", 0.6 * NOISE.n),
+                _ => {
+                    holds(result, "angle_random_walk_shift", 0.6 * NOISE.n);
+                    holds(result, "noise_density_ratio", 1.6);
+                }
             }
         }
     }
+}
+
+#[test]
+fn a_ratio_of_noise_names_its_band_and_needs_one() {
+    let result = sample_once("vibration-fail").result();
+    let rows = result["measurands"].as_array().unwrap();
+    let ratios: Vec<&Value> = rows.iter().filter(|r| r["id"] == "noise_density_ratio").collect();
+    let channels: Vec<&str> = ratios.iter().map(|r| r["channel"].as_str().unwrap()).collect();
+    assert_eq!(channels, ["rate@2:0.5-2Hz", "rate@4:0.5-2Hz"]);
+    assert!(ratios.iter().all(|r| r["verdict"] == "fail" && r["unit"] == "1"), "{ratios:?}");
+    let folder = tempdir().unwrap();
+    let band = "[[noise_test.band]]\nfrom = \"0.5 Hz\"\nto = \"2 Hz\"\n";
+    altered(folder.path(), "p.toml", &shipped("procedures/vibration.toml"), &[(band, "")]);
+    let said = sagnac(folder.path(), &["check", "p.toml"]);
+    assert!(said.code != 0 && (said.out.clone() + &said.err).contains("noise_test"), "{said:?}");
 }
 
 /// Ids of the sentences of the conditions that are not met.

@@ -282,6 +282,8 @@ const LATIN: &[&str] = &[
     "U",
     "a",
     "e",
+    "F",
+    "station",
 ];
 
 /// Prefixes of translations that have their English text for a key: of the help and of the comments that `init` writes. The command

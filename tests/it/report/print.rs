@@ -24,6 +24,7 @@ const RUNS: &[(&str, &str, &[&str])] = &[
     ("maximum-rate", "maximum-rate-fail.csv", &["--serial", "SN-1"]),
     ("transfer-function", "transfer-function-fail.csv", &["--serial", "SN-1"]),
     ("start-up", "start-up-fail.csv", &["--serial", "SN-1"]),
+    ("bench-check", "bench-check-fail.csv", &["--serial", "REF-1"]),
     ("acceleration", "acceleration-fail.csv", &["--serial", "SN-1"]),
     ("misalignment", "misalignment-fail.csv", &["--serial", "SN-1"]),
     ("multi-position", "multi-position-software.csv", &["--serial", "SN-1"]),

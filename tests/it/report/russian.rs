@@ -19,6 +19,7 @@ const CASES: &[(&str, &str)] = &[
     ("maximum-rate", "maximum-rate-fail"),
     ("transfer-function", "transfer-function-fail"),
     ("start-up", "start-up-fail"),
+    ("bench-check", "bench-check-fail"),
     ("misalignment", "misalignment-fail"),
     ("multi-position", "multi-position-software"),
     ("output-noise", "output-noise-fail"),

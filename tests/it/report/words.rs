@@ -2,12 +2,14 @@
 //! real runs over the samples.
 
 use crate::support::tested::tested;
+use sagnac::acceptance::bench::OnBench;
 use sagnac::acceptance::condition::checks::CheckLog;
 use sagnac::acceptance::condition::stability_track::{Extreme, StabilityFacts, StabilityKey};
 use sagnac::acceptance::condition::status_track::StatusTrack;
 use sagnac::acceptance::condition::{
     ALL_CONDITIONS, BiasStep, ColumnFact, Facts, GyroFact, NoiseChange, WarmUpFact, judge_all,
 };
+use sagnac::config::procedure::bench::Bench;
 use sagnac::config::procedure::model::{
     Allowance, EarthRate, FaultBudget, MeasurandSpec, RangeCondition, StatusCondition, SupplyCondition,
 };
@@ -208,6 +210,12 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         command: None,
         missing: 0.0,
     };
+    let bench = Bench {
+        name: Some("TABLE-3".into()),
+        releases_for_s: None,
+        released_within_s: Some(86400.0),
+        check: "bench-check".into(),
+    };
     let records = judge_all(&Facts {
         procedure: &procedure,
         integrity: &integrity,
@@ -230,6 +238,8 @@ fn every_condition_has_words_for_what_it_requires_and_observes() {
         serial_of_recording: false,
         schedule: Some(&schedule),
         today: chrono::NaiveDate::from_ymd_opt(2100, 1, 1).unwrap(),
+        on_bench: Some(OnBench { bench: &bench, station: None, files: &[], now: sagnac::moment::now() }),
+        bench_checks: None,
         checks: &CheckLog::default(),
     });
     let kinds: BTreeSet<&str> = records.iter().filter_map(|c| c.id.split('.').next()).collect();

@@ -62,7 +62,7 @@ const SWITCH: Option<&str> = Some("field_on");
 const TEMP: Option<&str> = Some("temp_degC");
 
 /// Every pair.
-pub const PAIRS: [Pair; 45] = [
+pub const PAIRS: [Pair; 47] = [
     pair("unit-pass", "static-bias", UNIT, "SN-0001", 0, None),
     pair("unit-fail", "static-bias", UNIT, "SN-0001", 1, None),
     pair("unit-indeterminate", "static-bias", UNIT, "SN-0001", 3, None),
@@ -79,6 +79,8 @@ pub const PAIRS: [Pair; 45] = [
     pair("transfer-function-fail", "transfer-function", None, "SN-1", 1, None),
     pair("start-up-pass", "start-up", None, "SN-1", 0, None),
     pair("start-up-fail", "start-up", None, "SN-1", 1, None),
+    pair("bench-check-pass", "bench-check", None, "REF-1", 0, RATE),
+    pair("bench-check-fail", "bench-check", None, "REF-1", 1, RATE),
     pair("misalignment-pass", "misalignment", None, "SN-1", 0, OUTER),
     pair("misalignment-fail", "misalignment", None, "SN-1", 1, OUTER),
     scheduled(pair("multi-position-pass", "multi-position", None, "SN-1", 0, None), 60.0),

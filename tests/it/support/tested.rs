@@ -24,6 +24,7 @@ pub fn tested(procedure: &Loaded<Procedure>, recording: &Path) -> Result<RunReco
         now: chrono::DateTime::from_timestamp(1_795_000_000, 0).unwrap(),
         taus: None,
         exact: false,
+        bench_checks: None,
     };
     execute(&request, &mut |_, _| {}).map(|outcome| outcome.record)
 }

@@ -8,6 +8,7 @@ use super::response::{ByMeans, Changes, Courses, MovesBefore, Response, by_means
 use super::scale_factor::{self, Turning};
 use super::setup::{ComparisonTest, Law};
 use crate::estimate::chi_square_tail;
+use crate::noise::in_band::BandMean;
 use crate::numeric::reml::{Combination, Fit};
 use crate::rate_table::blocks::Blocks;
 use nalgebra::{Cholesky, DMatrix, DVector};
@@ -112,6 +113,21 @@ pub struct NoiseChange {
     pub without: Option<(f64, f64)>,
     /// The same at the level.
     pub with: Option<(f64, f64)>,
+    /// The noise densities in the bands that the procedure states.
+    pub bands: Vec<BandChange>,
+}
+
+/// The noise densities of one channel in one band, without and with an influence at one level.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BandChange {
+    /// Channel with axis, level and band, as rows name it.
+    pub channel: String,
+    /// Mean one-sided density without the influence, (deg/h)²/Hz; `None` where the record does not show the band.
+    pub without: Option<BandMean>,
+    /// The same at the level.
+    pub with: Option<BandMean>,
+    /// Lines in the band at the level, which are left out.
+    pub lines: usize,
 }
 
 /// Channels recorded beside the output and the level.

@@ -36,8 +36,12 @@ mod tests {
 
     #[test]
     fn the_change_is_that_with_less_that_without_and_both_uncertainties_count() {
-        let change =
-            NoiseChange { channel: "g@1".into(), without: Some((0.004, 3e-5)), with: Some((0.0025, 4e-5)) };
+        let change = NoiseChange {
+            channel: "g@1".into(),
+            without: Some((0.004, 3e-5)),
+            with: Some((0.0025, 4e-5)),
+            bands: vec![],
+        };
         let found = row(&ANGLE_RANDOM_WALK_SHIFT, &change);
         shows(&found, -0.0015, "whittle");
         near(normal(&found), 5e-5);

@@ -15,6 +15,7 @@ mod earth_rate;
 mod influence;
 mod maximum_rate;
 mod misalignment;
+mod noise_density_ratio;
 mod noise_in_band;
 mod noise_terms;
 mod polarity;
@@ -159,6 +160,7 @@ registry! {
     influence::SCALE_FACTOR_INFLUENCE_SENSITIVITY_QUADRATIC,
     influence::SCALE_FACTOR_SHIFT,
     angle_random_walk_shift::ANGLE_RANDOM_WALK_SHIFT,
+    noise_density_ratio::NOISE_DENSITY_RATIO,
     bias_repeatability::BIAS_REPEATABILITY,
     bias_repeatability::BIAS_REPEATABILITY_PEAK_TO_PEAK,
     bias_repeatability::BIAS_REPEATABILITY_TREND,

@@ -19,7 +19,7 @@ use crate::influence::intervals::{self, Intervals};
 use crate::influence::nuisance::{Following, Nuisance};
 use crate::influence::{ComparisonTest, Influence, Setting, scale_factor};
 use crate::ingest::Pauses;
-use crate::measurand::{ANGLE_RANDOM_WALK_SHIFT, ComparisonEvidence};
+use crate::measurand::{ANGLE_RANDOM_WALK_SHIFT, ComparisonEvidence, NOISE_DENSITY_RATIO};
 use crate::rate_table::blocks::Collector;
 use crate::record::{ConditionRecord, RunRecord};
 use crate::recording::{Channel, Role};
@@ -109,7 +109,8 @@ impl TestKind for UnderInfluence {
         let rest = resting.filter_map(|c| without.fact(reading, &c.channel, Some(&rest_mean(c)))).collect();
         let rates = scale_factor::rates(&blocks, &series, test.rate_settling_s);
         let acted = acted::find(reading, test, &blocks, &series, &axes, progress)?;
-        let noise = match reading.procedure().measures(ANGLE_RANDOM_WALK_SHIFT.id, None) {
+        let of_noise = [ANGLE_RANDOM_WALK_SHIFT.id, NOISE_DENSITY_RATIO.id];
+        let noise = match of_noise.iter().any(|id| reading.procedure().measures(id, None)) {
             true => noise::find(reading, &blocks, &series, progress)?,
             false => BTreeMap::new(),
         };

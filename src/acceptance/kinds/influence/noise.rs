@@ -1,12 +1,15 @@
-//! The angle random walk without and with an influence: each state is identified from its own samples.
+//! The noise without and with an influence: each state is identified from its own samples.
 
 use crate::acceptance::reading::read_again;
 use crate::acceptance::test_kind::{Progress, Reading, Run};
 use crate::estimate::normal_quantile;
-use crate::influence::comparison::{NoiseChange, level_name};
+use crate::influence::comparison::{BandChange, NoiseChange, level_name};
 use crate::influence::intervals::Intervals;
 use crate::noise::digest::{DigestPlan, RateAccumulator};
+use crate::noise::in_band::{Band, BandMean, OutputSpectrum};
+use crate::noise::lines::SpectralLine;
 use crate::noise::spectral_record::identify_digest;
+use crate::noise::welch::WelchResult;
 use crate::rate_table::blocks::Blocks;
 use crate::recording::{SampleBlock, Sink};
 use std::collections::BTreeMap;
@@ -14,11 +17,13 @@ use std::collections::BTreeMap;
 /// Axis and level of an influence; `None` without it.
 type Level = Option<(String, f64)>;
 
-/// N of one channel in one state.
+/// Noise of one channel in one state.
 struct State {
     level: Level,
     /// N with its standard uncertainty, deg/sqrt(h); `None` where it is not shown.
     n: Option<(f64, f64)>,
+    /// Density in every band of the procedure without the lines in it, and how many they are.
+    bands: Vec<(Option<BandMean>, usize)>,
 }
 
 /// Digests of the states of every gyro channel, collected while the recording goes by.
@@ -51,7 +56,23 @@ impl Sink for Collector {
     }
 }
 
-/// The changes of N by gyro channel: identifies the noise of every state in a second pass over the recording.
+/// Densities in bands, and the lines in them.
+fn in_bands(
+    bands: &[Band],
+    welch: &WelchResult,
+    tau0_s: f64,
+    lines: &[SpectralLine],
+) -> Vec<(Option<BandMean>, usize)> {
+    let spectrum = OutputSpectrum::of(welch, tau0_s, lines);
+    let of = |band: &Band| {
+        let mean = spectrum.as_ref().filter(|s| s.shows(*band)).and_then(|s| s.mean(*band, |_| 1.0));
+        let inside = |l: &&SpectralLine| (band.from_hz..=band.to_hz).contains(&l.frequency_hz);
+        (mean, lines.iter().filter(inside).count())
+    };
+    bands.iter().map(of).collect()
+}
+
+/// The changes of the noise by gyro channel: identifies the noise of every state in a second pass over the recording.
 pub fn find(
     reading: &Reading<'_>,
     blocks: &Blocks,
@@ -64,7 +85,9 @@ pub fn find(
     let gyros = reading.gyros().map(|(slot, _)| (slot, digests())).collect();
     let mut collector = Collector { spans, gyros, last: None };
     read_again(reading, &mut collector, progress)?;
-    let alarm = reading.procedure().analysis.line_false_alarm;
+    let procedure = reading.procedure();
+    let alarm = procedure.analysis.line_false_alarm;
+    let bands = procedure.noise_test.as_ref().map_or(&[][..], |test| test.bands.as_slice());
     let mut changes: BTreeMap<String, Vec<NoiseChange>> = BTreeMap::new();
     for (slot, digests) in collector.gyros {
         let step_deg_h = reading.quantization_step(slot);
@@ -73,18 +96,29 @@ pub fn find(
             .into_iter()
             .zip(&levels)
             .map(|(digest, level)| {
-                let noise = identify_digest(&channel, &digest.finish(), reading.tau0_s, alarm, step_deg_h);
+                let digest = digest.finish();
+                let noise = identify_digest(&channel, &digest, reading.tau0_s, alarm, step_deg_h);
                 let n = noise.ranged.identification.read_angle_random_walk();
                 let half = n.interval95().map(|i| 0.5 * (i.high - i.low) / normal_quantile(0.975));
-                State { level: level.clone(), n: n.value.zip(half) }
+                let bands = in_bands(bands, &digest.welch, reading.tau0_s, &noise.lines);
+                State { level: level.clone(), n: n.value.zip(half), bands }
             })
             .collect();
-        let without = states.iter().find(|s| s.level.is_none()).and_then(|s| s.n);
+        let Some(without) = states.iter().find(|s| s.level.is_none()) else { continue };
         for state in &states {
             let Some((axis, level)) = &state.level else { continue };
             let level = level_name(*level);
             let place = if axis.is_empty() { level } else { format!("{axis}:{level}") };
-            let change = NoiseChange { channel: format!("{channel}@{place}"), without, with: state.n };
+            let own = format!("{channel}@{place}");
+            let pairs = bands.iter().zip(without.bands.iter().zip(&state.bands));
+            let of_bands = pairs.map(|(band, (before, at))| BandChange {
+                channel: format!("{own}:{}-{}Hz", band.from_hz, band.to_hz),
+                without: before.0,
+                with: at.0,
+                lines: at.1,
+            });
+            let bands = of_bands.collect();
+            let change = NoiseChange { channel: own, without: without.n, with: state.n, bands };
             changes.entry(channel.clone()).or_default().push(change);
         }
     }

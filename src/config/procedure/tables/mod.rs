@@ -13,9 +13,11 @@ pub(crate) mod start_up;
 pub mod temperature;
 pub(crate) mod transfer;
 
+use super::bench::Bench;
 use super::model::{Analysis, ExplainSpec, Instrument, MeasurandKeys, ReportSpec, UnitSpec, Waiver};
 use super::section::Section;
 use super::site::Site;
+use super::thermometer_pair::ThermometerPairKeys;
 use crate::config::external::ExternalKeys;
 use crate::config::program::ProgramKeys;
 use crate::config::recording_keys::RecordingKeys;
@@ -97,6 +99,11 @@ pub(in crate::config::procedure) struct ProcedureFile {
     /// Instruments used, with the validity of their calibration.
     #[key(name = "instrument")]
     pub instruments: Vec<Instrument>,
+    /// The bench that the test is made on, where it is checked or must be.
+    pub bench: Option<Bench>,
+    /// Two thermometers that are compared, one table a pair.
+    #[key(name = "thermometer_pair")]
+    pub thermometer_pairs: Vec<ThermometerPairKeys>,
     /// A test on a rate table.
     pub rate_table: Option<RateTableKeys>,
     /// Options of the analysis.

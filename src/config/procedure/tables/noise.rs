@@ -5,15 +5,16 @@ use crate::config::reader::Reader;
 use crate::config::section::Section;
 use crate::config::table::Table;
 use crate::i18n::note;
-use crate::measurand::{RATE_NOISE_DENSITY, SPECTRAL_MASK, Test};
+use crate::measurand::{Measurand, NOISE_DENSITY_RATIO, RATE_NOISE_DENSITY, SPECTRAL_MASK, Test};
 use crate::noise::in_band::{Band, MaskPoint, NoiseTest};
 
 /// A test of the output noise by frequency. This table makes its measurands available: `output_noise_rms`,
-/// `rate_noise_density` and `spectral_mask`. Densities are one-sided: white noise of N gives 60·√2·N.
+/// `rate_noise_density` and `spectral_mask`; beside a test of an influence, the bands of `noise_density_ratio`. Densities are
+/// one-sided: white noise of N gives 60·√2·N.
 #[derive(Table)]
 #[table("noise_test")]
 pub(crate) struct NoiseKeys {
-    /// Bands in which `rate_noise_density` is determined. With several, rows are named `rate@1-10Hz`.
+    /// Bands in which `rate_noise_density` and `noise_density_ratio` are determined. With several, rows are named `rate@1-10Hz`.
     #[key(name = "band")]
     bands: Vec<BandKeys>,
     /// Corners of the mask of `spectral_mask`, in the order of frequency, joined by straight lines in the logarithms.
@@ -59,12 +60,16 @@ impl From<NoiseKeys> for NoiseTest {
 /// What a test of the noise and its measurands need of each other.
 pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reader<'_>) {
     for section in root.tables("measurand") {
-        let Some(measurand) = section.measurand("id").filter(|m| m.test() == Test::NoiseInBands) else {
-            continue;
-        };
+        let in_bands = |m: &&'static Measurand| m.test() == Test::NoiseInBands || **m == NOISE_DENSITY_RATIO;
+        let Some(measurand) = section.measurand("id").filter(in_bands) else { continue };
         let missing = match &procedure.noise_test {
             None => "noise_test",
-            Some(test) if *measurand == RATE_NOISE_DENSITY && test.bands.is_empty() => "[noise_test.band]",
+            Some(test)
+                if test.bands.is_empty()
+                    && (*measurand == RATE_NOISE_DENSITY || *measurand == NOISE_DENSITY_RATIO) =>
+            {
+                "[noise_test.band]"
+            }
             Some(test) if *measurand == SPECTRAL_MASK && test.mask.len() < 2 => "[noise_test.mask]",
             Some(_) => continue,
         };

@@ -48,6 +48,7 @@ pub fn analyse(
         now: chrono::DateTime::UNIX_EPOCH,
         taus: taus.map(|t| TauGrid::List(t.to_vec())),
         exact: false,
+        bench_checks: None,
     };
     execute(&request, &mut |_, _| {}).unwrap()
 }
