@@ -17,13 +17,13 @@ pub use sagnac_core::visible::{steers, visible, visible_lines};
 pub use system::io_reason;
 
 use std::collections::BTreeMap;
-use std::sync::LazyLock;
+use std::sync::OnceLock;
 
 /// Dotted key to text with `{argument}` places.
 type Table = BTreeMap<String, String>;
 
-static LOCALE_TABLES: LazyLock<Vec<(Lang, Table)>> =
-    LazyLock::new(|| Lang::ALL.iter().map(|lang| (*lang, flatten(lang.source()))).collect());
+/// The table of each language, in the order of [`Lang::ALL`]; read when the language is first asked for.
+static LOCALE_TABLES: [OnceLock<Table>; Lang::ALL.len()] = [const { OnceLock::new() }; Lang::ALL.len()];
 
 static EMPTY_TABLE: Table = Table::new();
 
@@ -50,7 +50,8 @@ fn flatten(source: &str) -> Table {
 
 /// The table of a language: dotted key → text with `{argument}` places.
 pub fn table(lang: Lang) -> &'static BTreeMap<String, String> {
-    LOCALE_TABLES.iter().find(|(of, _)| *of == lang).map_or(&EMPTY_TABLE, |(_, table)| table)
+    let place = Lang::ALL.iter().position(|of| *of == lang).and_then(|place| LOCALE_TABLES.get(place));
+    place.map_or(&EMPTY_TABLE, |table| table.get_or_init(|| flatten(lang.source())))
 }
 
 /// The text of a key, in English where the table of the language lacks it; `None` when no table has it.

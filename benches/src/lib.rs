@@ -1,4 +1,6 @@
-//! The recording that is analysed by every bench.
+//! The recording that is analysed by every bench, and bare kernels to compare with.
+
+pub mod limits;
 
 use sagnac::noise::model::NoiseModel;
 use sagnac::noise::simulate::{Setup, Simulator};

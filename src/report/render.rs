@@ -7,7 +7,7 @@ use super::translator::Translator;
 use crate::i18n::{Arg, Lang, Localize, Note, io_reason, lookup, note, table};
 use crate::record::RunRecord;
 use base64::Engine as _;
-use minijinja::value::{Kwargs, Serde, Value};
+use minijinja::value::{Enumerator, Kwargs, Object, ObjectExt as _, Serde, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
 use sagnac_ingest::read_text;
 use sha2::{Digest as _, Sha256};
@@ -15,6 +15,7 @@ use std::collections::BTreeMap;
 use std::fmt;
 use std::io::{self, Write};
 use std::path::Path;
+use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// The built-in templates by name.
@@ -354,7 +355,21 @@ pub(super) fn run_context(page: Value, record: &RunRecord, lang: Lang) -> Value 
 
 /// What the templates of blocks see.
 pub(super) fn page_context(page: Value, lang: Lang) -> Value {
-    minijinja::context! { v => page, locale => Value::from(Serde(table(lang))) }
+    minijinja::context! { v => page, locale => Value::from_object(Texts(lang)) }
+}
+
+/// The table of texts of a language. A template looks up what it asks for; thousands of texts are not copied for each page.
+#[derive(Debug)]
+struct Texts(Lang);
+
+impl Object for Texts {
+    fn get_value(self: &Arc<Self>, key: &Value) -> Option<Value> {
+        table(self.0).get(key.as_str()?).map(|text| Value::from(text.as_str()))
+    }
+
+    fn enumerate(self: &Arc<Self>) -> Enumerator {
+        self.mapped_enumerator(|texts| Box::new(table(texts.0).keys().map(|key| Value::from(key.as_str()))))
+    }
 }
 
 /// What a template sees whose page is to be printed.
@@ -450,6 +465,16 @@ mod tests {
         // RFC 4648 form of the digest of nothing.
         assert_eq!(digest(""), "47DEQpj8HBSa+/TImW+5JCeuQeRkm5NMpJWZG3hSuFU=");
         assert_eq!(digest("a\r\nb"), digest("a\nb"));
+    }
+
+    #[test]
+    fn a_template_looks_texts_up_in_the_table_of_its_language() {
+        let asked = "{{ locale['verdict.pass'] }},{{ locale['none'] is defined }},{{ locale | length }}";
+        for lang in Lang::ALL {
+            let said = Environment::new().render_str(asked, page_context(Value::UNDEFINED, *lang)).unwrap();
+            let expected = format!("{},false,{}", table(*lang)["verdict.pass"], table(*lang).len());
+            assert_eq!(said, expected);
+        }
     }
 
     #[test]

@@ -92,9 +92,13 @@ pub fn write(
     let refused = |e: std::io::Error| WriteError::Output(staged.refused(e));
     let mut sink = Sink::begin(format, staged.file()?, &columns).map_err(refused)?;
     let (mut rows, samples) = (0, simulation.samples());
-    while let Some(block) = simulation.next_rows()? {
+    let mut made = simulation.next_rows()?;
+    while let Some(block) = made {
+        // The next rows are made while these are written.
+        let (next, written) = rayon::join(|| simulation.next_rows(), || sink.rows(&block, &beside));
+        written.map_err(refused)?;
         rows += block.time_s.len() as u64;
-        sink.rows(&block, &beside).map_err(refused)?;
+        made = next?;
         progress(simulation.done(), samples);
     }
     sink.end().map_err(refused)?;

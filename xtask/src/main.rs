@@ -7,6 +7,7 @@ mod modules;
 mod notices;
 mod proofs;
 mod same_results;
+mod speed;
 mod test_names;
 mod weight;
 
@@ -34,6 +35,9 @@ notices [--check]
     Write THIRD-PARTY.md: licences and notices of the packages that the program contains.
 tests COMMIT
     Print the tests that went and those that came since a commit, by the names of their functions.
+speed [--store]
+    Measure what users wait for beside bare kernels, in one run, and print the table of docs/PERFORMANCE.md. Fails where a ratio is
+    a fifth above the stored one; --store keeps those of this run.
 weight [--since DATE]
     Print how many lines, files and types there are, and how many files a commit touches for one more field, measurand or effect.
 ";
@@ -59,6 +63,8 @@ fn main() -> ExitCode {
         Some((command, [])) if command == "notices" => notices::run(root, false),
         Some((command, [check])) if command == "notices" && check == "--check" => notices::run(root, true),
         Some((command, [commit])) if command == "tests" => test_names::compare(root, commit),
+        Some((command, [])) if command == "speed" => speed::run(root, false),
+        Some((command, [option])) if command == "speed" && option == "--store" => speed::run(root, true),
         Some((command, [])) if command == "weight" => weight::print(root, weight::COMMITS_SINCE),
         Some((command, [option, date])) if command == "weight" && option == "--since" => {
             weight::print(root, date)

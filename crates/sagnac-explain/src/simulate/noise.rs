@@ -11,6 +11,7 @@ use crate::noise::composite::Composite;
 use crate::noise::data::NoiseType;
 use crate::noise::model::NoiseModel;
 use crate::noise::simulate::{Setup, Simulator};
+use rayon::iter::{IntoParallelRefMutIterator, ParallelIterator};
 
 /// The noise model of a claim, its effects on the spectrum composed.
 pub(super) fn composed(claim: &Claim) -> Result<Composite, SimulateError> {
@@ -95,15 +96,25 @@ impl Noise {
         }
     }
 
+    /// Each term draws from a stream of its own, so that terms are made side by side; they are added up in their order.
     fn unfiltered(&mut self, samples: usize) -> Vec<f64> {
-        let mut out = self.rest.take(samples);
-        for shaped in &mut self.shaped {
-            let mut values = std::mem::take(&mut shaped.ahead);
-            values.resize(samples + 2 * SIDE, 0.0);
-            shaped.simulator.fill(&mut values[2 * SIDE..]);
+        let Noise { rest, shaped, .. } = self;
+        let unshaped = || -> Vec<Vec<f64>> { shaped.par_iter_mut().map(|s| s.unshaped(samples)).collect() };
+        let (mut out, terms) = rayon::join(|| rest.take(samples), unshaped);
+        for (shaped, values) in self.shaped.iter_mut().zip(terms) {
             filtered(&values, &shaped.taps, &mut out);
             shaped.ahead = values[samples..].to_vec();
         }
         out
+    }
+}
+
+impl Shaped {
+    /// So many samples before the filter, with those at either end that it needs.
+    fn unshaped(&mut self, samples: usize) -> Vec<f64> {
+        let mut values = std::mem::take(&mut self.ahead);
+        values.resize(samples + 2 * SIDE, 0.0);
+        self.simulator.fill(&mut values[2 * SIDE..]);
+        values
     }
 }

@@ -132,12 +132,16 @@ impl ParquetFile {
         let reader = reader(&self.path)?;
         let size = std::fs::metadata(&self.path).map_err(|e| io_error(&self.path, &e))?.len();
         let total = u64::try_from(reader.metadata().file_metadata().num_rows()).unwrap_or(0).max(1);
+        let mut stored: Vec<Stored> = wanted.iter().map(|_| Stored::default()).collect();
         for group in 0..reader.num_row_groups() {
             let group = reader.get_row_group(group).map_err(fail)?;
             let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0);
             let mut columns = wanted
                 .iter()
-                .map(|&w| group.get_column_reader(w).map(Decoder::new).map_err(fail))
+                .zip(&mut stored)
+                .map(|(&w, stored)| {
+                    group.get_column_reader(w).map(move |r| Decoder::new(r, stored)).map_err(fail)
+                })
                 .collect::<Result<Vec<_>, _>>()?;
             let mut left = rows;
             while left > 0 {
@@ -158,76 +162,119 @@ impl ParquetFile {
     }
 }
 
-/// Decodes one column of a row group.
-struct Decoder {
-    reader: ColumnReader,
+/// Values of a column as they are stored, kept from batch to batch. Doubles need no such place.
+#[derive(Default)]
+struct Stored {
+    floats: Vec<f32>,
+    short: Vec<i32>,
+    long: Vec<i64>,
+    flags: Vec<bool>,
     levels: Vec<i16>,
 }
 
-impl Decoder {
-    fn new(reader: ColumnReader) -> Decoder {
-        Decoder { reader, levels: Vec::new() }
+/// Decodes one column of a row group.
+struct Decoder<'a> {
+    reader: ColumnReader,
+    stored: &'a mut Stored,
+}
+
+impl<'a> Decoder<'a> {
+    fn new(reader: ColumnReader, stored: &'a mut Stored) -> Decoder<'a> {
+        Decoder { reader, stored }
     }
 
     fn batch(&mut self, rows: usize, slot: usize, block: &mut Block) -> Result<(), ParquetError> {
-        let levels = &mut self.levels;
-        match &mut self.reader {
-            ColumnReader::DoubleColumnReader(r) => values(r, rows, levels, slot, block, |v| v),
-            ColumnReader::FloatColumnReader(r) => values(r, rows, levels, slot, block, f64::from),
-            ColumnReader::Int32ColumnReader(r) => values(r, rows, levels, slot, block, f64::from),
-            ColumnReader::Int64ColumnReader(r) => values(r, rows, levels, slot, block, |v| v as f64),
-            ColumnReader::BoolColumnReader(r) => {
-                values(r, rows, levels, slot, block, |v| f64::from(u8::from(v)))
+        let Stored { floats, short, long, flags, levels } = self.stored;
+        let mut column = block.columns.get_mut(slot).map(std::mem::take).unwrap_or_default();
+        let present = match &mut self.reader {
+            ColumnReader::DoubleColumnReader(r) => {
+                read(r, rows, levels, &mut column)?;
+                column.len()
             }
-            _ => Err(ParquetError::General("the column holds no numbers".to_owned())),
+            ColumnReader::FloatColumnReader(r) => values(r, rows, levels, floats, &mut column, f64::from)?,
+            ColumnReader::Int32ColumnReader(r) => values(r, rows, levels, short, &mut column, f64::from)?,
+            ColumnReader::Int64ColumnReader(r) => values(r, rows, levels, long, &mut column, |v| v as f64)?,
+            ColumnReader::BoolColumnReader(r) => {
+                values(r, rows, levels, flags, &mut column, |v| f64::from(u8::from(v)))?
+            }
+            _ => return Err(ParquetError::General("the column holds no numbers".to_owned())),
+        };
+        if present < rows {
+            spread_over_nulls(&mut column, levels, rows);
         }
+        count_non_finite(&mut column, slot, block, |i| {
+            present < rows && levels.get(i).is_some_and(|&l| l == 0)
+        });
+        if let Some(place) = block.columns.get_mut(slot) {
+            *place = column;
+        }
+        Ok(())
     }
 }
 
-/// Reads `rows` values of a column into the block; a null is NaN and counted as non-finite.
+/// Reads the values of so many rows, without those that are null.
+fn read<T: DataType>(
+    reader: &mut ColumnReaderImpl<T>,
+    rows: usize,
+    levels: &mut Vec<i16>,
+    values: &mut Vec<T::T>,
+) -> Result<(), ParquetError> {
+    levels.clear();
+    values.clear();
+    let (records, ..) = reader.read_records(rows, Some(levels), None, values)?;
+    if records != rows {
+        return Err(ParquetError::General(format!("{rows} values expected, {records} found")));
+    }
+    Ok(())
+}
+
+/// The same as numbers; gives how many there are.
 fn values<T: DataType>(
     reader: &mut ColumnReaderImpl<T>,
     rows: usize,
     levels: &mut Vec<i16>,
-    slot: usize,
-    block: &mut Block,
+    stored: &mut Vec<T::T>,
+    column: &mut Vec<f64>,
     number: impl Fn(T::T) -> f64,
-) -> Result<(), ParquetError>
+) -> Result<usize, ParquetError>
 where
     T::T: Copy,
 {
-    let mut read: Vec<T::T> = Vec::with_capacity(rows);
-    levels.clear();
-    let (records, ..) = reader.read_records(rows, Some(levels), None, &mut read)?;
-    if records != rows {
-        return Err(ParquetError::General(format!("{rows} values expected, {records} found")));
-    }
-    let mut column = block.columns.get_mut(slot).map(std::mem::take).unwrap_or_default();
-    if read.len() == rows {
-        column.extend(read.iter().map(|&v| number(v)));
-    } else {
-        let top = levels.iter().copied().max().unwrap_or(0).max(1);
-        let mut next = read.iter();
-        column.extend(
-            levels
-                .iter()
-                .map(|&l| if l == top { next.next().map_or(f64::NAN, |&v| number(v)) } else { f64::NAN }),
-        );
-        column.resize(rows, f64::NAN);
-    }
-    if column.iter().any(|v| !usable(*v)) {
-        for (i, v) in column.iter_mut().enumerate().filter(|(_, v)| !usable(**v)) {
-            let (row, text) = (block.first_row + i as u64, *v);
-            let null = levels.get(i).is_some_and(|&l| l == 0) && read.len() < rows;
-            let describe = || non_finite(slot, row, if null { "null".to_owned() } else { text.to_string() });
-            block.fault(describe, slot, FieldFaultKind::NonFinite);
-            *v = f64::NAN;
+    read(reader, rows, levels, stored)?;
+    column.clear();
+    column.extend(stored.iter().map(|&v| number(v)));
+    Ok(column.len())
+}
+
+/// Puts the values of a column at their rows, NaN where a row is null.
+fn spread_over_nulls(column: &mut Vec<f64>, levels: &[i16], rows: usize) {
+    let top = levels.iter().copied().max().unwrap_or(0).max(1);
+    let mut left = column.len();
+    column.resize(rows, f64::NAN);
+    // From behind: a value never moves to a place before its own.
+    for row in (0..rows).rev() {
+        let value = if levels.get(row) == Some(&top) { left.checked_sub(1) } else { None };
+        let moved = value.and_then(|at| column.get(at).copied());
+        left = value.unwrap_or(left);
+        if let Some(place) = column.get_mut(row) {
+            *place = moved.unwrap_or(f64::NAN);
         }
     }
-    if let Some(place) = block.columns.get_mut(slot) {
-        *place = column;
+}
+
+/// Counts what is no number, as null or by its text, and marks it as NaN.
+fn count_non_finite(column: &mut [f64], slot: usize, block: &mut Block, is_null: impl Fn(usize) -> bool) {
+    // Without a branch a row, so that a column without faults is gone through several rows at a time.
+    if column.iter().fold(true, |all, v| all & usable(*v)) {
+        return;
     }
-    Ok(())
+    for (i, v) in column.iter_mut().enumerate().filter(|(_, v)| !usable(**v)) {
+        let (row, text) = (block.first_row + i as u64, *v);
+        let describe =
+            || non_finite(slot, row, if is_null(i) { "null".to_owned() } else { text.to_string() });
+        block.fault(describe, slot, FieldFaultKind::NonFinite);
+        *v = f64::NAN;
+    }
 }
 
 #[cfg(test)]

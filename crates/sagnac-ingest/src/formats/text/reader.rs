@@ -8,6 +8,7 @@ use crate::options::Encoding;
 use crate::{Block, FileFacts, OnBlock, Table};
 use sagnac_core::message::note;
 use std::collections::BTreeMap;
+use std::ops::Range;
 use std::path::PathBuf;
 use std::sync::mpsc::{Receiver, SyncSender, sync_channel};
 use std::sync::{Arc, Mutex};
@@ -22,7 +23,7 @@ const MAX_LINE_BYTES: usize = 1 << 20;
 const PARSERS: usize = 2;
 
 /// Chunks between the reader and the parsers, and blocks between the parsers and the consumer.
-const QUEUE: usize = 4;
+const QUEUE: usize = 2;
 
 /// A text file of which the writing is known.
 pub(super) struct Text {
@@ -43,6 +44,8 @@ pub(super) struct Text {
 struct Chunk {
     number: u64,
     text: Vec<u8>,
+    /// Where its lines stand.
+    used: Range<usize>,
     bytes_done: u64,
 }
 
@@ -87,25 +90,30 @@ impl Text {
         let mut tail: Vec<u8> = Vec::new();
         let mut number = 0;
         loop {
+            let kept = tail.len();
+            // A buffer that was used keeps its bytes, and a fresh one is not written to: neither is cleared.
             let mut text = free.try_recv().unwrap_or_default();
-            text.clear();
-            text.append(&mut tail);
-            let kept = text.len();
-            text.resize(kept + CHUNK, 0);
-            let n = stream.fill(text.get_mut(kept..).unwrap_or_default())?;
-            text.truncate(kept + n);
-            if number == 0 {
-                text.drain(..self.data_offset.min(text.len()));
+            if text.is_empty() {
+                text = vec![0; kept + CHUNK];
+            } else if text.len() < kept + CHUNK {
+                text.resize(kept + CHUNK, 0);
             }
+            text.iter_mut().zip(&tail).for_each(|(to, from)| *to = *from);
+            tail.clear();
+            let n = stream.fill(text.get_mut(kept..kept + CHUNK).unwrap_or_default())?;
+            let mut used = if number == 0 { self.data_offset.min(kept + n)..kept + n } else { 0..kept + n };
             let last = stream.ended();
             if last {
-                if text.last().is_some_and(|&c| c != b'\n') {
+                if text.get(used.clone()).is_some_and(|t| t.last().is_some_and(|&c| c != b'\n')) {
+                    text.truncate(used.end);
                     text.push(b'\n');
+                    used.end += 1;
                 }
             } else {
-                let cut = memchr::memrchr(b'\n', &text).map_or(0, |i| i + 1);
-                tail.extend_from_slice(text.get(cut..).unwrap_or_default());
-                text.truncate(cut);
+                let lines = text.get(used.clone()).unwrap_or_default();
+                let cut = used.start + memchr::memrchr(b'\n', lines).map_or(0, |i| i + 1);
+                tail.extend_from_slice(text.get(cut..used.end).unwrap_or_default());
+                used.end = cut;
                 if tail.len() > MAX_LINE_BYTES {
                     return Err(IngestError::new(
                         IngestErrorKind::UnknownFormat,
@@ -116,7 +124,7 @@ impl Text {
                 }
             }
             let bytes_done = stream.file_bytes();
-            if out.send(Chunk { number, text, bytes_done }).is_err() {
+            if out.send(Chunk { number, text, used, bytes_done }).is_err() {
                 return Ok(None);
             }
             number += 1;
@@ -169,7 +177,7 @@ fn parse(
     loop {
         let Ok(Ok(chunk)) = chunks.lock().map(|c| c.recv()) else { return };
         let mut block = free.lock().ok().and_then(|f| f.try_recv().ok()).unwrap_or_default();
-        parser.parse(&chunk.text, &mut block);
+        parser.parse(chunk.text.get(chunk.used).unwrap_or_default(), &mut block);
         block.bytes_done = chunk.bytes_done;
         let _ = text_back.try_send(chunk.text);
         if blocks.send((chunk.number, block)).is_err() {

@@ -4,6 +4,7 @@
 //! With the complex rate c = 1/T − 2πi f₀ every formula of the Markov process holds with its real part taken.
 //! Sources: IEEE Std 952 Annex C (Markov); N. F. Zhang, Metrologia 2008 (sampled forms).
 
+use crate::noise::evidence::Turns;
 use nalgebra::Complex;
 use std::f64::consts::PI;
 
@@ -64,30 +65,73 @@ pub struct Modes {
 impl Modes {
     /// E\[c_k²\]·τ of mode k, (deg/h)²/Hz.
     pub fn power(&self, mode: usize) -> f64 {
+        let (sin, cos) = (PI * mode as f64 / self.blocks as f64).sin_cos();
+        let half_turns = if mode.is_multiple_of(2) { 1.0 } else { -1.0 };
+        if self.is_real() { self.real_power(cos, sin, half_turns) } else { self.at(cos, sin, half_turns) }
+    }
+
+    /// The powers of modes by their turns.
+    pub(crate) fn powers(&self, turns: Turns<'_>, out: &mut [f64]) {
+        let turns = turns.cos.iter().zip(turns.sin).zip(turns.cos_round);
+        if self.is_real() {
+            out.iter_mut()
+                .zip(turns)
+                .for_each(|(o, ((cos, sin), half))| *o = self.real_power(*cos, *sin, *half));
+        } else {
+            out.iter_mut().zip(turns).for_each(|(o, ((cos, sin), half))| *o = self.at(*cos, *sin, *half));
+        }
+    }
+
+    /// Of a Markov process all but the turn is real.
+    fn is_real(&self) -> bool {
+        self.rho.im == 0.0 && self.last.im == 0.0 && self.first.im == 0.0
+    }
+
+    /// The power at a turn e^(ia) from one mean to the next; `half_turns` is e^(iaM) = (−1)^k.
+    fn at(&self, cos: f64, sin: f64, half_turns: f64) -> f64 {
         let m = self.blocks as f64;
-        let (sin, cos) = (PI * mode as f64 / m).sin_cos();
         let one = Complex::new(1.0, 0.0);
-        // e^(ia(M − 1)) = (−1)^k e^(−ia).
-        let sign = if mode.is_multiple_of(2) { 1.0 } else { -1.0 };
         // Sums over d = 1 … M − 1 of z^(d−1)·e^(±iad) with weights 1 and d.
         let sums = |turn: Complex<f64>| {
             let z = self.rho * turn;
-            let last = self.last * turn.conj() * sign;
+            // e^(ia(M − 1)) = (−1)^k e^(−ia).
+            let last = self.last * turn.conj() * half_turns;
             let inverse = inverted(one - z);
             let plain = turn * (one - last) * inverse;
             let weighted = turn * (one - last * m + last * z * (m - 1.0)) * inverse * inverse;
             (plain, weighted)
         };
         let turn = Complex::new(cos, sin);
-        let (up, up_d) = sums(turn);
-        // Of a Markov process all but the turn is real: the other direction gives the conjugates.
-        let is_real = self.rho.im == 0.0 && self.last.im == 0.0;
-        let (down, down_d) = if is_real { (up.conj(), up_d.conj()) } else { sums(turn.conj()) };
+        let ((up, up_d), (down, down_d)) = (sums(turn), sums(turn.conj()));
         let cosine = 0.5 * (up + down);
         let cosine_d = 0.5 * (up_d + down_d);
         let sine = (up - down) / Complex::new(0.0, 2.0);
         let tail = cosine - cosine_d / m - sine / (m * sin);
         (self.scale * (self.gamma0 + 2.0 * (self.first * tail).re)).max(0.0)
+    }
+
+    /// The same where [`Modes::is_real`]: the sums of the other direction are the conjugates. Written out in real numbers, so that
+    /// several modes are worked out at a time; in the order of [`Modes::at`], so that both give the same to the last bit.
+    fn real_power(&self, cos: f64, sin: f64, half_turns: f64) -> f64 {
+        let m = self.blocks as f64;
+        let (z_re, z_im) = (self.rho.re * cos, self.rho.re * sin);
+        let (last_re, last_im) = (self.last.re * cos * half_turns, -(self.last.re * sin * half_turns));
+        let left = 1.0 - z_re;
+        let square = 1.0 / (left * left + z_im * z_im);
+        let (inverse_re, inverse_im) = (left * square, z_im * square);
+        let (left_re, left_im) = (1.0 - last_re, -last_im);
+        let (turned_re, turned_im) = (cos * left_re - sin * left_im, cos * left_im + sin * left_re);
+        let plain_re = turned_re * inverse_re - turned_im * inverse_im;
+        let plain_im = turned_re * inverse_im + turned_im * inverse_re;
+        let (far_re, far_im) = (last_re * z_re - last_im * z_im, last_re * z_im + last_im * z_re);
+        let sum_re = 1.0 - last_re * m + far_re * (m - 1.0);
+        let sum_im = -(last_im * m) + far_im * (m - 1.0);
+        let (sum_re, sum_im) = (cos * sum_re - sin * sum_im, cos * sum_im + sin * sum_re);
+        let (once_re, once_im) =
+            (sum_re * inverse_re - sum_im * inverse_im, sum_re * inverse_im + sum_im * inverse_re);
+        let weighted_re = once_re * inverse_re - once_im * inverse_im;
+        let tail = plain_re - weighted_re / m - plain_im / (m * sin);
+        (self.scale * (self.gamma0 + 2.0 * (self.first.re * tail))).max(0.0)
     }
 }
 
@@ -204,27 +248,44 @@ fn turn(phase: f64) -> Complex<f64> {
 impl Windowed {
     /// Two-sided density at `frequency_hz`, (deg/h)²/Hz.
     pub fn density(&self, frequency_hz: f64) -> f64 {
+        let theta = 2.0 * PI * frequency_hz * self.tau_s;
+        self.at(turn(theta), turn(theta * self.segment))
+    }
+
+    /// The densities of bins by their turns.
+    pub(crate) fn densities(&self, turns: Turns<'_>, out: &mut [f64]) {
+        let here = turns.cos.iter().zip(turns.sin).map(|(cos, sin)| Complex::new(*cos, *sin));
+        let round = turns.cos_round.iter().zip(turns.sin_round).map(|(cos, sin)| Complex::new(*cos, *sin));
+        out.iter_mut().zip(here.zip(round)).for_each(|(o, (here, round))| *o = self.at(here, round));
+    }
+
+    /// The density at the turns from one sample to the next and over the segment.
+    fn at(&self, here: Complex<f64>, round: Complex<f64>) -> f64 {
         let l = self.segment;
         let one = Complex::new(1.0, 0.0);
         // Autocorrelation of the window: (1 − x)(2 + cos 2πx)/3 + sin(2πx)/(2π), x = d/L.
-        let theta = 2.0 * PI * frequency_hz * self.tau_s;
-        let (here, round) = (turn(theta), turn(theta * l));
         let odd = 1.0 / (4.0 * PI);
-        let mut sum = Complex::new(0.0, 0.0);
-        for (side, round) in [(here, round), (here.conj(), round.conj())] {
-            let weights =
-                [(self.bin.conj(), 1.0 / 6.0, odd), (one, 2.0 / 3.0, 0.0), (self.bin, 1.0 / 6.0, -odd)];
-            for (shift, even, odd) in weights {
-                let u = side * shift;
-                let z = self.rho * u;
-                // A turn by a whole bin is none after L samples.
-                let last = self.last * round * u.conj();
-                let inverse = inverted(one - z);
-                let plain = u * (one - last) * inverse;
-                let weighted = u * (one - last * l + last * z * (l - 1.0)) * inverse * inverse;
-                sum += (plain - weighted / l) * even + plain * Complex::new(0.0, odd);
-            }
-        }
+        let weights = [(self.bin.conj(), 1.0 / 6.0, odd), (one, 2.0 / 3.0, 0.0), (self.bin, 1.0 / 6.0, -odd)];
+        let part = |side: Complex<f64>, round: Complex<f64>, (shift, even, odd): (Complex<f64>, f64, f64)| {
+            let u = side * shift;
+            let z = self.rho * u;
+            // A turn by a whole bin is none after L samples.
+            let last = self.last * round * u.conj();
+            let inverse = inverted(one - z);
+            let plain = u * (one - last) * inverse;
+            let weighted = u * (one - last * l + last * z * (l - 1.0)) * inverse * inverse;
+            (plain - weighted / l) * even + plain * Complex::new(0.0, odd)
+        };
+        let parts = weights.map(|weight| part(here, round, weight));
+        // Of a Markov process all but the turns is real: the other direction gives the conjugates, in the other order.
+        let is_real = self.rho.im == 0.0 && self.last.im == 0.0;
+        let others = if is_real {
+            let [a, b, c] = parts;
+            [c, b, a].map(|part| part.conj())
+        } else {
+            weights.map(|weight| part(here.conj(), round.conj(), weight))
+        };
+        let sum: Complex<f64> = parts.into_iter().chain(others).sum();
         (self.scale * (self.gamma0 + (self.first * sum).re)).max(0.0)
     }
 }

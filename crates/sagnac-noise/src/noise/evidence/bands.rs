@@ -10,6 +10,9 @@ const MAX_BANDS: usize = 800;
 /// Width of a band over the distance to the centre of a zone plus the half width of that.
 const WIDTH_PER_DISTANCE: f64 = 0.2;
 
+/// Places that stand for one cell at most.
+const MAX_PLACES: usize = 4;
+
 /// One transform that contributes modes or bins.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Piece {
@@ -24,7 +27,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    fn bin(&self, index: f64) -> Bin {
+    pub(super) fn bin(&self, index: f64) -> Bin {
         Bin {
             frequency_hz: index * self.step_hz,
             tau_s: self.tau_s,
@@ -54,6 +57,15 @@ pub(super) struct Cell {
     pub(super) from: usize,
     pub(super) to: usize,
     pub(super) dof: f64,
+}
+
+impl Cell {
+    /// The places that stand for it, as indices of bins with their fractions.
+    pub(super) fn indices(&self) -> impl ExactSizeIterator<Item = f64> {
+        let (from, width) = (self.from as f64, self.to - self.from + 1);
+        let count = width.min(MAX_PLACES);
+        (0..count).map(move |i| from + ((i as f64 + 0.5) * width as f64 / count as f64 - 0.5))
+    }
 }
 
 /// Mean power in one band.

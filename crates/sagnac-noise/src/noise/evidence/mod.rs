@@ -8,8 +8,10 @@
 
 mod bands;
 mod build;
+mod places;
 mod spectrum;
 
 pub use bands::{Band, FineBin, Zone};
 pub use build::Mask;
+pub use places::{Places, Transform, Turns};
 pub use spectrum::Evidence;

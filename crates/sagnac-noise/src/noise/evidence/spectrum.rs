@@ -32,15 +32,9 @@ impl Evidence {
                 let mut sum = 0.0;
                 for cell in &band.cells {
                     let Some(piece) = self.pieces.get(cell.piece) else { continue };
-                    let width = cell.to - cell.from + 1;
-                    let points = width.min(4);
-                    let mean: f64 = (0..points)
-                        .map(|i| {
-                            let offset = (i as f64 + 0.5) * width as f64 / points as f64 - 0.5;
-                            piece.expectation(term, cell.from as f64 + offset)
-                        })
-                        .sum::<f64>()
-                        / points as f64;
+                    let indices = cell.indices();
+                    let count = indices.len() as f64;
+                    let mean = indices.map(|i| piece.expectation(term, i)).sum::<f64>() / count;
                     sum += cell.dof * mean;
                 }
                 sum / band.dof

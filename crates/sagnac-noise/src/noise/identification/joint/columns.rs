@@ -2,11 +2,10 @@
 
 use super::model::BASE_TERMS;
 use crate::noise::composite::{
-    Bandwidth, Composite, Damped, Densities, Modes, Sampling, Windowed, averaged_white_mode, filtered_white,
-    sampled_density,
+    Bandwidth, Composite, Damped, Densities, Sampling, averaged_white_mode, filtered_white, sampled_density,
 };
 use crate::noise::data::NoiseType;
-use crate::noise::evidence::Evidence;
+use crate::noise::evidence::{Evidence, Places, Transform};
 use crate::noise::model::{Bin, Spectral, bin_ratio};
 use std::cell::Cell;
 use std::f64::consts::PI;
@@ -57,48 +56,14 @@ impl Spectral for Filtered {
 }
 
 impl Filtered {
-    /// Means over blocks of instantaneous samples are averages to a good approximation.
     fn sampling_of(&self, bin: &Bin) -> Sampling {
-        if bin.tau_s > 1.5 * self.tau0_s { Sampling::Averaging } else { self.sampling }
+        sampling_of_means(bin.tau_s, self.tau0_s, self.sampling)
     }
 }
 
-/// A process of standard deviation 1.
-struct Process {
-    process: Damped,
-    tau0_s: f64,
-    sampling: Sampling,
-    /// The modes of the transform that was asked for last: bins of one transform come together.
-    last: Cell<Option<(f64, usize, Modes)>>,
-    /// The bins of the segment length that was asked for last.
-    windowed: Cell<Option<(f64, usize, Windowed)>>,
-}
-
-impl Spectral for Process {
-    fn density(&self, bin: &Bin) -> f64 {
-        let sampling = if bin.tau_s > 1.5 * self.tau0_s { Sampling::Averaging } else { self.sampling };
-        if bin.mode > 0 {
-            let modes = match self.last.get() {
-                Some((tau_s, blocks, modes)) if tau_s == bin.tau_s && blocks == bin.blocks => modes,
-                _ => self.process.modes(bin.blocks, bin.tau_s, sampling),
-            };
-            self.last.set(Some((bin.tau_s, bin.blocks, modes)));
-            modes.power(bin.mode)
-        } else if bin.segment > 0 {
-            let windowed = match self.windowed.get() {
-                Some((tau_s, segment, windowed)) if tau_s == bin.tau_s && segment == bin.segment => windowed,
-                _ => self.process.windowed(bin.segment, bin.tau_s, sampling),
-            };
-            self.windowed.set(Some((bin.tau_s, bin.segment, windowed)));
-            windowed.density(bin.frequency_hz)
-        } else {
-            self.process.density(bin.frequency_hz, bin.tau_s, sampling)
-        }
-    }
-
-    fn knows_windows(&self) -> bool {
-        true
-    }
+/// Means over blocks of instantaneous samples are averages to a good approximation.
+fn sampling_of_means(tau_s: f64, tau0_s: f64, sampling: Sampling) -> Sampling {
+    if tau_s > 1.5 * tau0_s { Sampling::Averaging } else { sampling }
 }
 
 /// The columns of N, B, K and Q behind a filter.
@@ -115,11 +80,16 @@ pub(super) fn base(evidence: &Evidence, filter: Option<Bandwidth>, sampling: Sam
         .collect()
 }
 
-/// The column of one process.
-pub(super) fn process(evidence: &Evidence, process: &Damped, sampling: Sampling) -> Vec<f64> {
+/// The column of one process of standard deviation 1 at places of an evidence with samples over `tau0_s`.
+pub(super) fn process(places: &Places, tau0_s: f64, process: &Damped, sampling: Sampling) -> Vec<f64> {
     let unit = Damped { rms_deg_h: 1.0, ..*process };
-    let (tau0_s, last, windowed) = (evidence.tau0_s, Cell::new(None), Cell::new(None));
-    evidence.expectation(&Process { process: unit, tau0_s, sampling, last, windowed })
+    places.expectation(|transform, tau_s, turns, out| {
+        let sampling = sampling_of_means(tau_s, tau0_s, sampling);
+        match transform {
+            Transform::Modes(blocks) => unit.modes(blocks, tau_s, sampling).powers(turns, out),
+            Transform::Segments(length) => unit.windowed(length, tau_s, sampling).densities(turns, out),
+        }
+    })
 }
 
 /// The columns of N, B, K and Q, shared by all shapes behind the same filter.
@@ -129,12 +99,12 @@ pub(super) type Base = Arc<Vec<Vec<f64>>>;
 #[derive(Debug, Clone)]
 pub(super) struct Columns {
     pub(super) base: Base,
-    pub(super) damped: Vec<Vec<f64>>,
+    pub(super) damped: Vec<Arc<Vec<f64>>>,
 }
 
 impl Columns {
     pub(super) fn all(&self) -> impl Iterator<Item = &Vec<f64>> {
-        self.base.iter().chain(&self.damped)
+        self.base.iter().chain(self.damped.iter().map(Arc::as_ref))
     }
 }
 
@@ -143,7 +113,8 @@ pub fn expected_power(evidence: &Evidence, model: &Composite) -> Vec<f64> {
     let coefficients = BASE_TERMS.iter().map(|t| model.terms.coefficient(*t).powi(2));
     let base = base(evidence, model.bandwidth, model.sampling).into_iter().zip(coefficients);
     let damped = model.markov.iter().chain(&model.quasi_periodic);
-    let damped = damped.map(|d| (process(evidence, d, model.sampling), d.rms_deg_h.powi(2)));
+    let places = evidence.places();
+    let damped = damped.map(|d| (process(&places, evidence.tau0_s, d, model.sampling), d.rms_deg_h.powi(2)));
     let mut out = vec![0.0; evidence.bands.len()];
     for (column, square) in base.chain(damped).filter(|(_, square)| *square > 0.0) {
         for (o, c) in out.iter_mut().zip(column) {

@@ -5,11 +5,12 @@ use super::super::likelihood::{
 };
 use super::super::misfit::WhitenedBand;
 use super::columns::{Base, Columns, base, process};
-use super::model::{BASE_TERMS, Free, JointPoint, ProcessKind, Shape, Variable};
+use super::model::{BASE_TERMS, Free, JointPoint, Shape, Variable};
 use crate::noise::composite::{Bandwidth, Damped, Sampling};
-use crate::noise::evidence::Evidence;
+use crate::noise::evidence::{Evidence, Places};
 use crate::numeric::optimize::{bounded_quadratic, shortened_steps};
 use nalgebra::{DMatrix, DVector};
+use std::collections::VecDeque;
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Fall of the deviance below which a fit is done.
@@ -20,6 +21,8 @@ const MAX_STEPS: usize = 80;
 const MIN_PERIODS: f64 = 2.0;
 /// Filters whose columns are kept.
 const MAX_FILTERS: usize = 8;
+/// Processes whose columns are kept.
+const MAX_KEPT_PROCESSES: usize = 128;
 /// Relative step of numeric derivatives.
 const DERIVATIVE_STEP: f64 = 1e-3;
 
@@ -29,16 +32,29 @@ pub struct Joint<'a> {
     sampling: Sampling,
     bands: Vec<BandPower>,
     used: Vec<usize>,
+    places: Places,
     plain: Base,
     filtered: Mutex<Vec<(Bandwidth, Base)>>,
+    processes: Mutex<VecDeque<KeptProcess>>,
 }
+
+/// The column of a process by the bits of its frequency and decay time.
+type KeptProcess = ([u64; 2], Arc<Vec<f64>>);
 
 impl<'a> Joint<'a> {
     /// Prepares the likelihood; `None` when there is no power in any band or too few bands to say anything.
     pub fn new(evidence: &'a Evidence, sampling: Sampling) -> Option<Joint<'a>> {
         let (used, bands) = usable_bands(evidence)?;
-        let (plain, filtered) = (Arc::default(), Mutex::default());
-        let mut joint = Joint { evidence, sampling, bands, used, plain, filtered };
+        let mut joint = Joint {
+            evidence,
+            sampling,
+            bands,
+            used,
+            places: evidence.places(),
+            plain: Arc::default(),
+            filtered: Mutex::default(),
+            processes: Mutex::default(),
+        };
         joint.plain = Arc::new(joint.restrict(base(evidence, None, sampling)));
         Some(joint)
     }
@@ -78,21 +94,26 @@ impl<'a> Joint<'a> {
         made
     }
 
-    pub(super) fn columns(&self, shape: &Shape) -> Columns {
-        let damped = shape.damped.iter().map(|(_, d)| process(self.evidence, d, self.sampling)).collect();
-        Columns { base: self.base(shape.filter), damped: self.restrict(damped) }
+    /// The column of a process. Those of the last processes are kept: every fit begins where another ended, and searches of many
+    /// shapes go through the same times.
+    fn process(&self, damped: &Damped) -> Arc<Vec<f64>> {
+        let key = [damped.frequency_hz.to_bits(), damped.decay_time_s.to_bits()];
+        let kept = || self.processes.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some((_, column)) = kept().iter().rev().find(|(k, _)| *k == key) {
+            return column.clone();
+        }
+        let made = process(&self.places, self.evidence.tau0_s, damped, self.sampling);
+        let made = Arc::new(self.restrict(vec![made]).pop().unwrap_or_default());
+        let mut kept = kept();
+        if kept.len() >= MAX_KEPT_PROCESSES {
+            kept.pop_front();
+        }
+        kept.push_back((key, made.clone()));
+        made
     }
 
-    /// The columns of a shape near one whose columns are known.
-    fn columns_near(&self, shape: &Shape, known: &Shape, columns: &Columns) -> Columns {
-        let one = |(i, (_, damped)): (usize, &(ProcessKind, Damped))| {
-            let same = known.damped.get(i).filter(|(_, d)| d == damped).and_then(|_| columns.damped.get(i));
-            same.cloned().map_or_else(
-                || self.restrict(vec![process(self.evidence, damped, self.sampling)]),
-                |column| vec![column],
-            )
-        };
-        let damped = shape.damped.iter().enumerate().flat_map(one).collect();
+    pub(super) fn columns(&self, shape: &Shape) -> Columns {
+        let damped = shape.damped.iter().map(|(_, d)| self.process(d)).collect();
         Columns { base: self.base(shape.filter), damped }
     }
 
@@ -204,11 +225,9 @@ impl<'a> Joint<'a> {
                     else {
                         return vec![0.0; self.bands.len()];
                     };
-                    let then = self.restrict(vec![process(self.evidence, d, self.sampling)]);
-                    let (Some(then), Some(now)) = (then.first(), columns.damped.get(i)) else {
-                        return vec![0.0; self.bands.len()];
-                    };
-                    now.iter().zip(then).map(|(a, b)| v * (b - a) / DERIVATIVE_STEP).collect()
+                    let Some(now) = columns.damped.get(i) else { return vec![0.0; self.bands.len()] };
+                    let then = self.process(d);
+                    now.iter().zip(then.iter()).map(|(a, b)| v * (b - a) / DERIVATIVE_STEP).collect()
                 }
                 Variable::Ramp => vec![0.0; self.bands.len()],
             }
@@ -293,11 +312,7 @@ impl<'a> Joint<'a> {
             let shorter = |scale: f64| scale * if scale > 0.2 { 0.5 } else { 0.25 };
             let (better, scale) = shortened_steps(12, shorter, |scale| {
                 let (mut trial, bent) = self.moved_along(&point, &variables, &step, scale);
-                let trial_columns = if bent {
-                    self.columns_near(&trial.shape, &point.shape, &columns)
-                } else {
-                    columns.clone()
-                };
+                let trial_columns = if bent { self.columns(&trial.shape) } else { columns.clone() };
                 let trial_s = self.density(&trial_columns, &trial.variance);
                 if restricted && trial_s.iter().all(|s| *s > 0.0) {
                     trial.ramp = best_ramp(self.expected(&trial_s));
