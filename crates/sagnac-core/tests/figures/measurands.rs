@@ -4,7 +4,7 @@ use crate::noise::units;
 use crate::stored::Figures;
 use crate::truths::noise;
 use sagnac_core::estimate::Estimate;
-use sagnac_core::influence::comparison::{self, Beside, NoiseChange};
+use sagnac_core::influence::comparison::{self, BandChange, Beside, NoiseChange};
 use sagnac_core::influence::nuisance::Nuisance;
 use sagnac_core::influence::{
     ComparisonTest, Influence, Law, LevelUnit, RepeatabilityTest, Setting, intervals, repeatability, runs,
@@ -13,6 +13,7 @@ use sagnac_core::measurand::{
     ComparisonEvidence, Earth, GyroEvidence, KnownInputEvidence, MEASURANDS, Options, TableEvidence,
     table_extras,
 };
+use sagnac_core::noise::in_band::BandMean;
 use sagnac_core::rate_table::blocks::{Block, Blocks};
 use sagnac_core::rate_table::setup::{Input, ReferenceInput};
 use sagnac_core::rate_table::steps::Step;
@@ -447,7 +448,14 @@ fn under_influence() {
             let beside = Beside { temperature: Some(temperature), others: vec![] };
             let Some(bias) = comparison::evaluate(&made, &series, &test, &beside, 0) else { continue };
             figures.add(format!("{influence} {name} found"), &bias);
-            let change = |without, with| NoiseChange { channel: "g0 1".into(), without, with };
+            let mean = |power| Some(BandMean { power, dof: 200.0 });
+            let band =
+                |without, with, lines| BandChange { channel: "g0 1 1-5Hz".into(), without, with, lines };
+            let bands = vec![band(mean(0.04), mean(0.09), 0), band(mean(0.04), None, 1)];
+            let change = |without, with| {
+                let bands = bands.clone();
+                NoiseChange { channel: "g0 1".into(), without, with, bands }
+            };
             let noise = [
                 change(Some((0.01, 1e-4)), Some((0.013, 2e-4))),
                 change(None, Some((0.013, 2e-4))),
