@@ -472,7 +472,7 @@ mod tests {
         let asked = "{{ locale['verdict.pass'] }},{{ locale['none'] is defined }},{{ locale | length }}";
         for lang in Lang::ALL {
             let said = Environment::new().render_str(asked, page_context(Value::UNDEFINED, *lang)).unwrap();
-            let expected = format!("{},false,{}", table(*lang)["verdict.pass"], table(*lang).len());
+            let expected = format!("{},False,{}", table(*lang)["verdict.pass"], table(*lang).len());
             assert_eq!(said, expected);
         }
     }
