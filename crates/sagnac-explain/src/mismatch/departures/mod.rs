@@ -18,7 +18,9 @@ use super::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use super::several::{least_of, ln_least_of};
 use super::spectral_data::SpectralData;
 use crate::effect::{Domain, Drivers, Place};
-use crate::estimate::{ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided, normal_two_sided};
+use crate::estimate::{
+    ln_chi_square_tail, ln_chi_square_two_sided, ln_normal_two_sided, normal_probability, normal_two_sided,
+};
 use crate::numeric::sums::cumulated;
 use departure::{ln_at_least, windows};
 use rand::{RngExt as _, SeedableRng as _};
@@ -91,7 +93,7 @@ pub fn all(
     out.extend(episodes::all(spectral, &white));
     out.extend(
         off_lattice(spectral, &white, spectra.grid_step_arcsec)
-            .and_then(|values| tails(spectral, &values, usable)),
+            .and_then(|values| tails(spectral, &values, usable, allowed_skewness)),
     );
     out.extend(skewness(spectral, &white, allowed_skewness));
     out.extend(columns::all(spectral, &white));
@@ -199,8 +201,29 @@ fn off_lattice(spectral: &SpectralData, white: &White, grid_step_arcsec: Option<
     Some(white.series.iter().map(|e| (e + step * (rng.random::<f64>() - 0.5)) / scale).collect())
 }
 
-/// Values of the whitened series beyond 3, 4 and 5 deviations, too many or too few.
-fn tails(spectral: &SpectralData, series: &[f64], usable: &[bool]) -> Option<Departure> {
+/// Probability of a value beyond so many deviations on either side, of a normal value with a part of its own square: the law that has
+/// a third standardised moment with the lightest further moments (Cornish and Fisher).
+fn beyond(bound: f64, skewness: f64) -> f64 {
+    // z + c (z² − 1) has the third moment 6c + 8c³.
+    let c = skewness / 6.0;
+    if c < 1e-6 {
+        return normal_two_sided(bound);
+    }
+    let scale = (1.0 + 2.0 * c * c).sqrt();
+    let between_roots = |value: f64| {
+        let root = (1.0 + 4.0 * c * (c + value * scale)).max(0.0).sqrt();
+        normal_probability((root - 1.0) / (2.0 * c)) - normal_probability((-root - 1.0) / (2.0 * c))
+    };
+    1.0 - between_roots(bound) + between_roots(-bound)
+}
+
+/// Values of the whitened series beyond 2 to 5 deviations, too many for the skewness that single values may have, or too few.
+fn tails(
+    spectral: &SpectralData,
+    series: &[f64],
+    usable: &[bool],
+    allowed_skewness: f64,
+) -> Option<Departure> {
     let values = || series.iter().zip(usable).filter(|(_, u)| **u).map(|(e, _)| e.abs());
     let n = values().count() as f64;
     let mut scan = Scan::new();
@@ -211,14 +234,15 @@ fn tails(spectral: &SpectralData, series: &[f64], usable: &[bool]) -> Option<Dep
         }
     }
     for bound in [2.0, 3.0, 4.0, 5.0] {
-        let expected = n * normal_two_sided(bound);
+        let (even, skewed) = (n * normal_two_sided(bound), n * beyond(bound, allowed_skewness));
         let seen = values().filter(|e| *e > bound).count() as u64;
-        let Ok(law) = Poisson::new(expected) else { continue };
+        let Ok(law) = Poisson::new(even.min(skewed)) else { continue };
         let few = law.cdf(seen).max(1e-300).ln();
-        let ln_p = ln_at_least(seen as usize, expected).min(few);
+        let ln_p = ln_at_least(seen as usize, even.max(skewed)).min(few);
         scan.see((std::f64::consts::LN_2 + ln_p).min(0.0), 0.0, 0.0);
     }
-    scan.see((n.ln() + ln_normal_two_sided(largest.0)).min(0.0), 0.0, 0.0);
+    let ln_largest = ln_normal_two_sided(largest.0).max(beyond(largest.0, allowed_skewness).ln());
+    scan.see((n.ln() + ln_largest).min(0.0), 0.0, 0.0);
     let mut found = scan.done("tails", Domain::Time)?;
     // Where the values beyond three deviations are.
     let far: Vec<usize> = (0..series.len()).filter(|i| usable[*i] && series[*i].abs() > 3.5).collect();
@@ -312,6 +336,23 @@ mod tests {
     }
 
     #[test]
+    fn a_skewness_that_is_allowed_is_no_outlier() {
+        let n = 20_000;
+        let normal = |i: usize| crate::estimate::normal_quantile((i as f64 + 0.5) / n as f64);
+        let part = 0.06;
+        let scale = (1.0f64 + 2.0 * part * part).sqrt();
+        let skewed: Vec<f64> = (0..n).map(normal).map(|z| (z + part * (z * z - 1.0)) / scale).collect();
+        let (spectral, usable) = (spectral(n), vec![true; n]);
+        let p = |allowed: f64| tails(&spectral, &skewed, &usable, allowed).unwrap().p_value();
+        assert!(p(0.0) < 0.01 && p(0.4) > 0.2, "{} {}", p(0.0), p(0.4));
+        // By the law itself: as many values are beyond each bound as it says.
+        for bound in [2.0, 3.0] {
+            let seen = skewed.iter().filter(|y| y.abs() > bound).count() as f64 / n as f64;
+            assert!((seen / beyond(bound, 0.36) - 1.0).abs() < 0.02, "{seen}");
+        }
+    }
+
+    #[test]
     fn values_too_large_or_too_seldom_are_told() {
         let n = 4000;
         // Quantiles of a normal law in a scattered order: as many in each tail as expected.
@@ -319,18 +360,18 @@ mod tests {
         let normal = |i: usize| crate::estimate::normal_quantile((order(i) as f64 + 0.5) / n as f64);
         let even: Vec<f64> = (0..n).map(normal).collect();
         let (spectral, usable) = (spectral(n), vec![true; n]);
-        assert!(tails(&spectral, &even, &usable).unwrap().p_value() > 0.5);
+        assert!(tails(&spectral, &even, &usable, 0.0).unwrap().p_value() > 0.5);
         let mut far = even.clone();
         far[1700] = 9.0;
-        let found = tails(&spectral, &far, &usable).unwrap();
+        let found = tails(&spectral, &far, &usable, 0.0).unwrap();
         assert!(found.p_value() < 1e-12 && found.place.to == 850.0, "{found:?}");
         // Set aside, it tells of nothing.
         let mut without = usable.clone();
         without[1700] = false;
-        assert!(tails(&spectral, &far, &without).unwrap().p_value() > 0.5);
+        assert!(tails(&spectral, &far, &without, 0.0).unwrap().p_value() > 0.5);
         // A law that ends at two deviations has too few beyond.
         let short: Vec<f64> = even.iter().map(|e| e.clamp(-1.9, 1.9)).collect();
-        assert!(tails(&spectral, &short, &usable).unwrap().p_value() < 1e-12);
+        assert!(tails(&spectral, &short, &usable, 0.0).unwrap().p_value() < 1e-12);
     }
 
     #[test]
