@@ -107,7 +107,8 @@ pub fn decode(path: &Path) -> Result<f64, ParquetError> {
                 continue;
             };
             loop {
-                (values.clear(), levels.clear());
+                values.clear();
+                levels.clear();
                 let (rows, ..) = column.read_records(BATCH, Some(&mut levels), None, &mut values)?;
                 if rows == 0 {
                     break;

