@@ -103,118 +103,150 @@ fn main() -> ExitCode {
     ExitCode::FAILURE
 }
 
-/// Every figure with its kernels, once each.
-fn measure(folder: &Path) -> Option<Vec<(&'static str, Cost, Cost)>> {
-    let recording = |rows: usize| {
+/// A recording as a file, its rate, and its text.
+struct Recording {
+    path: PathBuf,
+    rate: Vec<f64>,
+    text: Vec<u8>,
+}
+
+impl Recording {
+    fn new(folder: &Path, rows: usize) -> Recording {
         let path = folder.join(format!("{rows}.csv"));
         let rate = write_recording(&path, rows);
         let text = std::fs::read(&path).expect("the recording");
-        (path, rate, text)
-    };
-    let (long, middle, short) = (recording(ROWS), recording(MIDDLE_ROWS), recording(SHORT_ROWS));
-    let model = folder.join("model.toml");
-    std::fs::write(&model, MODEL).expect("a model");
-    let parquet = folder.join("simulated.parquet");
-    let simulate = |rows: usize| {
+        Recording { path, rate, text }
+    }
+
+    /// What an analysis does at least.
+    fn kernels(&self) {
+        black_box((limits::parse(&self.text), limits::allan(&self.rate), limits::welch(&self.rate)));
+    }
+}
+
+/// What the figures are measured on.
+struct Inputs<'a> {
+    folder: &'a Path,
+    long: Recording,
+    middle: Recording,
+    short: Recording,
+    model: PathBuf,
+    parquet: PathBuf,
+    lot: Vec<PathBuf>,
+}
+
+impl Inputs<'_> {
+    fn new(folder: &Path) -> Inputs<'_> {
+        let recording = |rows: usize| Recording::new(folder, rows);
+        let short = recording(SHORT_ROWS);
+        let model = folder.join("model.toml");
+        std::fs::write(&model, MODEL).expect("a model");
+        let lot: Vec<PathBuf> = (0..RECORDINGS).map(|i| folder.join(format!("unit-{i}.csv"))).collect();
+        lot.iter().for_each(|path| std::fs::write(path, &short.text).expect("a recording"));
+        let (long, middle, parquet) =
+            (recording(ROWS), recording(MIDDLE_ROWS), folder.join("simulated.parquet"));
+        let inputs = Inputs { folder, long, middle, short, model, parquet, lot };
+        inputs.simulate(ROWS);
+        inputs
+    }
+
+    fn simulate(&self, rows: usize) {
         let length = format!("{}s", rows as f64 * TAU0_S);
-        let out = [parquet.as_path(), &model].map(|p| p.display().to_string());
-        program(&["simulate", "--quiet", "--force", "--duration", &length, "--out", &out[0], &out[1]]);
-    };
-    simulate(ROWS);
-    let lot: Vec<PathBuf> = (0..RECORDINGS).map(|i| folder.join(format!("unit-{i}.csv"))).collect();
-    lot.iter().for_each(|path| std::fs::write(path, &short.2).expect("a recording"));
-    let procedure = concat!(env!("CARGO_MANIFEST_DIR"), "/../procedures/static-bias.toml");
-    let (noise, ramp) =
-        (digest(&short.1), digest(&(0..SHORT_ROWS).map(|i| 1e9 * i as f64).collect::<Vec<_>>()));
-    let analyse = |path: &Path| {
-        let out = folder.join("out");
+        let [out, model] = [&self.parquet, &self.model].map(|p| p.display().to_string());
+        program(&["simulate", "--quiet", "--force", "--duration", &length, "--out", &out, &model]);
+    }
+
+    /// A place for results that is not there yet.
+    fn free(&self, name: &str) -> String {
+        let out = self.folder.join(name);
         let _ = std::fs::remove_dir_all(&out);
-        let [out, path] = [out.as_path(), path].map(|p| p.display().to_string());
-        program(&["analyze", "--quiet", "--out", &out, &path]);
-    };
-    let each = || {
-        let out = folder.join("lot");
-        let _ = std::fs::remove_dir_all(&out);
+        out.display().to_string()
+    }
+
+    fn analyse(&self, path: &Path) {
+        program(&["analyze", "--quiet", "--out", &self.free("out"), &path.display().to_string()]);
+    }
+
+    fn test_each(&self) {
+        let procedure = concat!(env!("CARGO_MANIFEST_DIR"), "/../procedures/static-bias.toml");
         let mut arguments = vec!["run".to_owned(), procedure.to_owned()];
-        arguments.extend(lot.iter().map(|p| p.display().to_string()));
+        arguments.extend(self.lot.iter().map(|p| p.display().to_string()));
         arguments.extend(["--each", "--quiet", "--out"].map(str::to_owned));
-        arguments.push(out.display().to_string());
+        arguments.push(self.free("lot"));
         program(&arguments.iter().map(String::as_str).collect::<Vec<_>>());
+    }
+}
+
+/// Analyses of recordings of several lengths and forms.
+fn of_recordings<'a>(inputs: &'a Inputs<'_>) -> Vec<Figure<'a>> {
+    let Inputs { long, middle, short, parquet, .. } = inputs;
+    let analysis = |name, recording: &'a Recording, times, kernel_times| Figure {
+        name,
+        times,
+        run: Box::new(|| inputs.analyse(&recording.path)),
+        kernel_times,
+        kernels: Box::new(|| recording.kernels()),
     };
-    let identify = |digest: &RateDigest| {
-        black_box(identify_digest("rate", digest, TAU0_S, 0.01, None));
-    };
-    let kernels = |(_, rate, text): &(PathBuf, Vec<f64>, Vec<u8>)| {
-        black_box((limits::parse(text), limits::allan(rate), limits::welch(rate)));
-    };
-    let figures = [
-        Figure {
-            name: "analysis of 3.6 million rows of CSV",
-            times: 1,
-            run: Box::new(|| analyse(&long.0)),
-            kernel_times: 2,
-            kernels: Box::new(|| kernels(&long)),
-        },
+    vec![
+        analysis("analysis of 3.6 million rows of CSV", long, 1, 2),
+        analysis("analysis of 360 000 rows of CSV", middle, 4, 20),
+        analysis("analysis of 36 000 rows of CSV", short, 8, 200),
         Figure {
             name: "analysis of 3.6 million rows of Parquet",
             times: 1,
-            run: Box::new(|| analyse(&parquet)),
+            run: Box::new(|| inputs.analyse(parquet)),
             kernel_times: 2,
             kernels: Box::new(|| {
-                let sum = limits::decode(&parquet).expect("the recording");
-                black_box((sum, limits::allan(&long.1), limits::welch(&long.1)));
+                let sum = limits::decode(parquet).expect("the recording");
+                black_box((sum, limits::allan(&long.rate), limits::welch(&long.rate)));
             }),
-        },
-        Figure {
-            name: "analysis of 360 000 rows of CSV",
-            times: 4,
-            run: Box::new(|| analyse(&middle.0)),
-            kernel_times: 20,
-            kernels: Box::new(|| kernels(&middle)),
-        },
-        Figure {
-            name: "analysis of 36 000 rows of CSV",
-            times: 8,
-            run: Box::new(|| analyse(&short.0)),
-            kernel_times: 200,
-            kernels: Box::new(|| kernels(&short)),
         },
         Figure {
             name: "test of 12 recordings of 36 000 rows",
             times: 1,
-            run: Box::new(each),
+            run: Box::new(|| inputs.test_each()),
             kernel_times: 200,
-            kernels: Box::new(|| kernels(&short)),
-        },
-        Figure {
-            name: "identification of N and B in 36 000 rows",
-            times: 8,
-            run: Box::new(|| identify(&noise)),
-            kernel_times: 10,
-            kernels: Box::new(|| {
-                black_box(limits::densities(1000));
-            }),
-        },
-        Figure {
-            name: "identification of a ramp of 1e9 a sample",
-            times: 1,
-            run: Box::new(|| identify(&ramp)),
-            kernel_times: 10,
-            kernels: Box::new(|| {
-                black_box(limits::densities(1000));
-            }),
+            kernels: Box::new(|| short.kernels()),
         },
         Figure {
             name: "simulation of 3.6 million rows as Parquet",
             times: 1,
-            run: Box::new(|| simulate(ROWS)),
+            run: Box::new(|| inputs.simulate(ROWS)),
             kernel_times: 2,
             kernels: Box::new(|| {
                 black_box(limits::noise(ROWS));
             }),
         },
-    ];
-    let mut least = figures.each_ref().map(|_| [Cost::NONE; 2]);
+    ]
+}
+
+/// Identification of noise, and of what is none.
+fn of_identification<'a>(noise: &'a RateDigest, ramp: &'a RateDigest) -> Vec<Figure<'a>> {
+    let identification = |name, digest, times| Figure {
+        name,
+        times,
+        run: Box::new(move || {
+            black_box(identify_digest("rate", digest, TAU0_S, 0.01, None));
+        }),
+        kernel_times: 10,
+        kernels: Box::new(|| {
+            black_box(limits::densities(1000));
+        }),
+    };
+    vec![
+        identification("identification of N and B in 36 000 rows", noise, 8),
+        identification("identification of a ramp of 1e9 a sample", ramp, 1),
+    ]
+}
+
+/// Every figure with its kernels, in turn; `None` where the CPU time cannot be read.
+fn measure(folder: &Path) -> Option<Vec<(&'static str, Cost, Cost)>> {
+    let inputs = Inputs::new(folder);
+    let steep: Vec<f64> = (0..SHORT_ROWS).map(|i| 1e9 * i as f64).collect();
+    let (noise, ramp) = (digest(&inputs.short.rate), digest(&steep));
+    let mut figures = of_recordings(&inputs);
+    figures.extend(of_identification(&noise, &ramp));
+    let mut least = vec![[Cost::NONE; 2]; figures.len()];
     for _ in 0..ROUNDS {
         for (figure, least) in figures.iter().zip(&mut least) {
             let now = [

@@ -40,6 +40,7 @@ fn analyse(source: &Source) -> usize {
         now: chrono::DateTime::UNIX_EPOCH,
         taus: None,
         exact: false,
+        bench_checks: None,
     };
     execute(&request, &mut |_, _| {}).expect("an outcome").figures.len()
 }
