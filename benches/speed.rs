@@ -32,6 +32,12 @@ const STORED: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/ratios.csv");
 const MODEL: &str =
     "[recording]\nsample_rate_hz = 100\n[noise]\nN_deg_rt_h = 0.002\nB_deg_h = 0.004\nK_deg_h_rt_h = 0.01\n";
 
+/// A test of N without a warm-up, which short recordings do not have.
+const PROCEDURE: &str = "format = \"procedure/1\"\n[procedure]\nid = \"short\"\ntitle = \"Short\"\nrevision = \"A\"\n\
+    [[channel]]\nid = \"time\"\ncolumn = \"time_s\"\nrole = \"time\"\nunit = \"s\"\n\
+    [[channel]]\nid = \"rate\"\ncolumn = \"rate_deg_h\"\nrole = \"rate\"\nunit = \"deg/h\"\n\
+    [conditions]\nminimum_duration = \"1 min\"\n[[measurand]]\nid = \"angle_random_walk\"\n";
+
 /// This program is the one that is measured as well, when it is started with this argument before those of a verb.
 const PROGRAM: &str = "--program";
 
@@ -131,6 +137,7 @@ struct Inputs<'a> {
     middle: Recording,
     short: Recording,
     model: PathBuf,
+    procedure: PathBuf,
     parquet: PathBuf,
     lot: Vec<PathBuf>,
 }
@@ -141,11 +148,13 @@ impl Inputs<'_> {
         let short = recording(SHORT_ROWS);
         let model = folder.join("model.toml");
         std::fs::write(&model, MODEL).expect("a model");
+        let procedure = folder.join("procedure.toml");
+        std::fs::write(&procedure, PROCEDURE).expect("a procedure");
         let lot: Vec<PathBuf> = (0..RECORDINGS).map(|i| folder.join(format!("unit-{i}.csv"))).collect();
         lot.iter().for_each(|path| std::fs::write(path, &short.text).expect("a recording"));
         let (long, middle, parquet) =
             (recording(ROWS), recording(MIDDLE_ROWS), folder.join("simulated.parquet"));
-        let inputs = Inputs { folder, long, middle, short, model, parquet, lot };
+        let inputs = Inputs { folder, long, middle, short, model, procedure, parquet, lot };
         inputs.simulate(ROWS);
         inputs
     }
@@ -168,8 +177,7 @@ impl Inputs<'_> {
     }
 
     fn test_each(&self) {
-        let procedure = concat!(env!("CARGO_MANIFEST_DIR"), "/../procedures/static-bias.toml");
-        let mut arguments = vec!["run".to_owned(), procedure.to_owned()];
+        let mut arguments = vec!["run".to_owned(), self.procedure.display().to_string()];
         arguments.extend(self.lot.iter().map(|p| p.display().to_string()));
         arguments.extend(["--each", "--quiet", "--out"].map(str::to_owned));
         arguments.push(self.free("lot"));
