@@ -60,7 +60,7 @@ impl Cost {
     }
 }
 
-/// What users wait for, and the kernels that it is compared with; each as often as makes a second or so.
+/// A figure of speed: what users wait for, and the kernels that it is compared with; each as often as makes a second or so.
 struct Figure<'a> {
     name: &'static str,
     times: usize,
@@ -124,13 +124,13 @@ impl Recording {
         Recording { path, rate, text }
     }
 
-    /// What an analysis does at least.
+    /// Kernels that an analysis has at least.
     fn kernels(&self) {
         black_box((limits::parse(&self.text), limits::allan(&self.rate), limits::welch(&self.rate)));
     }
 }
 
-/// What the figures are measured on.
+/// Recordings, models and lots that the figures are measured on.
 struct Inputs<'a> {
     folder: &'a Path,
     long: Recording,
@@ -286,7 +286,7 @@ fn digest(rate: &[f64]) -> RateDigest {
     digest.finish()
 }
 
-/// What a user runs.
+/// The program as a user runs it.
 fn program(arguments: &[&str]) {
     let status = Command::new(std::env::current_exe().expect("this program"))
         .arg(PROGRAM)

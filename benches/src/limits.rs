@@ -96,7 +96,7 @@ pub fn welch(rate: &[f64]) -> Vec<f64> {
 /// Every value of the columns of doubles of a Parquet file; their sum.
 ///
 /// # Errors
-/// What cannot be read.
+/// An error of a file that cannot be read.
 pub fn decode(path: &Path) -> Result<f64, ParquetError> {
     let reader = SerializedFileReader::new(std::fs::File::open(path)?)?;
     let (mut values, mut levels, mut sum) = (Vec::with_capacity(BATCH), vec![], 0.0);

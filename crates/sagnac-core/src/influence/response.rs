@@ -135,7 +135,7 @@ impl Changes {
         })
     }
 
-    /// What runs ahead of the drive along one axis, by row: the lag of a time that runs backwards.
+    /// Course ahead of the drive along one axis, by row: the lag of a time that runs backwards.
     fn ahead(&self, axis: usize, cut: &Cut, time_constant_s: f64) -> DVector<f64> {
         let drive = &self.drives[axis];
         let last = drive.len().saturating_sub(1);
