@@ -49,7 +49,7 @@ pub struct Release<'c> {
 /// A test on a bench.
 #[derive(Debug, Clone, Copy)]
 pub struct OnBench<'a> {
-    /// What the procedure states.
+    /// The bench as the procedure states it.
     pub bench: &'a Bench,
     /// Station of the run.
     pub station: Option<&'a str>,

@@ -16,7 +16,7 @@ const TIME_CONSTANTS: [f64; 6] = [0.1, 0.4, 1.0, 3.0, 10.0, 30.0];
 /// Fewest steps beyond the unknowns.
 const MIN_SPARE_STEPS: usize = 4;
 
-/// What the means of the steps hold of rates before.
+/// A share of earlier rates in the means of the steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Late {
     /// As a share of what was still missing at the beginning of a step; below zero where the output goes too far at first.
@@ -40,7 +40,7 @@ impl Late {
     }
 }
 
-/// What the output still lacks of the rate when each step begins, deg/h, behind a lag of first order.
+/// The rate that the output still lacks when each step begins, deg/h, behind a lag of first order.
 fn missing(steps: &Steps, time_constant_s: f64) -> Vec<f64> {
     let mut lacks = vec![0.0; steps.list.len()];
     for (k, pair) in steps.list.windows(2).enumerate() {

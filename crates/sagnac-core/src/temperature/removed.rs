@@ -4,12 +4,13 @@
 //! theirs. A unit gives its bias by the temperature that it has; it knows nothing of the mean of those before and after.
 
 use super::course::{Course, Span};
+use crate::numeric::sums::cumulated;
 use nalgebra::{DMatrix, DVector};
 
 /// Widths of the means that are tried, as shares of the record: from the widest, each so much less than the one before.
 const WIDEST_SHARE: f64 = 0.5;
 const WIDTH_RATIO: f64 = 1.25;
-const WIDTHS: i32 = 16;
+const WIDTHS_TRIED: i32 = 16;
 /// Twice the gain of log-likelihood over the model of the unit from which the slow part counts as removed.
 const MIN_GAIN: f64 = 60.0;
 
@@ -18,7 +19,7 @@ const MIN_GAIN: f64 = 60.0;
 pub struct Removed {
     /// Width of the mean that was taken out, of those tried, s.
     pub width_s: f64,
-    /// What temperature and its rate without their means leave of the variance of the record, over what the model of the unit leaves.
+    /// Variance that temperature and its rate without their means leave of the record, over that which the model of the unit leaves.
     pub left: f64,
 }
 
@@ -28,7 +29,7 @@ pub fn removed(course: &Course, span: &Span, modelled: &[f64]) -> Option<Removed
     let n = course.len();
     let causes = causes(course, span);
     let left_by_model: f64 = course.rate_deg_h.iter().zip(modelled).map(|(y, m)| (y - m).powi(2)).sum();
-    let tried = (0..WIDTHS).filter_map(|i| {
+    let tried = (0..WIDTHS_TRIED).filter_map(|i| {
         let share = WIDEST_SHARE * WIDTH_RATIO.powi(-i);
         let half = (0.5 * share * n as f64) as usize;
         let columns: Vec<Vec<f64>> = causes.iter().map(|c| without_mean(c, half)).collect();
@@ -50,11 +51,7 @@ fn causes(course: &Course, span: &Span) -> [Vec<f64>; 3] {
 
 /// Values without the mean over so many of them on either side, of which there are fewer at the ends.
 fn without_mean(values: &[f64], half: usize) -> Vec<f64> {
-    let mut sums = vec![0.0];
-    sums.extend(values.iter().scan(0.0, |sum, v| {
-        *sum += v;
-        Some(*sum)
-    }));
+    let sums = cumulated(values.iter().copied());
     let left = |(i, v): (usize, &f64)| {
         let (from, to) = (i.saturating_sub(half), (i + half + 1).min(values.len()));
         v - (sums[to] - sums[from]) / (to - from) as f64
