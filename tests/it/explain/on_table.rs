@@ -71,6 +71,19 @@ fn a_limit_that_a_slow_sine_exceeds() {
     near(&all, 0, "limit_deg_s", 11.7);
 }
 
+/// Two beams of a ring laser that lock to each other below 3 deg/h: their beat is less than the rate far beyond.
+#[test]
+fn a_lock_in_has_its_own_half_width() {
+    let dir = tempdir().unwrap();
+    let table = |t: f64| 20.0 / 3600.0 * (TAU * t / 900.0).sin();
+    let beat = |deg_h: f64| (deg_h * deg_h - 9.0).max(0.0).sqrt().copysign(deg_h);
+    let all = recorded(dir.path(), 8000, table, |t| 1.02 + beat(3600.0 * table(t)));
+    assert_eq!(kinds(&all), ["dead_zone"], "{all}");
+    near(&all, 0, "half_width_deg_h", 3.0);
+    let stated = std::fs::read_to_string(dir.path().join("e/augmented.toml")).unwrap();
+    assert!(stated.contains("lock_in = 1"), "{stated}");
+}
+
 /// As in any unit the corner is round: half of the loss at the limit itself, over 0.02 deg/s, a hundred times the noise and more.
 #[test]
 fn a_limit_with_a_round_corner_has_no_unknown_and_no_bursts_beside_it() {

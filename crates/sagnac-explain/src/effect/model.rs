@@ -346,6 +346,12 @@ pub trait MeanModel: Effect {
         &[]
     }
 
+    /// Position and values of the nonlinear parameter that numbers the forms of a law, where another form gives the other parameters
+    /// other values: the interval of these is that of all forms together.
+    fn forms(&self) -> Option<(usize, &'static [f64])> {
+        None
+    }
+
     /// The columns for given nonlinear parameters.
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
         Regressors {

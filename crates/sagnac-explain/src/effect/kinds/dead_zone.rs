@@ -8,17 +8,62 @@ use crate::effect::{
 use crate::numeric::order::SortByNumber;
 use crate::numeric::range::Bounds;
 
-/// Number of widths that are tried of a zone beyond which the response stays behind.
-const STAYS_BEHIND_WIDTHS: usize = 16;
+/// Number of widths that are tried of a zone that shows beyond its edges as well.
+const WIDTHS_BEYOND: usize = 16;
 
 pub struct DeadZone;
 
-static PARAMS: [Param; 3] = [
+static PARAMS: [Param; 4] = [
     Param::reported("half_width_deg_h", "deg/h", 0.0, 1e6),
     Param::inner("lost_share", "", 0.0, 1.2),
     // 1: beyond the zone the response stays behind by the half width; 0: it is whole there.
     Param::inner("stays_behind", "", 0.0, 1.0),
+    // 1: two beams lock to each other, and beyond the zone their beat is less than the rate.
+    Param::inner("lock_in", "", 0.0, 1.0),
 ];
+
+/// Response beyond the zone, where H is the half width and x the size of the rate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// x: a threshold.
+    Whole,
+    /// x − H: play.
+    StaysBehind,
+    /// √(x² − H²): lock-in of a ring laser (IEEE Std 647).
+    LockIn,
+}
+
+impl Form {
+    /// All forms; the position of one is its number among the nonlinear parameters.
+    const ALL: [Form; 3] = [Form::Whole, Form::StaysBehind, Form::LockIn];
+
+    fn of_number(number: f64) -> Form {
+        Form::ALL.get(number.round().max(0.0) as usize).copied().unwrap_or(Form::Whole)
+    }
+
+    /// As the parameters of a claim state it.
+    fn of_claim(values: &Values) -> Form {
+        let is = |param: &Param| number(values, param.name).is_some_and(|b| b > 0.5);
+        match (is(&PARAMS[2]), is(&PARAMS[3])) {
+            (_, true) => Form::LockIn,
+            (true, false) => Form::StaysBehind,
+            (false, false) => Form::Whole,
+        }
+    }
+
+    /// Rate that is lost at a rate, both in deg/h.
+    fn lost(self, half_width: f64, rate: f64) -> f64 {
+        let size = rate.abs();
+        if size < half_width {
+            return -rate;
+        }
+        match self {
+            Form::Whole => 0.0,
+            Form::StaysBehind => -half_width.copysign(rate),
+            Form::LockIn => (size - (size * size - half_width * half_width).sqrt()).copysign(-rate),
+        }
+    }
+}
 
 describe! {
     DeadZone, "dead_zone", Mean in InputRate, needs [TableRate],
@@ -26,18 +71,10 @@ describe! {
     properties [carried_over]
 }
 
-/// Rate that is lost, deg/h, by a zone whose response beyond is whole, or stays behind by its half width.
-fn column(half_width: f64, stays_behind: bool, drivers: &Drivers) -> Option<Vec<f64>> {
+/// Rate that is lost, deg/h.
+fn column(half_width: f64, form: Form, drivers: &Drivers) -> Option<Vec<f64>> {
     let rate = drivers.table_rate.as_ref()?;
-    let lost = |r: &f64| {
-        let input = 3600.0 * r;
-        match (input.abs() < half_width, stays_behind) {
-            (true, _) => -input,
-            (false, true) => -half_width.copysign(input),
-            (false, false) => 0.0,
-        }
-    };
-    Some(rate.iter().map(lost).collect())
+    Some(rate.iter().map(|r| form.lost(half_width, 3600.0 * r)).collect())
 }
 
 /// Positions of the samples in the order of the size of their rate, with the sizes, deg/h.
@@ -93,8 +130,8 @@ impl MeanModel for DeadZone {
             return Starts::none();
         }
         let whole = widths(drivers, context, 5).into_iter().map(|w| vec![w, 0.0]);
-        let grid = sizes(drivers).map_or(vec![], |(low, high, _)| log_grid(low, high, STAYS_BEHIND_WIDTHS));
-        let points = whole.chain(grid.into_iter().map(|w| vec![w, 1.0]));
+        let grid = sizes(drivers).map_or(vec![], |(low, high, _)| log_grid(low, high, WIDTHS_BEYOND));
+        let points = whole.chain(grid.into_iter().flat_map(|w| [vec![w, 1.0], vec![w, 2.0]]));
         // Widths inside one another share their samples: about as many as ratios of e are apart.
         let trials = sizes(drivers).map_or(1.0, |(_, _, between)| (between as f64).clamp(1.0, 64.0));
         Starts { points: best_of(self, points, 3, drivers, context), trials }
@@ -102,20 +139,19 @@ impl MeanModel for DeadZone {
 
     fn bounds(&self, drivers: &Drivers) -> Vec<Bounds> {
         // A reading that holds at nearly every rate is no zone around zero.
+        const FORMS: Bounds = Bounds::new(0.0, (Form::ALL.len() - 1) as f64);
         let around_zero = |high: f64, low: f64| (MAX_HALF_WIDTH_SHARE * high).max(low);
-        sizes(drivers).map_or(vec![Bounds::new(1e-9, 1e-9), Bounds::new(0.0, 1.0)], |(low, high, _)| {
-            vec![Bounds::new(low, around_zero(high, low)), Bounds::new(0.0, 1.0)]
+        sizes(drivers).map_or(vec![Bounds::new(1e-9, 1e-9), FORMS], |(low, high, _)| {
+            vec![Bounds::new(low, around_zero(high, low)), FORMS]
         })
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        match nonlinear_parameters {
+        let [width, form] = nonlinear_parameters else { return Regressors::default() };
+        match Form::of_number(*form) {
+            Form::Whole => Regressors::columns(column(*width, Form::Whole, drivers)),
             // The width alone makes it: with a share of its own a narrow zone would only be known by their product.
-            [width, form] if *form > 0.5 => {
-                Regressors { offset: column(*width, true, drivers), ..Regressors::default() }
-            }
-            [width, _] => Regressors::columns(column(*width, false, drivers)),
-            _ => Regressors::default(),
+            beyond => Regressors { offset: column(*width, beyond, drivers), ..Regressors::default() },
         }
     }
 
@@ -123,24 +159,27 @@ impl MeanModel for DeadZone {
         &[1]
     }
 
+    fn forms(&self) -> Option<(usize, &'static [f64])> {
+        Some((1, &[0.0, 1.0, 2.0]))
+    }
+
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        match (nonlinear_parameters, coefficients) {
-            ([width, _], []) => vec![*width, 1.0, 1.0],
-            ([width, _], [share]) => vec![*width, *share, 0.0],
-            _ => vec![f64::NAN; 3],
-        }
+        let [width, form] = nonlinear_parameters else { return vec![f64::NAN; PARAMS.len()] };
+        let form = Form::of_number(*form);
+        let is = |asked: Form| if form == asked { 1.0 } else { 0.0 };
+        let share = coefficients.first().copied().unwrap_or(1.0);
+        vec![*width, share, is(Form::StaysBehind), is(Form::LockIn)]
     }
 
     fn sizings(&self, drivers: &Drivers) -> Vec<Sizing> {
         let Some((low, _, between)) = sizes(drivers) else { return vec![] };
-        let place = numbers([(PARAMS[1].name, 1.0), (PARAMS[2].name, 0.0)]);
+        let place = numbers([(PARAMS[1].name, 1.0), (PARAMS[2].name, 0.0), (PARAMS[3].name, 0.0)]);
         vec![Sizing::searched(&PARAMS[0], vec![place], 2, (between as f64).clamp(1.0, 64.0)).from(low)]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let share = number(values, PARAMS[1].name).unwrap_or(1.0);
-        let stays_behind = number(values, PARAMS[2].name).is_some_and(|b| b > 0.5);
-        let column = column(number(values, PARAMS[0].name)?, stays_behind, drivers)?;
+        let column = column(number(values, PARAMS[0].name)?, Form::of_claim(values), drivers)?;
         Some(column.into_iter().map(|x| share * x).collect())
     }
 
@@ -169,6 +208,11 @@ mod tests {
         let stated = numbers([("half_width_deg_h", 3.0), ("stays_behind", 1.0)]);
         let course = DeadZone.course(&stated, &drivers).unwrap();
         assert!((course[0] + 0.36).abs() < 1e-12 && course[1..] == [-3.0, 3.0], "{course:?}");
+        // √(3.6² − 3²) and √(7.2² − 3²) are what is left of 3.6 and 7.2.
+        let stated = numbers([("half_width_deg_h", 3.0), ("lock_in", 1.0)]);
+        let course = DeadZone.course(&stated, &drivers).unwrap();
+        let expected = [-0.36, 3.96f64.sqrt() - 3.6, 7.2 - 42.84f64.sqrt()];
+        assert!(course.iter().zip(expected).all(|(c, e)| (c - e).abs() < 1e-12), "{course:?}");
     }
 
     #[test]

@@ -33,7 +33,6 @@ pub(super) fn of_course(
     let free = placed.free_number();
     let deviation_of_shape = free.map_or(f64::NAN, |i| covariance[(i, i)].sqrt());
     let profile = placed.profile(deviation_of_shape);
-    let at = |x: f64| free.map_or_else(|| nonlinear_parameters.clone(), |i| placed.shape_at(i, x));
     let values = course.parameters(nonlinear_parameters, &coefficients, drivers);
     let parts = course.regressors(nonlinear_parameters, drivers);
     let series = summed(&parts.columns, &coefficients, parts.offset.as_ref(), drivers.samples);
@@ -61,15 +60,16 @@ pub(super) fn of_course(
             continue;
         }
         // A parameter that the shape alone determines takes the interval of the shape.
-        let by_shape = profile.and_then(|ends| {
-            let moved = ends.map(|x| course.parameters(&at(x), &coefficients, drivers).get(i).copied());
-            let (Some(a), Some(b)) = (moved[0], moved[1]) else { return None };
+        let by_shape = profile.as_ref().and_then(|ends| {
             let still = course.parameters(
                 nonlinear_parameters,
                 &coefficients.iter().map(|c| 1.01 * c).collect::<Vec<_>>(),
                 drivers,
             );
-            (still.get(i) == Some(value) && a != b).then_some([a.min(b), a.max(b)])
+            if still.get(i) != Some(value) {
+                return None;
+            }
+            hull(ends.iter().map(|shape| course.parameters(shape, &coefficients, drivers).get(i).copied()))
         });
         let Some(mut ci95) = by_shape.or_else(|| interval(param, *value, deviations[i])) else { continue };
         if param.instant
@@ -94,16 +94,23 @@ pub(super) fn of_course(
         // A course without coefficients is as large as its shape makes it, by a model of what goes on within a sample that
         // is no truer than the recording can tell its size.
         let told = (SCORE_TWO_SIDED_95 * placed.size_deviation(&series)).min(30.0).exp();
-        let by_shape = profile.filter(|_| coefficients.is_empty()).map(|ends| {
-            let of = |x: f64| all(&at(x), &[]).last().copied().unwrap_or(spread);
-            let (a, b) = (of(ends[0]), of(ends[1]));
-            [a.min(b).min(spread / told), a.max(b).max(spread * told)]
+        let by_shape = profile.filter(|_| coefficients.is_empty()).and_then(|ends| {
+            let [a, b] = hull(ends.iter().map(|shape| all(shape, &[]).last().copied()))?;
+            Some([a.min(spread / told), b.max(spread * told)])
         });
         let ci95 = by_shape.unwrap_or([spread / factor, spread * factor]);
         out.reported
             .insert("rms_deg_h".to_owned(), ParameterValue { value: spread, unit: "deg/h".to_owned(), ci95 });
     }
     out
+}
+
+/// Least and largest of some values; `None` where they are all the same, or one is missing.
+fn hull(values: impl Iterator<Item = Option<f64>>) -> Option<[f64; 2]> {
+    let widened = |[low, high]: [f64; 2], value: Option<f64>| value.map(|x| [low.min(x), high.max(x)]);
+    let mut values = values;
+    let hull = values.try_fold([f64::INFINITY, f64::NEG_INFINITY], widened)?;
+    (hull[0] < hull[1]).then_some(hull)
 }
 
 /// Standard deviations of functions of shape and coefficients by their numerical derivatives.

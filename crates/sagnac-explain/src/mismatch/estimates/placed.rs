@@ -4,6 +4,7 @@ use super::estimated::DROP_95;
 use crate::effect::MeanModel;
 use crate::mismatch::fitted_hypothesis::{FittedHypothesis, SpectralDataSet};
 use crate::mismatch::hypothesis::{PartModes, kept};
+use crate::mismatch::nonlinear_search::LocalSearch;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::MeanTerm;
 use crate::numeric::least_squares::Normal;
@@ -153,30 +154,66 @@ impl<'a> Placed<'a> {
         free.next().filter(|_| free.next().is_none())
     }
 
-    /// The shape with that number in its place.
-    pub fn shape_at(&self, i: usize, x: f64) -> Vec<f64> {
-        let mut nonlinear_parameters = self.inside.nonlinear_parameters.clone();
-        nonlinear_parameters[i] = x;
-        nonlinear_parameters
-    }
-
-    /// Ends of the interval of the only number of a shape that is not whole, at which the profile log-likelihood has
-    /// dropped.
-    pub fn profile(&self, deviation: f64) -> Option<[f64; 2]> {
+    /// Shapes at the ends of the interval of the only number of a shape that is not whole, in which the profile log-likelihood over
+    /// the forms of the law has not dropped.
+    pub fn profile(&self, deviation: f64) -> Option<Vec<Vec<f64>>> {
         let i = self.free_number()?;
-        let at = self.inside.nonlinear_parameters[i];
         let bounds = *self.course.bounds(&self.spectral.drivers).get(i)?;
         if bounds.width() <= 0.0 {
             return None;
         }
-        let top = self.log_likelihood(&self.inside.nonlinear_parameters).0;
-        let drop = |x: f64| top - self.log_likelihood(&self.shape_at(i, x)).0;
+        let best = &self.inside.nonlinear_parameters;
+        let top = self.log_likelihood(best).0;
         let first = if deviation.is_finite() && deviation > 0.0 { deviation } else { 0.01 * bounds.width() };
+        let mut ends = self.ends_about(best, i, bounds, first, top).to_vec();
+        for other in self.other_forms(i) {
+            let dropped = top - self.log_likelihood(&other).0;
+            if dropped < DROP_95 {
+                ends.extend(self.ends_about(&other, i, bounds, first, top));
+            }
+        }
+        Some(ends)
+    }
+
+    /// The likeliest shape of each other form of the law, the number at `i` refined.
+    fn other_forms(&self, i: usize) -> Vec<Vec<f64>> {
+        /// Ratio of the number of one form to that of another at most.
+        const MAX_RATIO: f64 = 4.0;
+        const RATIOS: usize = 17;
+        /// Evaluations of the likelihood for each form.
+        const EVALUATIONS: usize = 60;
+        let Some((place, values)) = self.course.forms() else { return vec![] };
+        let search = LocalSearch::of(self.course, &self.spectral.drivers);
+        let best = &self.inside.nonlinear_parameters;
+        let bounds = self.course.bounds(&self.spectral.drivers)[i];
+        let of_form = |form: &f64| {
+            let begin = |k: usize| {
+                let mut shape = best.clone();
+                shape[place] = *form;
+                let ratio = MAX_RATIO.powf(2.0 * k as f64 / (RATIOS - 1) as f64 - 1.0);
+                shape[i] = bounds.clamp(ratio * best[i]);
+                shape
+            };
+            let gain = |shape: &[f64]| self.log_likelihood(shape).0;
+            let start = (0..RATIOS).map(begin).max_by(|a, b| gain(a).total_cmp(&gain(b)))?;
+            Some(search.refine(&start, EVALUATIONS, gain).0)
+        };
+        values.iter().filter(|form| **form != best[place]).filter_map(of_form).collect()
+    }
+
+    /// Shapes below and above one, with the number at `i` moved until the log-likelihood has dropped below `top`.
+    fn ends_about(&self, about: &[f64], i: usize, bounds: Bounds, first: f64, top: f64) -> [Vec<f64>; 2] {
+        let shape = |x: f64| {
+            let mut moved = about.to_vec();
+            moved[i] = x;
+            moved
+        };
+        let drop = |x: f64| top - self.log_likelihood(&shape(x)).0;
         let side = |sign: f64| {
-            let (mut inside, mut step) = (at, first);
+            let (mut inside, mut step) = (about[i], first);
             let mut outside = None;
             for _ in 0..24 {
-                let x = bounds.clamp(at + sign * step);
+                let x = bounds.clamp(about[i] + sign * step);
                 if drop(x) >= DROP_95 {
                     outside = Some(x);
                     break;
@@ -194,6 +231,6 @@ impl<'a> Placed<'a> {
             }
             0.5 * (inside + outside)
         };
-        Some([side(-1.0), side(1.0)])
+        [-1.0, 1.0].map(|sign| shape(side(sign)))
     }
 }
