@@ -73,6 +73,25 @@ pub fn probabilities(names: impl IntoIterator<Item = ScoredName>) -> Vec<Probabl
     out
 }
 
+/// The names of a finding, of which that of a response is shared by the names of its laws. Without laws they stay as they are.
+pub fn shared(names: Vec<Probable>, response: &str, laws: Vec<Probable>) -> Vec<Probable> {
+    if laws.is_empty() {
+        return names;
+    }
+    let (whole, mut out): (Vec<Probable>, Vec<Probable>) =
+        names.into_iter().partition(|n| n.kind == response);
+    let of_response: f64 = whole.iter().map(|n| n.probability).sum();
+    for law in laws {
+        let probability = of_response * law.probability;
+        match out.iter_mut().find(|n| n.kind == law.kind) {
+            Some(same) => same.probability += probability,
+            None => out.push(Probable { kind: law.kind, probability }),
+        }
+    }
+    out.sort_descending_by(|n| n.probability);
+    out
+}
+
 /// The name of a candidate in reports, that of its law where it takes one, and its score over a hypothesis without it, nats.
 pub fn name_of(
     candidate: &Candidate,
@@ -104,6 +123,22 @@ mod tests {
         assert!(named.iter().zip(expected).all(|(p, e)| (p.probability - e).abs() < 1e-12), "{named:?}");
         // Without the other name it stands for itself.
         assert_eq!(probabilities([same])[0].probability, 1.0);
+    }
+
+    #[test]
+    fn laws_share_what_their_response_has_among_its_rivals() {
+        let of = |kind: &'static str, probability: f64| Probable { kind, probability };
+        let names = vec![of("temp_response", 0.6), of("excess_rrw", 0.3), of("temp_rate", 0.1)];
+        let laws = vec![of("temp_polynomial", 0.75), of("temp_rate", 0.25)];
+        let expected = [("temp_polynomial", 0.45), ("excess_rrw", 0.3), ("temp_rate", 0.25)];
+        let said = shared(names.clone(), "temp_response", laws);
+        assert!(
+            said.iter()
+                .zip(expected)
+                .all(|(n, (kind, p))| n.kind == kind && (n.probability - p).abs() < 1e-12),
+            "{said:?}"
+        );
+        assert_eq!(shared(names.clone(), "temp_response", vec![]), names);
     }
 
     #[test]

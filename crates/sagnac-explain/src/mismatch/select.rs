@@ -14,13 +14,13 @@ use super::hypothesis::{Hypothesis, fit};
 use super::noise_fit::{Noise, base_index};
 use super::nonlinear_search::LocalSearch;
 use super::options::Options;
-use super::posterior::{Probable, ScoredName, name_of, probabilities};
+use super::posterior::{Probable, ScoredName, name_of, probabilities, shared};
 use super::prediction;
 use super::problem::Problem;
 use super::several::least_of;
 use super::terms::MeanTerm;
 use super::terms::SpectralTerm;
-use crate::effect::{Drivers, Effect, Model, SpectrumAct};
+use crate::effect::{Drivers, EFFECTS, Effect, Model, SpectrumAct};
 use crate::numeric::order::SortByNumber;
 use std::cell::RefCell;
 use std::rc::Rc;
@@ -189,6 +189,22 @@ fn set(tried: &FittedHypothesis) -> Vec<&'static str> {
 /// True for a hypothesis with a free form.
 fn has_free_form(tried: &FittedHypothesis) -> bool {
     slots(&tried.hypothesis).iter().any(|(_, e)| e.is_free_form())
+}
+
+/// True for a hypothesis with a response of several terms, which is named by the law that explains most of it.
+fn has_response(tried: &FittedHypothesis) -> bool {
+    slots(&tried.hypothesis).iter().any(|(_, e)| is_response(*e))
+}
+
+/// True for a response of several terms.
+fn is_response(effect: &dyn Effect) -> bool {
+    !effect.named_by_law().is_empty()
+}
+
+/// True for a hypothesis with a law of which responses are made.
+fn has_law_of_response(tried: &FittedHypothesis) -> bool {
+    let laws = || EFFECTS.iter().flat_map(|e| e.named_by_law());
+    slots(&tried.hypothesis).iter().any(|(_, e)| laws().any(|law| law.kind() == e.kind()))
 }
 
 /// True for a hypothesis with a free form that has no kind in the format of explanations.
@@ -365,6 +381,13 @@ pub fn select(base: &FittedHypothesis, problem: &Problem, options: &Options) -> 
         let plain = search.grown(base, |e| !e.is_free_form());
         best = search.plainest(plain, best, base);
     }
+    if has_free_form(&best) || has_response(&best) {
+        // A response bends as a free form does: laws of the column that say as much, each with a name, are plainer.
+        let laws = search.grown(base, |e| !e.is_free_form() && !is_response(e));
+        if has_law_of_response(&laws) {
+            best = search.plainest(laws, best, base);
+        }
+    }
     best = search.smallest(best);
     let mut chosen = self::chosen(&best, base, &first, &search);
     for _ in 0..MAX_EXCHANGES {
@@ -464,12 +487,10 @@ fn names(
     rank_without: f64,
     spectra: &SpectralDataSet,
 ) -> Vec<Probable> {
-    if !laws.is_empty() {
-        return probabilities(laws.iter().map(|c| (c.effect.reported_kind(), law_score(c)).into()));
-    }
     let rows = spectra.rows;
     let own = 0.5 * (rank_without - best.rank(rows));
-    let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind());
+    let is_law = |c: &Candidate| laws.iter().any(|law| law.effect.kind() == c.effect.kind());
+    let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind() && !is_law(c));
     // A free form must explain more than a plain law by a share, to be the better name.
     let bends = |c: &Candidate| {
         if c.effect.is_free_form() && !effect.is_free_form() { MIN_FREE_FORM_SHARE } else { 0.0 }
@@ -478,7 +499,10 @@ fn names(
         let (kind, score) = name_of(c, self::laws(c.effect, rivals).first().copied(), rows, rank_without);
         ScoredName { kind, score: score - bends(c) * score.abs(), within: plainer_name(c, spectra) }
     });
-    probabilities([(effect.reported_kind(), own).into()].into_iter().chain(others))
+    let kind = if laws.is_empty() { effect.reported_kind() } else { effect.kind() };
+    let names = probabilities([(kind, own).into()].into_iter().chain(others));
+    let of_laws = probabilities(laws.iter().map(|c| (c.effect.reported_kind(), law_score(c)).into()));
+    shared(names, kind, of_laws)
 }
 
 /// The kind with the same course as a candidate that is the plainer name.
@@ -512,20 +536,22 @@ fn chosen(
                 bic_of_rival(c, spectra) - bic_excess(c, best, modes, rows) < best.bic(rows) + MIN_DELTA_BIC
             };
             let laws = laws(effect, &rivals);
-            let mut equivalents: Vec<Candidate> = if laws.is_empty() {
-                let others = rivals.iter().filter(|c| near(c)).filter_map(|c| named(c, &rivals));
-                let mut kinds = vec![effect.kind()];
-                let new = |c: &&Candidate| {
-                    let new = !kinds.contains(&c.effect.kind());
-                    kinds.push(c.effect.kind());
-                    new
-                };
-                others.filter(new).take(MOST_EQUIVALENTS).cloned().collect()
-            } else {
-                laws.iter().skip(1).take(MOST_EQUIVALENTS).map(|c| (*c).clone()).collect()
+            let mut kinds = vec![effect.kind()];
+            let mut new = |c: &&Candidate| {
+                let new = !kinds.contains(&c.effect.kind());
+                kinds.push(c.effect.kind());
+                new
             };
-            let names = names(effect, best, &rivals, &laws, without.rank(rows), spectra);
+            // The first law is the name.
+            let first_law = laws.first().copied().filter(&mut new);
+            let of_laws = laws.iter().skip(usize::from(first_law.is_some())).copied();
+            let others = rivals.iter().filter(|c| near(c)).filter_map(|c| named(c, &rivals));
+            let mut equivalents: Vec<Candidate> = of_laws.chain(others).filter(new).cloned().collect();
+            // What chance gives as often is no name, however well it fits.
+            let improbable: Vec<Candidate> = rivals.iter().filter(|c| search.passes(c)).cloned().collect();
+            let names = names(effect, best, &improbable, &laws, without.rank(rows), spectra);
             equivalents.retain(|c| is_rival(c.effect.reported_kind(), &names));
+            equivalents.truncate(MOST_EQUIVALENTS);
             let law = laws.first().map(|c| (*c).clone());
             let better = rivals
                 .iter()
