@@ -249,9 +249,8 @@ pub trait LevelDetector: Sync {
     /// Laws fitted to a residual; `samples` are those that count.
     fn laws(&self, residual: &FlatResidual<'_>, samples: &[usize]) -> Vec<LevelLaw>;
 
-    /// For a detector that looks for a change at an instant: parameters of one change, and the independent instants that are
-    /// looked at in so many samples.
-    fn single_change(&self, _samples: usize) -> Option<(usize, f64)> {
+    /// For a detector that looks for a change at an instant: the independent instants that are looked at in so many samples.
+    fn instants_of_change(&self, _samples: usize) -> Option<f64> {
         None
     }
 

@@ -10,6 +10,11 @@ use crate::numeric::parallel;
 const COLUMN_SHIFTS: usize = 8;
 /// Times the largest gain of a shifted column that a response must gain.
 const MIN_GAIN_RATIO: f64 = 10.0;
+/// Terms from which a response bends to any slow course, so that it leaves nothing to a shifted column: then shifted columns are given as
+/// many.
+const MIN_FLEXIBLE_TERMS: u32 = 4;
+/// Ratio of what such a response is worth to what that of a shifted column is worth, at least.
+const MIN_WORTH_RATIO: f64 = 1.15;
 /// Gain of shifted columns up to which nothing is left unexplained: what the best of their terms gains in plain noise.
 const MAX_NOISE_GAIN: f64 = 12.0;
 
@@ -18,13 +23,23 @@ const MAX_NOISE_GAIN: f64 = 12.0;
 ///
 /// A column shifted by a good part of the record drives nothing. Where the noise is as modelled, a shifted column gains next to
 /// nothing on what is left; where the noise is wrong or something slow is unexplained, it gains a good part of what it gains
-/// in its own place, and so does a column that has nothing to do with the rate.
+/// in its own place, and so does a column that has nothing to do with the rate. A response of several terms must also be worth more than
+/// those of all shifted columns to the whole rate.
 pub(in crate::effect) fn follows_by_chance(
     found: &ResponseFound,
     values: &[f64],
     drivers: &Drivers,
     context: &SearchContext<'_>,
 ) -> bool {
+    let of_slide =
+        |slide: usize, context: &SearchContext<'_>| search(&moved(values, slide), drivers, context);
+    if found.mask.count_ones() >= MIN_FLEXIBLE_TERMS {
+        let worth = |i: usize| of_slide(i + 1, context).map_or(0.0, |other| other.worth());
+        let others = parallel::map(COLUMN_SHIFTS, worth).into_iter().fold(0.0, f64::max);
+        if found.worth() < MIN_WORTH_RATIO * others {
+            return true;
+        }
+    }
     let roots: Vec<f64> = context.powers.iter().map(|p| p.sqrt()).collect();
     let whitened = |modes: &[f64]| -> Vec<f64> {
         modes.iter().zip(&roots).map(|(x, r)| if r.is_finite() { x / r } else { 0.0 }).collect()
@@ -39,10 +54,7 @@ pub(in crate::effect) fn follows_by_chance(
     let modes: Vec<f64> =
         left.iter().zip(&roots).map(|(l, r)| if r.is_finite() { l * r } else { 0.0 }).collect();
     let on_left = SearchContext { modes: &modes, ..*context };
-    let of_slide = |slide: usize| {
-        search(&moved(values, slide), drivers, &on_left).map_or(0.0, |by_chance| by_chance.gain)
-    };
-    is_chance(found.gain, MAX_NOISE_GAIN, of_slide)
+    is_chance(found.gain, MAX_NOISE_GAIN, |slide| of_slide(slide, &on_left).map_or(0.0, |other| other.gain))
 }
 
 /// True where columns shifted in time gain more than `nothing`, and no small part of what they gain in their own place.
@@ -97,6 +109,23 @@ mod tests {
     fn a_shifted_series_is_its_even_extension() {
         assert_eq!(mirrored_shift(&[1.0, 2.0, 3.0], 2), [3.0, 3.0, 2.0]);
         assert_eq!(mirrored_shift(&[1.0, 2.0, 3.0], 6), [1.0, 2.0, 3.0]);
+    }
+
+    #[test]
+    fn many_terms_of_a_slow_column_are_chance_where_shifted_ones_are_worth_as_much() {
+        let n = 1500;
+        let drivers = Drivers { dt_s: 20.0, samples: n, averaged: 1, ..Drivers::default() };
+        let at = |i: usize| i as f64 / n as f64;
+        // A slow column, and a rate with another slow course that as many terms of it bend to.
+        let column: Vec<f64> = (0..n).map(|i| at(i) + 0.2 * (5.0 * at(i)).sin()).collect();
+        let rate: Vec<f64> = (0..n).map(|i| (7.0 * at(i) + 1.0).sin() + 0.5 * (13.0 * at(i)).cos()).collect();
+        let mut powers = vec![0.02; n];
+        powers[0] = f64::INFINITY;
+        let modes = dct2(&rate);
+        let context = SearchContext { score: &rate, modes: &modes, powers: &powers };
+        let found = search(&column, &drivers, &context).unwrap();
+        assert!(found.mask.count_ones() >= MIN_FLEXIBLE_TERMS, "{:b}", found.mask);
+        assert!(follows_by_chance(&found, &column, &drivers, &context));
     }
 
     #[test]

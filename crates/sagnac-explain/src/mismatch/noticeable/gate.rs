@@ -4,7 +4,6 @@
 //! gain that is expected of the effect itself.
 
 use crate::estimate::{SCORE_ONE_SIDED_95, chi_square_tail};
-use crate::mismatch::select::MIN_DELTA_BIC;
 use crate::numeric::optimize::bisect;
 
 /// Probability with which an effect is to be noticed.
@@ -12,8 +11,6 @@ const NOTICE_PROBABILITY: f64 = 0.95;
 /// The conditions that an effect must pass.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Gate {
-    /// Rows of the recording.
-    pub rows: usize,
     /// Tests that everything amounts to that is looked at.
     pub family: f64,
     /// Probability at which a correct claim is called a mismatch.
@@ -28,13 +25,6 @@ impl Gate {
         let free = parameters.max(1) as f64;
         // A quantile so far out is found on the tail itself.
         bisect(0.0, 2000.0, 60, |x| chi_square_tail(x, free) > chance).middle()
-    }
-
-    /// The same for an effect in single samples, which also pays BIC for its parameters, and of which only so many coefficients gain
-    /// by chance.
-    pub fn threshold_in_samples(&self, parameters: usize, free: usize, trials: f64) -> f64 {
-        let worth = parameters as f64 * (self.rows.max(2) as f64).ln() + MIN_DELTA_BIC;
-        worth.max(self.threshold(free, trials))
     }
 
     /// Margin of the root of twice a gain of some spread above the gate, to pass it with [`NOTICE_PROBABILITY`].
@@ -73,17 +63,14 @@ fn exceeds(value: f64, dof: usize, noncentral: f64) -> f64 {
 mod tests {
     use super::*;
 
-    const GATE: Gate = Gate { rows: 10_000, family: 40.0, alpha: 0.01 };
+    const GATE: Gate = Gate { family: 40.0, alpha: 0.01 };
 
     #[test]
-    fn the_gate_is_that_of_chance_and_of_the_rows_for_single_samples() {
+    fn the_gate_is_that_of_chance() {
         // χ²₁ beyond 13.41 has a probability of 0.01/40.
         assert!((GATE.threshold(1, 1.0) - 13.412).abs() < 1e-2, "{}", GATE.threshold(1, 1.0));
-        // ln 10 000 + 6 = 15.21 is more.
-        assert!((GATE.threshold_in_samples(1, 1, 1.0) - 15.210_340).abs() < 1e-5);
-        // Looked for at 10 000 positions: probability 2.5e-8 of χ²₂ is −2 ln 2.5e-8 = 35.01, more than 2·9.21 + 6.
+        // Looked for at 10 000 positions: probability 2.5e-8 of χ²₂ is −2 ln 2.5e-8 = 35.01.
         assert!((GATE.threshold(2, 1e4) - 35.008_86).abs() < 1e-3, "{}", GATE.threshold(2, 1e4));
-        assert_eq!(GATE.threshold_in_samples(2, 2, 1e4), GATE.threshold(2, 1e4));
     }
 
     #[test]

@@ -21,11 +21,10 @@ pub(super) fn size(
     samples: usize,
     gate: &Gate,
 ) -> Result<NoticeableSize, WhyNot> {
-    let (parameters, trials) = detector.single_change(samples).ok_or(WhyNot::NoSingleSize)?;
+    let trials = detector.instants_of_change(samples).ok_or(WhyNot::NoSingleSize)?;
     let parameter = effect.params().first().ok_or(WhyNot::NoSingleSize)?;
-    // What the search counts beside the one coefficient that a gain of nothing comes from.
     let searched = Gate { family: SAMPLE_EFFECTS, ..*gate };
-    let threshold = searched.threshold_in_samples(parameters, 1, COMPETING_LAWS * trials);
+    let threshold = searched.threshold(1, COMPETING_LAWS * trials);
     let needed = (threshold.sqrt() + searched.margin(BY_DIFFERENCES)).powi(2);
     let gain = |excess: f64| twice_gain(1.0 + excess, samples as f64);
     let excess = solve::size(0.1, MAX_RATIO, needed, gain).ok_or(WhyNot::NeverLargeEnough)?;

@@ -67,11 +67,7 @@ pub(super) fn sizes(
     let full = NullModel::new(best, spectra, Resolution::FullRate, share);
     let null_models = NullModels {
         problem,
-        gate: Gate {
-            rows: spectra.rows,
-            family: effective_tests::of_record(&spectra.full.drivers),
-            alpha: options.alpha,
-        },
+        gate: Gate { family: effective_tests::of_record(&spectra.full.drivers), alpha: options.alpha },
         averaged: NullModel::new(best, spectra, Resolution::Averaged, share),
         expected: Expected::new(best, spectra, &full),
         full,
@@ -119,7 +115,7 @@ fn of(effect: &'static dyn Effect, null_models: &NullModels<'_>) -> Result<Vec<N
         }
         Model::Samples(_) => match effect.detector() {
             Some(Detector::Level(detector)) => {
-                level::size(effect, detector, gate.rows, gate).map(|size| vec![size])
+                level::size(effect, detector, null_models.problem.spectra.rows, gate).map(|size| vec![size])
             }
             Some(Detector::Missing(_)) => missing(effect).map(|size| vec![size]),
             _ => Err(WhyNot::SingleSamples),

@@ -18,7 +18,7 @@ const SAMPLES: usize = 4000;
 const DT_S: f64 = 3.6;
 /// N, deg/√h; a sample has a deviation of 60 N/√3.6, 1 deg/h.
 const N: f64 = 0.031_622_776_601_683_79;
-const GATE: Gate = Gate { rows: SAMPLES, family: 40.0, alpha: 0.01 };
+const GATE: Gate = Gate { family: 40.0, alpha: 0.01 };
 
 fn spectra(deviation: f64) -> SpectralDataSet {
     let temperature: Vec<f64> = (0..SAMPLES).map(|i| if i % 2 == 0 { 21.0 } else { 19.0 }).collect();

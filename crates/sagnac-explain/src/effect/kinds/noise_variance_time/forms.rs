@@ -64,11 +64,11 @@ impl Form {
     }
 }
 
-/// Parameters of one change, and the independent instants that are looked at in so many samples.
-pub(super) fn single_change(samples: usize) -> (usize, f64) {
+/// Independent instants at which one change is looked for in so many samples.
+pub(super) fn instants_of_change(samples: usize) -> f64 {
     let size = samples.div_ceil(MAX_TIME_GROUPS).max(MIN_GROUP_SAMPLES);
-    let (_, parameters, trials) = Form::Step(0).counts(samples.div_ceil(size));
-    (parameters, trials)
+    let (_, _, trials) = Form::Step(0).counts(samples.div_ceil(size));
+    trials
 }
 
 /// The best form over time, if any gains.

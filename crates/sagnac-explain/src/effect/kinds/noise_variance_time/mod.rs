@@ -48,8 +48,8 @@ impl LevelDetector for NoiseVarianceTime {
         forms::over_time(residual, samples).into_iter().collect()
     }
 
-    fn single_change(&self, samples: usize) -> Option<(usize, f64)> {
-        Some(forms::single_change(samples))
+    fn instants_of_change(&self, samples: usize) -> Option<f64> {
+        Some(forms::instants_of_change(samples))
     }
 
     fn stated(&self, level: &Level, _drivers: &Drivers) -> Values {
