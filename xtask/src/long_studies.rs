@@ -26,6 +26,11 @@ const STUDIES: &[LongStudy] = &[
         filter: "a_day_of_recordings",
     },
     LongStudy {
+        name: "serve-kills",
+        title: "A server of the bench that is killed 100 times with orders in its queue (minutes)",
+        filter: "a_hundred_kills_of_the_server",
+    },
+    LongStudy {
         name: "serve-latency",
         title: "How long pages of the bench take beside two running tests (minutes)",
         filter: "pages_answer_beside",

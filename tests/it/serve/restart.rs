@@ -20,15 +20,28 @@ fn ends(bench: &Bench) -> BTreeMap<String, usize> {
 
 #[test]
 fn kills_lose_and_double_nothing() {
+    kills_of_the_server(6);
+}
+
+#[test]
+#[ignore = "takes minutes: cargo xtask study serve-kills"]
+fn a_hundred_kills_of_the_server_lose_and_double_nothing() {
+    kills_of_the_server(100);
+}
+
+/// Servers that are killed after two orders each, every one at another place of its work.
+fn kills_of_the_server(kills: u64) {
+    /// Pauses before a kill, ms: as long as a test takes, in steps that have no common measure with their number.
+    const STEP_MS: u64 = 60;
+    const LONGEST_PAUSE_MS: u64 = 410;
     let bench = Bench::new();
     let mut ids = vec![];
-    // Each server is killed at another place of its work.
-    for kill in 0..6_u64 {
+    for kill in 0..kills {
         let mut server = bench.start(&["--jobs", "2"]);
         let waits = server.line().contains("Tests at a time: 2");
         assert!(waits);
         ids.extend((0..2).map(|_| server.order(&bench.order("SN-1"))));
-        std::thread::sleep(Duration::from_millis(60 * kill));
+        std::thread::sleep(Duration::from_millis(STEP_MS * kill % LONGEST_PAUSE_MS));
         server.child.kill().unwrap();
     }
     let server = bench.start(&["--jobs", "2"]);

@@ -7,12 +7,18 @@ use rand::{RngExt, SeedableRng};
 use rand_xoshiro::Xoshiro256PlusPlus;
 use std::collections::BTreeSet;
 use std::fs;
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Starts a watcher that goes on, or looks once.
 pub(super) fn start(bench: &Bench, args: &[&str]) -> Child {
-    Command::new(program())
+    start_from(Path::new(program()), bench, args)
+}
+
+/// The same, from a file of the program.
+fn start_from(program: &Path, bench: &Bench, args: &[&str]) -> Child {
+    Command::new(program)
         .current_dir(bench.folder())
         .args(args)
         .stdout(Stdio::null())
@@ -52,6 +58,30 @@ fn a_recording_is_tested_once_with_the_numbers_of_the_command_line() {
     fs::write(bench.at("watch.toml"), rules.replace(&quick.limits, "other.toml")).unwrap();
     bench.once();
     assert_eq!(bench.results().len(), 4, "other limits are another test");
+}
+
+#[test]
+#[cfg(target_os = "linux")]
+fn a_watcher_goes_on_while_its_program_is_replaced() {
+    let bench = Bench::new("after = \"1 s\"\n");
+    let own = bench.at("sagnac");
+    fs::copy(program(), &own).unwrap();
+    let mut watcher = start_from(&own, &bench, &["watch", "in", "--rules", "watch.toml", "--out", "out"]);
+    let begun = Instant::now();
+    while !bench.at("out/journal.jsonl").exists() {
+        assert!(begun.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    fs::remove_file(&own).unwrap();
+    fs::write(&own, "another version").unwrap();
+    bench.put("a_SN-1.csv", "pass");
+    while !fs::read_to_string(bench.at("out/journal.jsonl")).unwrap().contains("\"tested\"") {
+        assert!(begun.elapsed() < Duration::from_secs(120), "no test was made");
+        std::thread::sleep(Duration::from_millis(50));
+    }
+    watcher.kill().unwrap();
+    watcher.wait().unwrap();
+    assert_eq!(bench.verdicts(), pairs(&[("SN-1", "pass")]));
 }
 
 #[test]
