@@ -4,7 +4,7 @@ use crate::effect::shared::chance::{is_chance, moved};
 use crate::effect::shared::knots::{Knots, values_of_knots};
 use crate::effect::shared::noise_level::scale;
 use crate::effect::shared::variance::{
-    GammaFit, Group, between, by_value, contrast, fit, overdispersion, raised, thinned,
+    GammaFit, Group, between, by_value, contrast, contrast_of_forms, fit, overdispersion, raised, thinned,
 };
 use crate::effect::{
     COLUMN_TEXT, Column, Detector, Drivers, FlatResidual, Knot, Law, Level, LevelDetector, LevelLaw, Param,
@@ -79,6 +79,9 @@ struct LevelFit {
     /// Columns in which the logarithm of the level is linear.
     columns: Vec<Vec<f64>>,
     best: GammaFit,
+    /// Largest deviation over the smallest, with its interval over both forms.
+    ratio: f64,
+    ci95: [f64; 2],
 }
 
 /// The level of `flat` over the values of a column: a line or a parabola in its logarithm.
@@ -93,12 +96,16 @@ fn over(values: &[f64], flat: &[f64], samples: &[usize]) -> Option<LevelFit> {
     let square = |v: &f64| 1.5 * v * v - 0.5;
     let orders = [vec![x.clone()], vec![x.clone(), x.iter().map(square).collect()]];
     let rows = (samples.len() as f64).ln();
-    let fits = orders.into_iter().filter_map(|columns| Some((fit(&groups, &columns)?, columns)));
-    let (best, columns) = fits.max_by(|a, b| {
-        let score = |f: &f64, p: usize| 2.0 * f - p as f64 * rows;
-        score(&a.0.gain, a.1.len()).total_cmp(&score(&b.0.gain, b.1.len()))
-    })?;
-    Some(LevelFit { groups, means, columns, best })
+    let fits: Vec<(GammaFit, Vec<Vec<f64>>)> =
+        orders.into_iter().filter_map(|columns| Some((fit(&groups, &columns)?, columns))).collect();
+    let score = |(f, columns): &(GammaFit, Vec<Vec<f64>>)| 2.0 * f.gain - columns.len() as f64 * rows;
+    let contrast = |(f, columns): &(GammaFit, Vec<Vec<f64>>)| contrast(&f.log_squares, &f.covariance, columns);
+    let of_forms: Vec<(f64, [f64; 2])> = fits.iter().map(|f| (score(f), contrast(f).1)).collect();
+    let fitted = fits.into_iter().max_by(|a, b| score(a).total_cmp(&score(b)))?;
+    let (ratio, of_best) = contrast(&fitted);
+    let ci95 = contrast_of_forms(&of_forms).unwrap_or(of_best);
+    let (best, columns) = fitted;
+    Some(LevelFit { groups, means, columns, best, ratio, ci95 })
 }
 
 /// The law over the values of a column that the level follows; `None` where the level that it leaves follows the same column shifted
@@ -113,22 +120,20 @@ fn over_column(
     if matches!(column, Column::TableRate | Column::TableAngle) {
         return None;
     }
-    let LevelFit { groups, means, columns, best } = over(values, &residual.flat, samples)?;
-    let (ratio, ci95) = contrast(&best.log_squares, &best.covariance, &columns);
+    let own = over(values, &residual.flat, samples)?;
     let knots: Vec<Knot> =
-        means.iter().zip(&best.log_squares).map(|(v, l)| Knot { at: *v, value: (0.5 * l).exp() }).collect();
-    let Bounds { low: from, high: to } = raised(&means, &best.log_squares);
-    let free = columns.len();
+        own.means.iter().zip(&own.best.log_squares).map(|(v, l)| Knot { at: *v, value: (0.5 * l).exp() }).collect();
+    let Bounds { low: from, high: to } = raised(&own.means, &own.best.log_squares);
+    let free = own.columns.len();
     let profile: Vec<f64> = values.iter().map(|v| between(&knots, *v)).collect();
     let left: Vec<f64> = residual.flat.iter().zip(&profile).map(|(e, g)| e / g).collect();
     let score =
         |o: &LevelFit| o.best.gain / overdispersion(&o.groups, &o.best.log_squares, o.columns.len() + 1);
     let of_slide = |slide: usize| over(&moved(values, slide), &left, samples).as_ref().map_or(0.0, score);
-    let own = LevelFit { groups, means, columns, best };
     if is_chance(score(&own), MAX_EVEN_GAIN, of_slide) {
         return None;
     }
-    let LevelFit { groups, best, .. } = own;
+    let LevelFit { groups, best, ratio, ci95, .. } = own;
     Some(LevelLaw {
         profile,
         law: Law::Column(column, thinned(&knots)),

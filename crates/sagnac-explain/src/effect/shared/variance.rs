@@ -142,6 +142,16 @@ pub(in crate::effect) fn contrast(
     (log.exp(), [(log - half).max(0.0).exp(), (log + half).exp()])
 }
 
+/// An interval of the contrast that holds those of all forms of the level that are nearly as likely as the best: each form has a contrast
+/// of its own. `forms` has twice the logarithm of the likelihood of each, less the price of its parameters, and its interval.
+pub(in crate::effect) fn contrast_of_forms(forms: &[(f64, [f64; 2])]) -> Option<[f64; 2]> {
+    /// Difference of BIC within which two forms are equivalent.
+    const MAX_DIFFERENCE: f64 = 6.0;
+    let best = forms.iter().map(|f| f.0).fold(f64::NEG_INFINITY, f64::max);
+    let likely = forms.iter().filter(|f| f.0 >= best - MAX_DIFFERENCE).map(|f| f.1);
+    likely.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])
+}
+
 /// The interval of `at` in which the level is in the upper half of its range.
 pub(in crate::effect) fn raised(at: &[f64], log_squares: &[f64]) -> Bounds {
     let Bounds { low, high } = ends(log_squares);
@@ -249,5 +259,9 @@ mod tests {
         assert!((ci95[0].ln() - 2.0 + half).abs() < 1e-12 && (ci95[1].ln() - 2.0 - half).abs() < 1e-12);
         // An interval of the largest over the smallest does not reach below 1.
         assert_eq!(contrast(&[0.0, 0.1, 0.1], &covariance, &columns).1[0], 1.0);
+        // A form 7 behind in BIC is none of the likely ones.
+        let forms = [(100.0, [1.2, 1.3]), (95.0, [1.25, 1.5]), (93.0, [1.0, 2.0])];
+        assert_eq!(contrast_of_forms(&forms), Some([1.2, 1.5]));
+        assert_eq!(contrast_of_forms(&[]), None);
     }
 }

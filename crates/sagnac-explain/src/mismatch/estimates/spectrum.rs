@@ -76,7 +76,20 @@ pub(super) fn of_spectrum(
         }
     }
     let chance = added_rms(noise, index, &part.fitted, spectral, residual).deviation_deg_h;
-    let (spread, last) = (values[values.len() - 1], deviation(values.len() - 1).hypot(chance));
+    // What is added to a coefficient of the claim is known no better than the claim states that.
+    let of_claim = match spectrum.act() {
+        SpectrumAct::Unconstrains(term) => base_index(term).map_or(0.0, |i| {
+            let moved = |step: f64| {
+                let mut other = noise.clone();
+                other.claimed[i] *= step.exp();
+                added_rms(&other, index, &part.fitted, spectral, residual).rms_deg_h
+            };
+            noise.deviation[i] * (moved(1e-3) - moved(-1e-3)) / 2e-3
+        }),
+        _ => 0.0,
+    };
+    let (spread, last) =
+        (values[values.len() - 1], deviation(values.len() - 1).hypot(chance).hypot(of_claim));
     if spread > 0.0 && spread.is_finite() {
         let factor = (SCORE_TWO_SIDED_95 * last / spread).min(30.0).exp();
         let ci95 = [spread / factor, spread * factor];

@@ -1,7 +1,7 @@
 //! Forms of the level of the noise over time: a line, slow waves, a step, a stretch, a period.
 
 use crate::effect::shared::variance::{
-    GammaFit, Group, MIN_GROUP_SAMPLES, between, contrast, fit, mean_square, overdispersion, raised, thinned,
+    GammaFit, Group, MIN_GROUP_SAMPLES, between, contrast, contrast_of_forms, fit, mean_square, overdispersion, raised, thinned,
 };
 use crate::effect::{Domain, FlatResidual, Knot, Law, LevelLaw, Place};
 use crate::numeric::sums::cumulated;
@@ -92,9 +92,15 @@ pub(super) fn over_time(residual: &FlatResidual<'_>, samples: &[usize]) -> Optio
     forms.extend(changes(&groups));
     forms.extend(period(&groups));
     let rows = (samples.len() as f64).ln();
-    let fits = forms.into_iter().filter_map(|form| Some((form, fit(&groups, &form.columns(j))?)));
-    let score = |form: &Form, f: &GammaFit| 2.0 * f.gain - form.counts(j).1 as f64 * rows;
-    let (form, best) = fits.max_by(|a, b| score(&a.0, &a.1).total_cmp(&score(&b.0, &b.1)))?;
+    let fits: Vec<(Form, GammaFit)> =
+        forms.into_iter().filter_map(|form| Some((form, fit(&groups, &form.columns(j))?))).collect();
+    let score = |(form, f): &(Form, GammaFit)| 2.0 * f.gain - form.counts(j).1 as f64 * rows;
+    let contrast = |(form, f): &(Form, GammaFit)| contrast(&f.log_squares, &f.covariance, &form.columns(j));
+    let of_forms: Vec<(f64, [f64; 2])> = fits.iter().map(|f| (score(f), contrast(f).1)).collect();
+    let fitted = fits.into_iter().max_by(|a, b| score(a).total_cmp(&score(b)))?;
+    let (ratio, of_best) = contrast(&fitted);
+    let ci95 = contrast_of_forms(&of_forms).unwrap_or(of_best);
+    let (form, best) = fitted;
     let (free, parameters, trials) = form.counts(j);
     let middle = |g: usize| drivers.time_s(0) + ((g as f64 + 0.5) * size as f64 - 0.5) * drivers.dt_s;
     let edge = |g: usize| drivers.time_s(0) + (g as f64 * size as f64 - 0.5) * drivers.dt_s;
@@ -113,7 +119,6 @@ pub(super) fn over_time(residual: &FlatResidual<'_>, samples: &[usize]) -> Optio
     } else {
         sharp_knots(&sharp, &levels, edge(0), end, drivers.dt_s, edge)
     };
-    let (ratio, ci95) = contrast(&best.log_squares, &best.covariance, &form.columns(j));
     let (from, to) = match form {
         Form::Line => (edge(0), end),
         Form::Stretch(from, to) => (edge(from), edge(to).min(end)),
