@@ -137,6 +137,7 @@ impl SpectralRecord<'_> {
             });
             let steady: Vec<SpectralLine> = found
                 .iter()
+                .filter(|_| !ranged.is_void())
                 .filter(|q| q.decay_time_s > COHERENT_DECAY_SHARE * whole.span_s)
                 .map(|q| self.as_line(q, &whole))
                 .collect();

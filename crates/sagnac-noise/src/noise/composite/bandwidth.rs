@@ -68,18 +68,7 @@ impl Bandwidth {
                     filtered_white(time_constant_s).density(frequency_hz, tau0_s, sampling)
                 }
                 NoiseType::Flicker => {
-                    // The same for all aliases.
-                    let sin = (PI * frequency_hz * tau0_s).sin();
-                    let alias = |k| {
-                        let f = frequency_hz + f64::from(k) / tau0_s;
-                        let x = PI * f * tau0_s;
-                        let averaged = match sampling {
-                            Sampling::Averaging if x != 0.0 => (sin / x).powi(2),
-                            _ => 1.0,
-                        };
-                        averaged / (2.0 * PI * f.abs()) / (1.0 + (2.0 * PI * f * time_constant_s).powi(2))
-                    };
-                    (-ALIASES_PER_SIDE..=ALIASES_PER_SIDE).map(alias).sum()
+                    FlickerAliases::new(frequency_hz, tau0_s, sampling).behind(time_constant_s)
                 }
                 // Aliases of a random walk fall as f⁻⁶ here: the filter acts on the sampled density.
                 _ => {
@@ -104,6 +93,40 @@ impl Bandwidth {
                 3600.0 / tau0_s * (inner + ends) / (n * m).powi(2)
             }
         }
+    }
+}
+
+/// Flicker of B = 1 deg/h at one frequency and its aliases, for any filter of first order.
+#[derive(Debug, Clone, Copy)]
+pub struct FlickerAliases([Alias; 2 * ALIASES_PER_SIDE as usize + 1]);
+
+/// One alias.
+#[derive(Debug, Clone, Copy)]
+struct Alias {
+    frequency_hz: f64,
+    /// Without a filter, (deg/h)²/Hz.
+    density: f64,
+}
+
+impl FlickerAliases {
+    /// Those of samples over `tau0_s`.
+    pub fn new(frequency_hz: f64, tau0_s: f64, sampling: Sampling) -> FlickerAliases {
+        // The same for all aliases.
+        let sin = (PI * frequency_hz * tau0_s).sin();
+        FlickerAliases(std::array::from_fn(|i| {
+            let f = frequency_hz + f64::from(i as i32 - ALIASES_PER_SIDE) / tau0_s;
+            let x = PI * f * tau0_s;
+            let averaged = match sampling {
+                Sampling::Averaging if x != 0.0 => (sin / x).powi(2),
+                _ => 1.0,
+            };
+            Alias { frequency_hz: f, density: averaged / (2.0 * PI * f.abs()) }
+        }))
+    }
+
+    /// Density of the samples behind a filter, (deg/h)²/Hz.
+    pub fn behind(&self, time_constant_s: f64) -> f64 {
+        self.0.iter().map(|a| a.density / (1.0 + (2.0 * PI * a.frequency_hz * time_constant_s).powi(2))).sum()
     }
 }
 

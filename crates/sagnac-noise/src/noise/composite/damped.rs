@@ -87,7 +87,9 @@ impl Modes {
         self.rho.im == 0.0 && self.last.im == 0.0 && self.first.im == 0.0
     }
 
-    /// The power at a turn e^(ia) from one mean to the next; `half_turns` is e^(iaM) = (−1)^k.
+    /// The power at a turn e^(ia) from one mean to the next; `half_turns` is e^(iaM) = (−1)^k. Within the loop over modes several
+    /// of them are worked out at a time.
+    #[inline(always)]
     fn at(&self, cos: f64, sin: f64, half_turns: f64) -> f64 {
         let m = self.blocks as f64;
         let one = Complex::new(1.0, 0.0);
@@ -105,7 +107,9 @@ impl Modes {
         let ((up, up_d), (down, down_d)) = (sums(turn), sums(turn.conj()));
         let cosine = 0.5 * (up + down);
         let cosine_d = 0.5 * (up_d + down_d);
-        let sine = (up - down) / Complex::new(0.0, 2.0);
+        // (up − down)/2i.
+        let difference = 0.5 * (up - down);
+        let sine = Complex::new(difference.im, -difference.re);
         let tail = cosine - cosine_d / m - sine / (m * sin);
         (self.scale * (self.gamma0 + 2.0 * (self.first * tail).re)).max(0.0)
     }
@@ -136,6 +140,7 @@ impl Modes {
 }
 
 /// 1/z, with one division.
+#[inline(always)]
 fn inverted(z: Complex<f64>) -> Complex<f64> {
     z.conj() * (1.0 / z.norm_sqr())
 }

@@ -5,7 +5,7 @@ mod bandwidth;
 pub mod damped;
 mod described;
 
-pub use bandwidth::{Bandwidth, averaged_white_mode, filtered_white};
+pub use bandwidth::{Bandwidth, FlickerAliases, averaged_white_mode, filtered_white};
 pub use damped::{Damped, Densities, Modes, Sampling, Windowed};
 pub use described::{Described, Parameter, Propagated};
 

@@ -12,6 +12,9 @@ pub struct Options {
     /// Whether Markov processes, quasi-periodic disturbances and a filter of the output are searched for. Without them
     /// the terms are N, B, K, Q and R.
     pub processes: bool,
+    /// Whether parts count that bend at the edge of a range that was cut. They may be what was cut off, so that they are
+    /// not claimed; whether anything describes the range is asked with them.
+    pub parts_at_edge: bool,
     /// When N, B, K, Q and R are claimed.
     pub standard: StandardThresholds,
     /// When everything else is accepted.
@@ -24,6 +27,7 @@ impl Default for Options {
         Options {
             sampling: Sampling::default(),
             processes: true,
+            parts_at_edge: false,
             standard: StandardThresholds::default(),
             process_thresholds: ProcessThresholds::default(),
         }

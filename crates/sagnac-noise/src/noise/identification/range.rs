@@ -6,6 +6,9 @@
 //! said so. A departure elsewhere costs no octave. Where no range passes, the intervals are widened by the
 //! root of the misfit (Birge ratio), and that is said too.
 //!
+//! Where even the lowest frequencies are far from any model, the record is no noise, such as a ramp: the ranges between are not
+//! tried.
+//!
 //! What bends beyond the edge of a cut range begins within it, too weak to be seen there. The white level of the lower half of the
 //! range knows less of it: the interval of N holds that as well.
 
@@ -32,6 +35,8 @@ const HARMLESS_EXCESS: f64 = 0.02;
 const MAX_OCTAVES: u32 = 8;
 /// Degrees of freedom that a range must keep.
 const MIN_DOF: f64 = 200.0;
+/// Misfit from which a model says nothing of a record. That of noise whose model lacks something is some units in the narrowest range.
+const GROSS_MISFIT: f64 = 10.0;
 
 /// An identification and the range it rests on.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,6 +49,13 @@ pub struct RangedIdentification {
     pub rounded_above_hz: Option<f64>,
     /// Factor by which intervals were widened; 1 where the model fits.
     pub widened: f64,
+}
+
+impl RangedIdentification {
+    /// True where the model is so far from the record that its parts say nothing.
+    pub(in crate::noise) fn is_void(&self) -> bool {
+        self.widened * self.widened > GROSS_MISFIT
+    }
 }
 
 /// Identifies over the widest range of frequencies in which the model holds.
@@ -92,6 +104,14 @@ pub fn describe_in_range(
             hidden.get_or_insert(candidate);
             continue;
         }
+        let is_gross = octave == 0 && candidate.identification.misfit.per_dof > GROSS_MISFIT;
+        if is_gross
+            && options.processes
+            && let Some(void) =
+                described_nowhere(channel, evidence, nyquist_hz, options, &candidate.identification)
+        {
+            return void;
+        }
         let misfit = |r: &RangedIdentification| r.identification.misfit.per_dof;
         if hidden.is_none() && best.as_ref().is_none_or(|b| misfit(&candidate) < misfit(b)) {
             best = Some(candidate);
@@ -108,6 +128,34 @@ pub fn describe_in_range(
     });
     best.widened = best.identification.misfit.per_dof.sqrt().max(1.0);
     best
+}
+
+/// The better of the descriptions of all frequencies and of the narrowest range, where neither describes anything: every wider range holds
+/// the narrowest one.
+fn described_nowhere(
+    channel: &str,
+    evidence: &Evidence,
+    nyquist_hz: f64,
+    options: &Options,
+    whole: &Identification,
+) -> Option<RangedIdentification> {
+    let ranges = (1..=MAX_OCTAVES).map(|octave| nyquist_hz / f64::from(1u32 << octave));
+    let (highest_hz, narrowest) =
+        ranges.map(|hz| (hz, evidence.up_to(hz))).take_while(|(_, e)| e.dof() >= MIN_DOF).last()?;
+    let is_gross = |found: &Identification| found.misfit.per_dof > GROSS_MISFIT;
+    let low = describe(channel, &narrowest, options);
+    // What bends within a wider range may lie at the edge of this one.
+    let with_edge = Options { parts_at_edge: true, ..*options };
+    if !is_gross(&low) || !is_gross(&describe(channel, &narrowest, &with_edge)) {
+        return None;
+    }
+    let (identification, highest_hz) = if low.misfit.per_dof < whole.misfit.per_dof {
+        (low, Some(highest_hz))
+    } else {
+        (whole.clone(), None)
+    };
+    let widened = identification.misfit.per_dof.sqrt();
+    Some(RangedIdentification { identification, highest_hz, rounded_above_hz: None, widened })
 }
 
 /// True where a model has its white noise beneath processes or a filter that stand for it, and no level that is read.
@@ -298,6 +346,17 @@ mod tests {
     use rand::SeedableRng;
     use rand_distr::{Distribution, StandardNormal};
 
+    /// What samples at 1 Hz show.
+    fn evidence_of(mean: Vec<f64>) -> Evidence {
+        let count = vec![1; mean.len()];
+        Evidence::new(
+            &BlockSeries { block_len: 1, first_index: 0, count, mean, rounding: vec![] },
+            None,
+            1.0,
+            &[],
+        )
+    }
+
     /// White noise of N deg/√h at 1 Hz through a two-sample mean: the spectrum falls to zero at the Nyquist frequency.
     fn smoothed(n: f64, samples: usize) -> Evidence {
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(20_261_121);
@@ -305,9 +364,7 @@ mod tests {
             .map(|_| 60.0 * n * <StandardNormal as Distribution<f64>>::sample(&StandardNormal, &mut rng))
             .collect();
         let mean: Vec<f64> = white.windows(2).map(|w| 0.5 * (w[0] + w[1])).collect();
-        let blocks =
-            BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean, rounding: vec![] };
-        Evidence::new(&blocks, None, 1.0, &[])
+        evidence_of(mean)
     }
 
     #[test]
@@ -324,6 +381,17 @@ mod tests {
         assert!(estimate.notes.iter().any(|note| note.id == "note.fit_restricted"));
     }
 
+    #[test]
+    fn what_is_no_noise_at_any_frequency_is_told_from_its_lowest_ones() {
+        let ramp = evidence_of((0..36_000).map(|i| 1e9 * f64::from(i)).collect());
+        let found = describe_in_range("rate", &ramp, 0.5, &Options::default());
+        assert!(found.is_void(), "{:?}", found.identification.misfit);
+        // The narrowest range that is long enough: that of the seventh octave.
+        assert!(found.highest_hz.is_none_or(|hz| hz == 0.5 / 128.0), "{:?}", found.highest_hz);
+        let noise = describe_in_range("rate", &behind_a_filter(1), 0.5, &Options::default());
+        assert!(!noise.is_void() && noise.widened == 1.0, "{:?}", noise.identification.misfit);
+    }
+
     /// White noise of 0.002 deg/√h at 1 Hz behind a Butterworth filter of second order with its cut-off at 0.2 Hz.
     fn behind_a_filter(seed: u64) -> Evidence {
         let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
@@ -338,10 +406,7 @@ mod tests {
             (x2, x1, y2, y1) = (x1, x, y1, y);
             y
         };
-        let mean: Vec<f64> = (0..36_000).map(&mut next).collect();
-        let blocks =
-            BlockSeries { block_len: 1, first_index: 0, count: vec![1; mean.len()], mean, rounding: vec![] };
-        Evidence::new(&blocks, None, 1.0, &[])
+        evidence_of((0..36_000).map(&mut next).collect())
     }
 
     #[test]

@@ -4,14 +4,14 @@ use super::super::likelihood::{
     BandPower, best_ramp, deviance, ramp_information, starting_variance, usable_bands,
 };
 use super::super::misfit::WhitenedBand;
-use super::columns::{Base, Columns, base, process};
-use super::model::{BASE_TERMS, Free, JointPoint, Shape, Variable};
+use super::columns::{Base, Columns, FilteredBins, base, process};
+use super::model::{BASE_TERMS, Free, JointPoint, QUANTIZATION_INDEX, Shape, Variable};
 use crate::noise::composite::{Bandwidth, Damped, Sampling};
 use crate::noise::evidence::{Evidence, Places};
 use crate::numeric::optimize::{bounded_quadratic, shortened_steps};
 use nalgebra::{DMatrix, DVector};
 use std::collections::VecDeque;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 /// Fall of the deviance below which a fit is done.
 const MIN_FALL: f64 = 1e-3;
@@ -34,6 +34,7 @@ pub struct Joint<'a> {
     used: Vec<usize>,
     places: Places,
     plain: Base,
+    filtered_bins: OnceLock<FilteredBins>,
     filtered: Mutex<Vec<(Bandwidth, Base)>>,
     processes: Mutex<VecDeque<KeptProcess>>,
 }
@@ -52,10 +53,11 @@ impl<'a> Joint<'a> {
             used,
             places: evidence.places(),
             plain: Arc::default(),
+            filtered_bins: OnceLock::new(),
             filtered: Mutex::default(),
             processes: Mutex::default(),
         };
-        joint.plain = Arc::new(joint.restrict(base(evidence, None, sampling)));
+        joint.plain = Arc::new(joint.restrict(base(evidence, sampling)));
         Some(joint)
     }
 
@@ -85,7 +87,10 @@ impl<'a> Joint<'a> {
         if let Some((_, base)) = kept().iter().find(|(f, _)| *f == filter) {
             return base.clone();
         }
-        let made = Arc::new(self.restrict(base(self.evidence, Some(filter), self.sampling)));
+        let bins = self.filtered_bins.get_or_init(|| FilteredBins::new(self.evidence, self.sampling));
+        let mut made = self.restrict(bins.columns(self.evidence, filter));
+        made.extend(self.plain.get(QUANTIZATION_INDEX).cloned());
+        let made = Arc::new(made);
         let mut kept = kept();
         if kept.len() >= MAX_FILTERS {
             kept.remove(0);

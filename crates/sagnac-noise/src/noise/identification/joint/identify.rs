@@ -45,7 +45,7 @@ pub(in super::super) fn identify_joint(
         if intervals { identify_standard(channel, evidence, &options.standard, true) } else { plain }
     };
     let ramp = plain.claims(NoiseType::RateRamp);
-    let search = || find_extras(evidence, options.sampling, ramp, &options.process_thresholds);
+    let search = || find_extras(evidence, options, ramp);
     let mut extras = known.cloned().unwrap_or_else(search);
     if extras.shape.is_plain() && options.sampling == Sampling::Averaging {
         // A long Markov process may stand where flicker or random walk is claimed.

@@ -1,6 +1,6 @@
 //! Parts beside N, B, K, Q and R: one more at a time, while one is worth its parameters.
 
-use super::super::options::ProcessThresholds;
+use super::super::options::Options;
 use super::ends::usable_evidence;
 use super::fit::Joint;
 use super::model::{
@@ -8,7 +8,7 @@ use super::model::{
     QUANTIZATION_INDEX, Shape,
 };
 use super::peaks::strongest;
-use crate::noise::composite::{Bandwidth, Damped, Part, Sampling};
+use crate::noise::composite::{Bandwidth, Damped, Part};
 use crate::noise::data::NoiseType;
 use crate::noise::evidence::{Evidence, Zone};
 use std::f64::consts::PI;
@@ -35,24 +35,19 @@ struct Candidate {
 }
 
 /// Searches an evidence. `ramp` tells whether a ramp is part of the record.
-pub fn find_extras(
-    evidence: &Evidence,
-    sampling: Sampling,
-    ramp: bool,
-    thresholds: &ProcessThresholds,
-) -> Extras {
+pub fn find_extras(evidence: &Evidence, options: &Options, ramp: bool) -> Extras {
     let mut found = Extras { shape: Shape::default(), zones: vec![] };
     for _ in 0..MAX_PROCESSES {
         let resolved = usable_evidence(evidence, &found);
-        let Some(joint) = Joint::new(&resolved, sampling) else { break };
+        let Some(joint) = Joint::new(&resolved, options.sampling) else { break };
         let current = joint.best(&found.shape, ramp);
         if !current.deviance.is_finite() {
             break;
         }
         let mut candidates = vec![];
-        candidates.extend(filters(&joint, &found, &current, ramp, thresholds));
-        candidates.extend(markovs(&joint, &found, &current, ramp, thresholds));
-        candidates.extend(periodics(evidence, &joint, &found, &current, ramp, thresholds));
+        candidates.extend(filters(&joint, &found, &current, ramp, options));
+        candidates.extend(markovs(&joint, &found, &current, ramp, options));
+        candidates.extend(periodics(evidence, &joint, &found, &current, ramp, options));
         let best = candidates.into_iter().max_by(|a, b| a.excess.total_cmp(&b.excess));
         match best {
             Some(best) if best.excess > 0.0 => {
@@ -95,8 +90,9 @@ fn filters(
     found: &Extras,
     current: &JointPoint,
     ramp: bool,
-    thresholds: &ProcessThresholds,
+    options: &Options,
 ) -> Option<Candidate> {
+    let thresholds = &options.process_thresholds;
     if found.shape.filter.is_some() {
         return None;
     }
@@ -134,7 +130,9 @@ fn filters(
         .filter_map(best_where)
         .map(|p| refined(joint, p, ramp))
         .filter(|p| shows_filter(p, joint))
-        .filter(|p| p.shape.filter.is_some_and(|f| !bends_at_the_edge(evidence, f.cutoff_hz(tau0_s))))
+        .filter(|p| {
+            p.shape.filter.is_some_and(|f| !bends_at_the_edge(evidence, options, f.cutoff_hz(tau0_s)))
+        })
         .map(|point| {
             let price = thresholds.quantization_beside_filter;
             let reached = with_priced_quantization(joint, &point, ramp, price);
@@ -158,8 +156,9 @@ fn markovs(
     found: &Extras,
     current: &JointPoint,
     ramp: bool,
-    thresholds: &ProcessThresholds,
+    options: &Options,
 ) -> Option<Candidate> {
+    let thresholds = &options.process_thresholds;
     let evidence = joint.evidence();
     let shortest_s = MIN_TIME_SAMPLES * evidence.tau0_s;
     let octaves = (MAX_TIME_SHARE * evidence.span_s / shortest_s).log2().max(0.0);
@@ -183,7 +182,7 @@ fn markovs(
     let time_s = point.shape.damped.last()?.1.decay_time_s;
     let corner_hz = 1.0 / (2.0 * PI * time_s);
     let resolved = time_s >= shortest_s && time_s <= MAX_TIME_SHARE * evidence.span_s;
-    if !resolved || bends_at_the_edge(evidence, corner_hz) {
+    if !resolved || bends_at_the_edge(evidence, options, corner_hz) {
         return None;
     }
     let reached = with_priced_quantization(joint, &point, ramp, thresholds.quantization);
@@ -193,12 +192,15 @@ fn markovs(
 
 /// True for a corner at the upper edge of a range that was cut: a bend there is the beginning of what was cut off, and no process,
 /// filter or resonance.
-fn bends_at_the_edge(evidence: &Evidence, corner_hz: f64) -> bool {
-    edge_hz(evidence).is_some_and(|edge_hz| MIN_EDGE_DISTANCE * corner_hz > edge_hz)
+fn bends_at_the_edge(evidence: &Evidence, options: &Options, corner_hz: f64) -> bool {
+    edge_hz(evidence, options).is_some_and(|edge_hz| MIN_EDGE_DISTANCE * corner_hz > edge_hz)
 }
 
-/// Upper edge of a range that was cut, Hz; `None` where it reaches up to the Nyquist frequency.
-fn edge_hz(evidence: &Evidence) -> Option<f64> {
+/// Upper edge of a range that was cut, Hz; `None` where it reaches up to the Nyquist frequency, or where parts at the edge count.
+fn edge_hz(evidence: &Evidence, options: &Options) -> Option<f64> {
+    if options.parts_at_edge {
+        return None;
+    }
     let highest_hz = evidence.bands.iter().map(|b| b.high_hz).fold(0.0, f64::max);
     (highest_hz * evidence.tau0_s < UNCUT_RANGE).then_some(highest_hz)
 }
@@ -209,8 +211,9 @@ fn periodics(
     found: &Extras,
     current: &JointPoint,
     ramp: bool,
-    thresholds: &ProcessThresholds,
+    options: &Options,
 ) -> Option<Candidate> {
+    let thresholds = &options.process_thresholds;
     let density = joint.density_at(current);
     let mut best: Option<Candidate> = None;
     for peak in strongest(joint.evidence(), &density, MAX_PEAKS) {
@@ -230,7 +233,7 @@ fn periodics(
         let excess = before.deviance - point.deviance - need;
         // A resonance that the edge cuts off may be anything that rises there.
         let reach_hz = |d: &Damped| d.frequency_hz + MIN_EDGE_DISTANCE / (2.0 * PI * d.decay_time_s);
-        let is_cut_off = edge_hz(evidence)
+        let is_cut_off = edge_hz(evidence, options)
             .zip(point.shape.damped.last())
             .is_some_and(|(edge_hz, (_, d))| reach_hz(d) > edge_hz);
         if is_cut_off {
