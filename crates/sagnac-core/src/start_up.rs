@@ -5,7 +5,6 @@
 pub mod zones;
 
 use crate::recording::{Channel, Role, SampleBlock, Sink};
-use zones::{InZone, Zone};
 
 /// Most means of the output that are kept: beyond, neighbours are joined.
 const MOST_MEANS: usize = 1 << 18;
@@ -36,6 +35,24 @@ pub enum Valid {
     },
     /// Nothing is stated.
     Unstated,
+}
+
+/// A zone of temperature.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Zone {
+    /// Its middle, degC.
+    pub at_deg_c: f64,
+    /// Distance from it to either end, degC.
+    pub half_width_deg_c: f64,
+}
+
+/// The switchings-on in a zone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InZone {
+    /// How many there are.
+    pub starts: usize,
+    /// Their mean temperature while on, degC; not a number without one.
+    pub temperature_deg_c: f64,
 }
 
 /// What a test of the start-up asks for.

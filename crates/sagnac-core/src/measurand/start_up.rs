@@ -3,8 +3,7 @@
 use super::descriptor::Measurand;
 use crate::estimate::{Estimate, LowerLimit, SCORE_ONE_SIDED_95, Spread};
 use crate::message::{Arg, note};
-use crate::start_up::zones::InZone;
-use crate::start_up::{Drawn, Moment, StartUp};
+use crate::start_up::{Drawn, InZone, Moment, StartUp};
 
 /// Names of the methods.
 const FROM_SUPPLY_EDGE: &str = "supply_edge";

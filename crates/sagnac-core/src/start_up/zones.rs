@@ -2,26 +2,8 @@
 //!
 //! Of several switchings-on in one zone, the largest value of each quantity counts: a limit holds for every one.
 
-use super::{Drawn, Moment, StartUp, StartUpCollector, StartUpTest};
+use super::{Drawn, InZone, Moment, StartUp, StartUpCollector, StartUpTest, Zone};
 use crate::recording::{Channel, Role, SampleBlock, Sink};
-
-/// A zone of temperature.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Zone {
-    /// Its middle, degC.
-    pub at_deg_c: f64,
-    /// Distance from it to either end, degC.
-    pub half_width_deg_c: f64,
-}
-
-/// The switchings-on in a zone.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct InZone {
-    /// How many there are.
-    pub starts: usize,
-    /// Their mean temperature while on, degC; not a number without one.
-    pub temperature_deg_c: f64,
-}
 
 /// One switching-on with the temperatures of its samples while on.
 struct One {

@@ -8,8 +8,7 @@ use crate::config::table::Table;
 use crate::i18n::note;
 use crate::measurand::Test;
 use crate::recording::Role;
-use crate::start_up::zones::Zone;
-use crate::start_up::{StartUpTest, Valid};
+use crate::start_up::{StartUpTest, Valid, Zone};
 
 /// A test of the start-up: the recording begins before the supply (role `supply`) is switched on. This table makes its measurands
 /// available: `time_to_first_sample`, `time_to_valid_data`, `power_steady`, `power_peak` and `inrush_current`. A recording that
