@@ -261,7 +261,7 @@ mod tests {
                 for (band, truth) in found.bands.iter().zip([0.1, -0.05]) {
                     assert!(matches!(band.shown, Excitation::Apart { elsewhere } if elsewhere < 0.01));
                     let k = band.per_square.unwrap();
-                    assert!(k.standard < 0.01 && (band.largest_rms_g - 2.0).abs() < 0.02, "{band:?}");
+                    assert!(k.standard < 0.03 && (band.largest_rms_g - 2.0).abs() < 0.02, "{band:?}");
                     outside += usize::from((k.value - truth).abs() > 2.1 * k.standard);
                 }
             }

@@ -372,61 +372,6 @@ mod tests {
         assert!(outside <= 6, "{outside}");
     }
 
-    /// Two minutes of white acceleration of 1 g, and the output of a resonator at 19 Hz of Q 6 and 8 deg/h/g with noise of 3 deg/h.
-    fn of_samples(seed: u64) -> Shown {
-        use crate::rate_table::cross_spectrum::CrossSpectra;
-        use crate::recording::{Channel, ColumnRef, Role, SampleBlock};
-        use crate::units::Unit;
-        use std::f64::consts::TAU;
-        let (hz, count, fine) = (100.0, 12_000, 20);
-        let mut rng = rand_xoshiro::Xoshiro256PlusPlus::seed_from_u64(seed);
-        let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
-        let (omega, quality) = (TAU * 19.0, 6.0);
-        let step = 1.0 / (hz * f64::from(fine));
-        let (mut x, mut v, mut smooth) = (0.0, 0.0, 0.0);
-        let mut values = vec![vec![], vec![]];
-        for _ in 0..count {
-            let target = normal();
-            for _ in 0..fine {
-                // Slow against a sample, so that neither channel is aliased.
-                smooth += (target - smooth) * 0.5 * TAU * 15.0 * step;
-                v += step * (omega * omega * (8.0 / quality * smooth - x) - omega / quality * v);
-                x += step * v;
-            }
-            values[0].push(x + 3.0 * normal());
-            values[1].push(smooth);
-        }
-        let of = |(at, (id, role)): (usize, (&str, Role))| Channel {
-            id: id.into(),
-            column: ColumnRef::Position(at + 1),
-            role,
-            unit: Unit::pure(),
-            scale: 1.0,
-        };
-        let roles = [("rate", Role::Rate), ("acc", Role::AccelerationZ)];
-        let channels: Vec<Channel> = roles.into_iter().enumerate().map(of).collect();
-        let mut spectra = CrossSpectra::from(&channels, 1.0 / hz, Some(1));
-        let block =
-            SampleBlock { first_index: 0, first_row: 1, time_s: 0.0, continues: false, values: &values };
-        spectra.push_rows(&block, 0..count, false);
-        let found = spectra.finish_finest(1.0 / hz).remove(0).1;
-        search(&found, &[Band { from_hz: 5.0, to_hz: 35.0 }]).shown
-    }
-
-    #[test]
-    fn a_resonator_comes_back_from_samples() {
-        let mut outside = 0;
-        for seed in 0..12 {
-            let Shown::Peak(peak) = of_samples(seed) else { panic!("{seed}: {:?}", of_samples(seed)) };
-            let far = |m: Measured, truth: f64| (m.value - truth).abs() > 2.0 * m.standard;
-            outside += usize::from(far(peak.frequency_hz, 19.0));
-            outside += usize::from(far(peak.log_quality, 6f64.ln()));
-            outside += usize::from(far(peak.response, 8.0));
-            assert!(peak.frequency_hz.standard < 0.3 && peak.response.standard < 1.0, "{peak:?}");
-        }
-        assert!(outside <= 5, "{outside}");
-    }
-
     #[test]
     fn a_level_response_shows_none_and_says_how_large_one_may_be() {
         for seed in 0..20 {
