@@ -78,6 +78,7 @@ pub static SHIPPED_PROCEDURES: &[Shipped] = shipped!(Procedure, "procedures":
     "threshold"
     "transfer-function"
     "vibration"
+    "vibration-by-frequency"
     "warm-up"
 );
 

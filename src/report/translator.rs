@@ -142,7 +142,8 @@ impl Translator {
         let (axis, level) = place.rsplit_once(':').unwrap_or(("", place));
         let stated: Option<f64> = level.parse().ok();
         let level = stated.map_or_else(|| level.to_owned(), |l| number::limit(l, self.lang));
-        if measurand::find(measurand).is_some_and(|m| m.test() == Test::Temperature) {
+        let by_temperature = [Test::Temperature, Test::StartUp];
+        if measurand::find(measurand).is_some_and(|m| by_temperature.contains(&m.test())) {
             let level = self.quantity(&level, "degC");
             return self.with("report.at_temperature", &[("channel", base), ("temperature", &level)]);
         }

@@ -70,6 +70,7 @@ pub static STUDIES: &[&Study] = &[
     &edges::START_UP,
     &edges::TEMPERATURE,
     &edges::TILTS,
+    &edges::VIBRATION,
     &disturbances::STUDY,
     &identification::STUDY,
     &identification::sample_rates::STUDY,

@@ -2,7 +2,7 @@
 
 use crate::support::pairs::sample_once;
 use crate::support::{altered, result, sagnac, shipped};
-use sagnac_studies::bench::start_up::SwitchedOn;
+use sagnac_studies::bench::start_up::{SwitchedOn, over_temperature};
 use serde_json::Value;
 use std::fs;
 use tempfile::tempdir;
@@ -74,6 +74,49 @@ fn a_recording_that_begins_after_switching_on_gives_bounds_only() {
     let valid = row(&r, "time_to_valid_data")["lower_limit"]["value"].as_f64().unwrap();
     assert!((valid - 3.18).abs() < 0.03, "{valid}");
     holds(row(&r, "power_steady"), 3.5);
+}
+
+#[test]
+fn power_and_inrush_stand_in_a_row_of_every_zone_of_temperature() {
+    let folder = tempdir().unwrap();
+    let at = |steady_a, inrush_a| SwitchedOn { steady_a, inrush: (inrush_a, 0.05), seconds: 80.0, ..fast() };
+    let starts = [(-40.0, at(1.1, 3.9)), (-39.0, at(1.0, 3.5)), (23.0, at(0.7, 1.9)), (60.0, at(0.6, 1.7))];
+    fs::write(folder.path().join("r.csv"), over_temperature(&starts, 91)).unwrap();
+    let warm =
+        "[[channel]]\nid = \"temp\"\ncolumn = \"temp_degC\"\nrole = \"temperature\"\nunit = \"degC\"\n";
+    let zones = ["-40", "23", "40"]
+        .map(|t| format!("[[start_up_test.zone]]\nat = \"{t} degC\"\nwithin = \"3 degC\"\n"));
+    let with_zones = format!("{warm}[start_up_test]\n");
+    let file = shipped("procedures/start-up.toml");
+    let conditions = format!("{}[conditions]\n", zones.concat());
+    let changes = [("[start_up_test]\n", with_zones.as_str()), ("[conditions]\n", conditions.as_str())];
+    let procedure = altered(folder.path(), "p.toml", &file, &changes);
+    let said = sagnac(folder.path(), &["run", &procedure, "r.csv", "--serial", "SN-1", "--out", "o"]);
+    let found = result(&folder.path().join("o"));
+    let in_zone = |id: &str, zone: &str| -> Value {
+        let name = format!("rate@{zone}");
+        let rows = found["measurands"].as_array().unwrap();
+        rows.iter()
+            .find(|r| r["id"] == id && r["channel"] == name.as_str())
+            .unwrap_or_else(|| panic!("{id} {said:?}"))
+            .clone()
+    };
+    // At −40 °C the unit is switched on twice: the larger counts.
+    holds(&in_zone("power_steady", "-40"), 5.5);
+    holds(&in_zone("power_steady", "23"), 3.5);
+    assert_eq!(in_zone("power_steady", "-40")["verdict"], "fail");
+    assert_eq!(in_zone("power_steady", "23")["verdict"], "pass");
+    assert_eq!(in_zone("inrush_current", "-40")["verdict"], "fail");
+    assert_eq!(in_zone("inrush_current", "23")["verdict"], "pass");
+    assert!(
+        in_zone("power_peak", "-40")["value"].as_f64().unwrap()
+            > in_zone("power_peak", "23")["value"].as_f64().unwrap()
+    );
+    let none = in_zone("power_steady", "40");
+    assert!(none["value"].is_null() && none["notes"][0]["id"] == "start_up.zone_empty", "{none}");
+    let without = altered(folder.path(), "q.toml", &file, &changes[1..]);
+    let said = sagnac(folder.path(), &["check", &without]);
+    assert!(said.code != 0 && (said.out.clone() + &said.err).contains("temperature"), "{said:?}");
 }
 
 #[test]

@@ -123,7 +123,12 @@ fn pairs() -> Vec<Pair> {
     for (number, (procedure, name, exit)) in (111..).zip(tests) {
         add(procedure, &format!("{procedure}-{name}.csv"), Some(&format!("SN-0{number}")), None, exit);
     }
-    let declared = ["pressure-sensitivity", "electromagnetic-immunity", "scale-factor-under-pressure"];
+    let declared = [
+        "pressure-sensitivity",
+        "electromagnetic-immunity",
+        "scale-factor-under-pressure",
+        "vibration-by-frequency",
+    ];
     let tests = declared.iter().flat_map(|p| [(*p, "pass", 0), (*p, "fail", 1)]);
     for (number, (procedure, name, exit)) in (121..).zip(tests) {
         add(procedure, &format!("{procedure}-{name}.csv"), Some(&format!("SN-0{number}")), None, exit);

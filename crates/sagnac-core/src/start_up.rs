@@ -2,6 +2,8 @@
 //!
 //! Sources: IEEE Std 952-2020, 12.4 (warm-up and turn-on) and 12.5 (power).
 
+pub mod zones;
+
 use crate::recording::{Channel, Role, SampleBlock, Sink};
 
 /// Most means of the output that are kept: beyond, neighbours are joined.
@@ -35,8 +37,26 @@ pub enum Valid {
     Unstated,
 }
 
-/// What a test of the start-up asks for.
+/// A zone of temperature.
 #[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Zone {
+    /// Its middle, degC.
+    pub at_deg_c: f64,
+    /// Distance from it to either end, degC.
+    pub half_width_deg_c: f64,
+}
+
+/// The switchings-on in a zone.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InZone {
+    /// How many there are.
+    pub starts: usize,
+    /// Their mean temperature while on, degC; not a number without one.
+    pub temperature_deg_c: f64,
+}
+
+/// What a test of the start-up asks for.
+#[derive(Debug, Clone, PartialEq)]
 pub struct StartUpTest {
     /// Supply voltage from which on the unit is on, V.
     pub on_voltage_v: f64,
@@ -50,6 +70,8 @@ pub struct StartUpTest {
     pub voltage_uncertainty: f64,
     /// Standard uncertainty of the current, relative.
     pub current_uncertainty: f64,
+    /// Zones of temperature, each with the switchings-on in it; empty: the first switching-on, whatever its temperature.
+    pub zones: Vec<Zone>,
 }
 
 /// A moment that lies in an interval, or only after a time, s from switching on.
@@ -90,6 +112,8 @@ pub struct StartUp {
     pub channel: String,
     /// Sample interval, s.
     pub interval_s: f64,
+    /// The switchings-on of a zone of temperature; `None` where no zones are asked for.
+    pub zone: Option<InZone>,
     /// First sample of the output.
     pub first_sample: Moment,
     /// Valid data from then on.
@@ -275,6 +299,7 @@ impl StartUpCollector {
         let of = |output: &Output| StartUp {
             channel: output.channel.clone(),
             interval_s,
+            zone: None,
             first_sample: self.moment(output.first_s, interval_s),
             valid_data: match self.test.valid {
                 Valid::Unstated => Moment::Unstated,
@@ -366,6 +391,7 @@ mod tests {
             valid: Valid::Status { mask: 1 },
             voltage_uncertainty: 0.001,
             current_uncertainty: 0.002,
+            zones: vec![],
         }
     }
 

@@ -8,7 +8,8 @@ use crate::config::procedure::model::MeasurandSpec;
 use crate::estimate::Estimate;
 use crate::figure::Figure;
 use crate::recording::Channel;
-use crate::start_up::{StartUp, StartUpCollector, StartUpTest};
+use crate::start_up::zones::SwitchingsOn;
+use crate::start_up::{StartUp, StartUpTest};
 
 /// A test of the start-up.
 pub struct FromSwitchingOn {
@@ -21,27 +22,27 @@ pub struct StartUpEvidence {
 }
 
 impl TestKind for FromSwitchingOn {
-    type Collector = StartUpCollector;
+    type Collector = SwitchingsOn;
     type Evidence = StartUpEvidence;
     const OWN_CHECKS: &'static [&'static str] = &[];
     const MISSING_REASON: &'static str = "unshown.no_start_up";
 
     fn of(procedure: &Procedure) -> Option<FromSwitchingOn> {
-        Some(FromSwitchingOn { test: procedure.start_up_test? })
+        Some(FromSwitchingOn { test: procedure.start_up_test.clone()? })
     }
 
     fn options(&self, _: &Request<'_>) -> Vec<TestOption> {
         vec![("start_up_test.on_voltage", format!("{} V", self.test.on_voltage_v))]
     }
 
-    fn collector(&self, _: &Request<'_>, channels: &[Channel], interval_s: f64) -> Run<StartUpCollector> {
-        Ok(StartUpCollector::new(self.test, channels, interval_s))
+    fn collector(&self, _: &Request<'_>, channels: &[Channel], interval_s: f64) -> Run<SwitchingsOn> {
+        Ok(SwitchingsOn::new(self.test.clone(), channels, interval_s))
     }
 
     fn evaluate(
         self,
         reading: &Reading<'_>,
-        collected: StartUpCollector,
+        collected: SwitchingsOn,
         _: Progress<'_>,
     ) -> Run<StartUpEvidence> {
         Ok(StartUpEvidence { channels: collected.finish(reading.report.tau0_measured_s) })

@@ -80,7 +80,10 @@ fn build(file: ProcedureFile, root: &Section, folder: Option<&Path>, reader: &mu
     let comparison = [
         file.magnetic_test.map(ComparisonTest::from),
         file.supply_test.map(ComparisonTest::from),
-        file.vibration_test.map(ComparisonTest::from),
+        file.vibration_test.map(|keys| ComparisonTest {
+            by_frequency: file.vibration_spectrum.map(|spectrum| spectrum.asked(&channels)),
+            ..keys.into()
+        }),
         file.influence_test.map(|keys| keys.test(&channels, reader)),
     ];
     let (sample_rate_hz, sample_rate_tolerance) = (recording.sample_rate_hz, recording.sample_rate_tolerance);

@@ -28,6 +28,7 @@ pub(super) fn procedure(procedure: &Procedure, root: &Section, reader: &mut Read
     averaging_times(procedure, root, reader);
     super::tables::acceleration::validate(procedure, root, reader);
     super::tables::transfer::validate(procedure, root, reader);
+    super::tables::vibration::validate(procedure, root, reader);
     super::tables::start_up::validate(procedure, root, reader);
     super::tables::noise::validate(procedure, root, reader);
     super::tables::rate_table::validate(procedure, root, reader);

@@ -15,6 +15,7 @@ pub mod small_rates;
 pub mod soaks;
 pub mod start_up;
 pub mod two_axes;
+pub mod vibration;
 
 /// Rotation of the Earth, deg/h (7.292115e-5 rad/s).
 pub const EARTH: f64 = 15.041_067;

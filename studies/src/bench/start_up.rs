@@ -44,6 +44,21 @@ impl Default for SwitchedOn {
 /// Supply voltage, V.
 pub const SUPPLY_V: f64 = 5.0;
 
+/// Switchings-on at temperatures one after the other in one recording, with the temperature of the unit as a further column.
+pub fn over_temperature(starts: &[(f64, SwitchedOn)], seed: u64) -> String {
+    let mut out = String::from("time_s,rate_deg_h,supply_V,current_A,status,temp_degC\n");
+    let mut from_s = 0.0;
+    for (number, (deg_c, start)) in starts.iter().enumerate() {
+        for line in start.csv(seed + number as u64).lines().skip(1) {
+            let (time, rest) = line.split_once(',').unwrap_or((line, ""));
+            let t = from_s + time.parse::<f64>().unwrap_or(0.0);
+            out.push_str(&format!("{t:.3},{rest},{deg_c}\n"));
+        }
+        from_s += start.seconds;
+    }
+    out
+}
+
 impl SwitchedOn {
     /// Time, rate in deg/h (empty before the first sample), voltage, current, status, as text.
     pub fn csv(&self, seed: u64) -> String {

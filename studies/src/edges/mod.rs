@@ -21,6 +21,7 @@ mod table;
 pub mod tally;
 mod temperature;
 mod tilts;
+mod vibration;
 
 use crate::study::{Case, Study};
 use case::{Family, Simulated};
@@ -31,7 +32,7 @@ use std::sync::LazyLock;
 use table::Bench;
 
 /// Every family.
-pub static FAMILIES: LazyLock<[Family; 13]> = LazyLock::new(|| {
+pub static FAMILIES: LazyLock<[Family; 14]> = LazyLock::new(|| {
     [
         family::<declared::Declared>(include_str!("../../cases/edges/declared.toml")),
         family::<frequency::OverFrequency>(include_str!("../../cases/edges/frequency.toml")),
@@ -46,6 +47,7 @@ pub static FAMILIES: LazyLock<[Family; 13]> = LazyLock::new(|| {
         family::<start_up::Start>(include_str!("../../cases/edges/start_up.toml")),
         family::<temperature::Bench>(include_str!("../../cases/edges/temperature.toml")),
         family::<tilts::TwoAxes>(include_str!("../../cases/edges/tilts.toml")),
+        family::<vibration::ByFrequency>(include_str!("../../cases/edges/vibration.toml")),
     ]
 });
 
@@ -96,6 +98,10 @@ pub static TEMPERATURE: Study =
     study("edges-temperature", "Temperature at its edges", || cases("temperature"));
 /// Tilts of the input axis.
 pub static TILTS: Study = study("edges-tilts", "Tilts at their edges", || cases("tilts"));
+
+/// Vibration by frequency.
+pub static VIBRATION: Study =
+    study("edges-vibration", "Vibration by frequency at its edges", || cases("vibration"));
 
 fn cases(family: &str) -> Vec<Case> {
     let case = |case: &'static case::Case| {

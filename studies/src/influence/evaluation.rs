@@ -64,6 +64,7 @@ pub fn compared(t: &Turns, seed: u64) -> Comparison {
         declared: false,
         temperature: None,
         intervals: vec![],
+        by_frequency: None,
     };
     let found = intervals::find(&blocks, &test, &["field".to_owned()], &[]);
     comparison::evaluate(&blocks, &found, &test, &Beside::default(), 0).expect("intervals")

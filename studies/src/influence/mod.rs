@@ -69,7 +69,7 @@ pub fn comparisons(of: &Sensitivity, records: u64, first: u64) -> Comparisons {
         (first..first + records).into_par_iter().map(|seed| compared(&of.turns, seed)).collect();
     for found in tests {
         all.off += usize::from(found.bias.line.is_none_or(|p| p < 0.01));
-        let evidence = ComparisonEvidence { bias: &found, noise: &[] };
+        let evidence = ComparisonEvidence { bias: &found, noise: &[], by_frequency: None };
         all.unit.take(measurand.evaluate_comparison(&evidence).first(), of.truth, None);
         let truth = (of.turns.bias)(of.turns.per_unit, found.bias.shifts[0].level);
         all.shift.take(BIAS_SHIFT.evaluate_comparison(&evidence).first(), truth, None);

@@ -12,6 +12,7 @@ use sagnac_studies::bench::influence::{
     FIELD, NOISE, PRESSURE, SUPPLY, SWITCHED, series, shaken, turned, turns,
 };
 use sagnac_studies::bench::influence::{Recorded, Series, Turned, Turns, linear, parabola, present, squared};
+use sagnac_studies::bench::vibration::{OnShaker, two_bands};
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::PathBuf;
@@ -56,6 +57,16 @@ fn on_table(serial: &str, turned: &Turned, seed: u64) -> String {
     out
 }
 
+/// A sample on a shaker with an accelerometer.
+fn on_shaker(serial: &str, shaker: &OnShaker, seed: u64) -> String {
+    let r = shaker.record(seed);
+    let mut out = format!("# serial: {serial}\ntime_s,rate_deg_h,acceleration_g\n");
+    for i in 0..r.time_s.len() {
+        let _ = writeln!(out, "{},{:.3},{:.3}", r.time_s[i], r.rate[i], r.acceleration[i]);
+    }
+    out
+}
+
 /// Every sample with its text.
 fn files() -> Vec<(&'static str, String)> {
     vec![
@@ -73,6 +84,8 @@ fn files() -> Vec<(&'static str, String)> {
         ("electromagnetic-immunity-fail", text("SN-0124", ",field_on", &switched(0.3).record(124))),
         ("scale-factor-under-pressure-pass", on_table("SN-0125", &turned(0.001, 0.3), 125)),
         ("scale-factor-under-pressure-fail", on_table("SN-0126", &turned(0.001, -3.0), 126)),
+        ("vibration-by-frequency-pass", on_shaker("SN-0127", &two_bands(0.01, 2.0), 127)),
+        ("vibration-by-frequency-fail", on_shaker("SN-0128", &two_bands(0.3, 20.0), 128)),
     ]
 }
 
@@ -137,6 +150,7 @@ fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
         "pressure-sensitivity",
         "electromagnetic-immunity",
         "scale-factor-under-pressure",
+        "vibration-by-frequency",
     ];
     for name in &names {
         for (end, code) in [("pass", 0), ("fail", 1)] {
@@ -170,6 +184,14 @@ fn every_shipped_procedure_passes_one_sample_and_does_not_pass_another() {
                     holds(result, "scale_factor_influence_sensitivity", k);
                     // The first level is 80 kPa.
                     holds(result, "scale_factor_shift", k * (80.0 - 101.3));
+                }
+                ("vibration-by-frequency", _) => {
+                    let (per_square, response) = if end == "pass" { (0.01, 2.0) } else { (0.3, 20.0) };
+                    // The first band.
+                    holds(result, "vibration_rectification_in_band", per_square);
+                    holds(result, "vibration_resonance_frequency", 24.0);
+                    holds(result, "vibration_resonance_quality", 8.0);
+                    holds(result, "vibration_resonance_response", response);
                 }
                 (_, "pass") => {
                     holds(result, "vibration_sensitivity", 0.001);

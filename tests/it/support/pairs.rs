@@ -62,7 +62,7 @@ const SWITCH: Option<&str> = Some("field_on");
 const TEMP: Option<&str> = Some("temp_degC");
 
 /// Every pair.
-pub const PAIRS: [Pair; 47] = [
+pub const PAIRS: [Pair; 49] = [
     pair("unit-pass", "static-bias", UNIT, "SN-0001", 0, None),
     pair("unit-fail", "static-bias", UNIT, "SN-0001", 1, None),
     pair("unit-indeterminate", "static-bias", UNIT, "SN-0001", 3, None),
@@ -110,4 +110,6 @@ pub const PAIRS: [Pair; 47] = [
     pair("electromagnetic-immunity-fail", "electromagnetic-immunity", None, "SN-0124", 1, SWITCH),
     pair("scale-factor-under-pressure-pass", "scale-factor-under-pressure", None, "SN-0125", 0, BARO),
     pair("scale-factor-under-pressure-fail", "scale-factor-under-pressure", None, "SN-0126", 1, BARO),
+    scheduled(pair("vibration-by-frequency-pass", "vibration-by-frequency", None, "SN-0127", 0, None), 24.0),
+    scheduled(pair("vibration-by-frequency-fail", "vibration-by-frequency", None, "SN-0128", 1, None), 24.0),
 ];

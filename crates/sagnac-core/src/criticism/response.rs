@@ -7,10 +7,11 @@ use crate::influence::response::{ByMeans, Response};
 use crate::message::{Arg, Note, note};
 
 /// Everything that rests on the change of the output between levels.
-const OF_LEVELS: [&str; 9] = [
+const OF_LEVELS: [&str; 10] = [
     "magnetic_sensitivity",
     "supply_sensitivity",
     "vibration_sensitivity",
+    "vibration_rectification_in_band",
     "influence_sensitivity",
     "influence_sensitivity_quadratic",
     "bias_shift",

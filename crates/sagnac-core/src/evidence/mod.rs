@@ -8,6 +8,7 @@ pub use course::{Course, Pair};
 
 use crate::estimate::Objection;
 use crate::influence::comparison::{Comparison, NoiseChange};
+use crate::influence::over_frequency::OverFrequency;
 use crate::message::Note;
 use crate::noise::allan::{DeviationCurve, DeviationSet};
 use crate::noise::coarse::RateRounding;
@@ -288,6 +289,8 @@ pub struct ComparisonEvidence<'a> {
     pub bias: &'a Comparison,
     /// Change of N at every level; empty where it was not asked for.
     pub noise: &'a [NoiseChange],
+    /// Vibration by frequency; `None` where it was not asked for.
+    pub by_frequency: Option<&'a OverFrequency>,
 }
 
 #[cfg(test)]

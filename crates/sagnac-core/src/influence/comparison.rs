@@ -154,14 +154,14 @@ fn indicators(states: &States, cut: &Cut) -> Vec<DVector<f64>> {
 }
 
 /// One term of the law along one axis: its drive in every interval and at every level.
-struct Drive {
-    axis: usize,
-    degree: u8,
-    told_apart: bool,
-    intervals: Vec<f64>,
-    levels: Vec<f64>,
+pub(super) struct Drive {
+    pub(super) axis: String,
+    pub(super) degree: u8,
+    pub(super) told_apart: bool,
+    pub(super) intervals: Vec<f64>,
+    pub(super) levels: Vec<f64>,
     /// Largest of the intervals, that columns of any unit weigh the same.
-    size: f64,
+    pub(super) size: f64,
 }
 
 /// The terms along every axis that the influence acted along.
@@ -184,7 +184,7 @@ fn drives(found: &Intervals, states: &States, law: Law) -> Vec<Drive> {
         let intervals: Vec<f64> = (0..found.list.len()).map(interval).collect();
         let levels = states.list.iter().map(|(a, l)| if *a == axis { drive(*l) } else { 0.0 }).collect();
         let size = intervals.iter().fold(0.0, |m: f64, d| m.max(d.abs()));
-        Drive { axis, degree, told_apart, intervals, levels, size }
+        Drive { axis: found.axes[axis].clone(), degree, told_apart, intervals, levels, size }
     };
     (0..found.axes.len()).flat_map(of_axis).map(one).filter(|d| d.size > 0.0).collect()
 }
@@ -248,7 +248,7 @@ impl Fitted<'_> {
     fn effect(&self, law: Law, number: usize) -> Effect {
         let axis = |at: usize| self.found.axes[at].clone();
         let term = |(d, per_unit): (&Drive, &Combination)| Term {
-            axis: axis(d.axis),
+            axis: d.axis.clone(),
             degree: d.degree,
             told_apart: d.told_apart,
             per_unit: *per_unit,
@@ -277,6 +277,26 @@ pub fn evaluate(
     beside: &Beside,
     gyro: usize,
 ) -> Option<Comparison> {
+    let states = states(found);
+    let drives = drives(found, &states, test.setting.law);
+    compare(blocks, found, test, beside, gyro, &Regressed { states, drives })
+}
+
+/// What the output is set against: the levels that differ, and what is proportional to the terms of the law.
+pub(super) struct Regressed {
+    pub(super) states: States,
+    pub(super) drives: Vec<Drive>,
+}
+
+/// Evaluates a channel against given drives; `None` as [`evaluate`].
+pub(super) fn compare(
+    blocks: &Blocks,
+    found: &Intervals,
+    test: &ComparisonTest,
+    beside: &Beside,
+    gyro: usize,
+    Regressed { states, drives }: &Regressed,
+) -> Option<Comparison> {
     let (cut, turning) = if test.setting.on_scale_factor {
         let (cut, turning) = scale_factor::cut(blocks, found, test.rate_settling_s, gyro)?;
         (cut, Some(turning))
@@ -286,7 +306,6 @@ pub fn evaluate(
     };
     let turning = turning.as_ref();
     let n = cut.rows.len();
-    let states = states(found);
     if states.list.is_empty() || states.of.iter().all(Option::is_some) {
         return None;
     }
@@ -296,11 +315,10 @@ pub fn evaluate(
     let time = drift.then_some(&time);
     let base = base(n, time, turning);
     let law = test.setting.law;
-    let drives = drives(found, &states, law);
     let row = |d: &Drive| DVector::from_fn(n, |i, _| d.intervals[cut.of[i]]) / d.size;
     let by_drive = base.with(&drives.iter().map(row).collect::<Vec<_>>());
-    let noise = Noise::new(&cut, &states, turning);
-    let (line, scatter) = noise.solve(&cut, &states, &by_drive.x)?;
+    let noise = Noise::new(&cut, states, turning);
+    let (line, scatter) = noise.solve(&cut, states, &by_drive.x)?;
     let of_intervals = drives.iter().map(|d| d.intervals.clone()).collect();
     let changes = Changes::new(blocks, found, test.settling_s, of_intervals);
     let courses = Courses {
@@ -308,7 +326,7 @@ pub fn evaluate(
         changes: &changes,
         known: &noise.known,
         components: &noise.components,
-        own: levels(&states),
+        own: levels(states),
         scale: turning.map(|t| &t.scale),
     };
     let response = courses.find(&by_drive.x);
@@ -324,18 +342,17 @@ pub fn evaluate(
     let of_line = coefficients(&by_drive.x, &line);
     // Of the bias, and behind them of the scale factor.
     let per = |all: &[Combination]| -> Vec<Combination> {
-        let sizes = drives.iter().chain(turning.map(|_| &drives).into_iter().flatten()).map(|d| d.size);
+        let sizes = drives.iter().chain(turning.map(|_| drives).into_iter().flatten()).map(|d| d.size);
         sizes.enumerate().filter_map(|(k, s)| Some(scale(all.get(by_drive.first + k)?, 1.0 / s))).collect()
     };
     let per_unit = per(&of_line);
     let plain = by_means(&cut, &by_drive.x).map_or(vec![], |all| per(&all));
     let by_means = plain.into_iter().zip(&per_unit).map(|(means, model)| ByMeans { means, model: *model });
     let by_means = by_means.collect();
-    let by_level = base.with(&indicators(&states, &cut));
-    let (each, _) = noise.solve(&cut, &states, &by_level.x)?;
+    let by_level = base.with(&indicators(states, &cut));
+    let (each, _) = noise.solve(&cut, states, &by_level.x)?;
     let of_levels = coefficients(&by_level.x, &each);
-    let fitted =
-        Fitted { found, states: &states, drives: &drives, per_unit, of_levels, each, first: by_level.first };
+    let fitted = Fitted { found, states, drives, per_unit, of_levels, each, first: by_level.first };
     let drives_of_levels = fitted.drives_of_levels();
     let course = |values: &[f64], what: &Nuisance| {
         let levels = states.list.len();
@@ -343,7 +360,7 @@ pub fn evaluate(
         following(what, &own)
     };
     let others = beside.others.iter().filter_map(|(at, what)| course(cut.beside.get(*at)?, what)).collect();
-    let (intervals, without) = means(blocks, found, &states, &cut, (time, turning, &noise))?;
+    let (intervals, without) = means(blocks, found, states, &cut, (time, turning, &noise))?;
     Some(Comparison {
         channel: blocks.gyros.get(gyro)?.clone(),
         bias: fitted.effect(law, 0),
@@ -366,9 +383,9 @@ fn scale(c: &Combination, factor: f64) -> Combination {
 }
 
 /// Levels that differ, by axis, and the one of every interval; `None` without the influence.
-struct States {
-    list: Vec<(usize, f64)>,
-    of: Vec<Option<usize>>,
+pub(super) struct States {
+    pub(super) list: Vec<(usize, f64)>,
+    pub(super) of: Vec<Option<usize>>,
 }
 
 impl States {

@@ -8,17 +8,23 @@ pub mod comparison;
 pub mod contrasts;
 pub mod copied;
 pub mod cut;
+pub mod excitation;
 mod flicker_marginal;
 mod gls;
 pub mod intervals;
 pub mod nuisance;
+pub mod over_frequency;
 pub mod range;
+pub mod rectification;
 pub mod repeatability;
+pub mod resonance;
 pub mod response;
 pub mod runs;
 pub mod scale_factor;
 pub mod setup;
+pub mod shaken;
 
 pub use setup::{
-    ComparisonTest, Influence, Law, LevelUnit, RepeatabilityTest, Setting, Stated, StatedLevel, ToldBy,
+    ByFrequency, ComparisonTest, Influence, Law, LevelUnit, RepeatabilityTest, Setting, Stated, StatedLevel,
+    ToldBy,
 };

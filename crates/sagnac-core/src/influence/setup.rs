@@ -1,5 +1,6 @@
 //! What a procedure states of such a test.
 
+use crate::noise::in_band::Band;
 use crate::recording::{Channel, Role};
 
 /// A stretch of the recording: the files of a phase, or a span of time, or both.
@@ -240,6 +241,15 @@ pub struct StatedLevel {
     pub axis: Option<String>,
 }
 
+/// Vibration by frequency: the channel that tells it at the full rate of the recording, and the bands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ByFrequency {
+    /// Channel of the accelerometer.
+    pub accelerometer: String,
+    /// Bands in the order of frequency, none over another.
+    pub bands: Vec<Band>,
+}
+
 /// A comparison without and with an influence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ComparisonTest {
@@ -267,6 +277,8 @@ pub struct ComparisonTest {
     pub temperature: Option<String>,
     /// The intervals; empty: found from the channels of the influence's role.
     pub intervals: Vec<StatedLevel>,
+    /// Bands in which the effect of vibration is told apart; `None`: not asked for.
+    pub by_frequency: Option<ByFrequency>,
 }
 
 #[cfg(test)]

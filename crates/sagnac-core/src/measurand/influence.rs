@@ -108,7 +108,7 @@ pub static SCALE_FACTOR_SHIFT: Measurand = Measurand::of_influence(
 )
 .signed();
 
-const METHOD: &str = "alternating_intervals";
+pub(super) const METHOD: &str = "alternating_intervals";
 
 /// What a measurand tells per level of a declared influence.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -196,13 +196,19 @@ fn shifts(m: &Measurand, found: &Comparison, effect: &Effect, warms: bool) -> Ve
 }
 
 /// Largest effect of a difference of temperature on the bias, all smaller ones as likely.
-fn of_temperature(found: &Comparison, degrees: Option<&f64>) -> Component {
+pub(super) fn of_temperature(found: &Comparison, degrees: Option<&f64>) -> Component {
     let coefficient = found.test.temperature_coefficient.unwrap_or(0.0);
     let standard_deg_c = degrees.map_or(0.0, |d| d.abs()) / 3f64.sqrt();
     Component::of(InputQuantity::TemperatureDifference, standard_deg_c, "degC", coefficient)
 }
 
-fn row(m: &Measurand, found: &Comparison, place: &str, c: &Combination, others: &[Component]) -> Estimate {
+pub(super) fn row(
+    m: &Measurand,
+    found: &Comparison,
+    place: &str,
+    c: &Combination,
+    others: &[Component],
+) -> Estimate {
     let row = if found.confounded() || found.unsettled() {
         m.not_identifiable(place, None, METHOD)
     } else {
@@ -283,6 +289,7 @@ mod tests {
             declared: false,
             temperature: None,
             intervals: vec![],
+            by_frequency: None,
         };
         let shift =
             |axis: &str, level, value| Shift { axis: axis.into(), level, change: combination(value, 0.03) };
@@ -315,7 +322,7 @@ mod tests {
     }
 
     fn rows(m: &Measurand, bias: &Comparison) -> Vec<Estimate> {
-        m.evaluate_comparison(&ComparisonEvidence { bias, noise: &[] })
+        m.evaluate_comparison(&ComparisonEvidence { bias, noise: &[], by_frequency: None })
     }
 
     #[test]

@@ -33,6 +33,8 @@ pub mod static_bias;
 mod table_harmonics;
 mod temperature;
 mod transfer;
+mod vibration_rectification;
+mod vibration_resonance;
 mod warm_up;
 
 pub use crate::evidence;
@@ -161,6 +163,10 @@ registry! {
     influence::SCALE_FACTOR_SHIFT,
     angle_random_walk_shift::ANGLE_RANDOM_WALK_SHIFT,
     noise_density_ratio::NOISE_DENSITY_RATIO,
+    vibration_rectification::VIBRATION_RECTIFICATION_IN_BAND,
+    vibration_resonance::VIBRATION_RESONANCE_FREQUENCY,
+    vibration_resonance::VIBRATION_RESONANCE_QUALITY,
+    vibration_resonance::VIBRATION_RESONANCE_RESPONSE,
     bias_repeatability::BIAS_REPEATABILITY,
     bias_repeatability::BIAS_REPEATABILITY_PEAK_TO_PEAK,
     bias_repeatability::BIAS_REPEATABILITY_TREND,

@@ -96,7 +96,7 @@ fn robust_deviation(histogram: &Histogram) -> Option<f64> {
 
 fn density(m: &Measurand, gyro: &GyroEvidence, band: Band, several: bool) -> Estimate {
     let channel = match several {
-        true => format!("{}@{}-{}Hz", gyro.channel, band.from_hz, band.to_hz),
+        true => format!("{}@{}", gyro.channel, band.name()),
         false => gyro.channel.clone(),
     };
     let withheld = |why: Note| m.not_identifiable(&channel, None, DENSITY_METHOD).note(why);

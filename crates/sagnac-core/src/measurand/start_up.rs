@@ -3,7 +3,7 @@
 use super::descriptor::Measurand;
 use crate::estimate::{Estimate, LowerLimit, SCORE_ONE_SIDED_95, Spread};
 use crate::message::{Arg, note};
-use crate::start_up::{Drawn, Moment, StartUp};
+use crate::start_up::{Drawn, InZone, Moment, StartUp};
 
 /// Names of the methods.
 const FROM_SUPPLY_EDGE: &str = "supply_edge";
@@ -17,7 +17,7 @@ pub static TIME_TO_FIRST_SAMPLE: Measurand = Measurand::of_start_up(
     "time_to_first_sample",
     "s",
     "time from switching on to the first sample of the output",
-    |m, found| vec![moment(m, found, found.first_sample)],
+    |m, found| vec![in_zone(found, moment(m, found, found.first_sample))],
 )
 .formulas(
     &["t = t₁ − t₀", "P = mean(U·I)", "u²(P)/P² = u²(U)/U² + u²(I)/I²"],
@@ -29,28 +29,28 @@ pub static TIME_TO_VALID_DATA: Measurand = Measurand::of_start_up(
     "time_to_valid_data",
     "s",
     "time from switching on to data that are valid from then on",
-    |m, found| vec![moment(m, found, found.valid_data)],
+    |m, found| vec![in_zone(found, moment(m, found, found.valid_data))],
 )
 .also_called(&["time_to_ready", "activation_time"]);
 
 /// Power in steady state.
 pub static POWER_STEADY: Measurand =
     Measurand::of_start_up("power_steady", "W", "mean power in steady state", |m, found| {
-        vec![drawn(m, found, found.power_steady)]
+        vec![in_zone(found, drawn(m, found, found.power_steady))]
     })
     .also_called(&["power", "power_consumption"]);
 
 /// Largest power.
 pub static POWER_PEAK: Measurand =
     Measurand::of_start_up("power_peak", "W", "largest power of a sample", |m, found| {
-        vec![sampled(found, drawn(m, found, found.power_peak))]
+        vec![in_zone(found, sampled(found, drawn(m, found, found.power_peak)))]
     })
     .also_called(&["peak_power"]);
 
 /// Inrush current.
 pub static INRUSH_CURRENT: Measurand =
     Measurand::of_start_up("inrush_current", "A", "largest current after switching on", |m, found| {
-        vec![sampled(found, drawn(m, found, found.inrush_current))]
+        vec![in_zone(found, sampled(found, drawn(m, found, found.inrush_current)))]
     });
 
 fn moment(m: &Measurand, found: &StartUp, moment: Moment) -> Estimate {
@@ -85,6 +85,17 @@ fn drawn(m: &Measurand, found: &StartUp, drawn: Option<Drawn>) -> Estimate {
     }
 }
 
+/// A row of a zone says which switchings-on it is of; one without any says only that.
+fn in_zone(found: &StartUp, row: Estimate) -> Estimate {
+    match found.zone {
+        None => row,
+        Some(InZone { starts: 0, .. }) => Estimate { notes: vec![note!("start_up.zone_empty")], ..row },
+        Some(InZone { starts, temperature_deg_c }) => {
+            row.note(note!("start_up.zone", starts, temperature = Arg::figures(temperature_deg_c, 3)))
+        }
+    }
+}
+
 /// A largest value is that of the samples.
 fn sampled(found: &StartUp, row: Estimate) -> Estimate {
     row.note(note!("start_up.sampled", interval_s = Arg::figures(found.interval_s, 2)))
@@ -92,13 +103,14 @@ fn sampled(found: &StartUp, row: Estimate) -> Estimate {
 
 #[cfg(test)]
 mod tests {
-    use super::super::test_evidence::{near, notes, shows, withholds};
+    use super::super::test_evidence::{near, notes, number, shows, withholds};
     use super::*;
 
     fn found() -> StartUp {
         StartUp {
             channel: "g".into(),
             interval_s: 0.1,
+            zone: None,
             first_sample: Moment::At { time_s: 0.5, resolution_s: 0.1 },
             valid_data: Moment::AtLeast(2.0),
             power_steady: Some(Drawn { value: 2.0, standard: 0.01, at_least: false }),
@@ -113,6 +125,21 @@ mod tests {
         shows(&row, 0.5, FROM_SUPPLY_EDGE);
         // Even over 0.2 s; the curve is told at quarters of a score.
         assert!((row.interval95().unwrap().high - 0.595).abs() < 2e-4);
+    }
+
+    #[test]
+    fn a_row_of_a_zone_says_how_many_switchings_on_it_is_of() {
+        let of = |starts| StartUp {
+            zone: Some(InZone { starts, temperature_deg_c: -40.2 }),
+            first_sample: if starts > 0 { found().first_sample } else { Moment::NoStart },
+            ..found()
+        };
+        let row = TIME_TO_FIRST_SAMPLE.evaluate_start_up(&of(2)).remove(0);
+        assert_eq!(notes(&row), ["start_up.resolution", "start_up.zone"]);
+        near(number(&row, "start_up.zone", "starts"), 2.0);
+        let row = TIME_TO_FIRST_SAMPLE.evaluate_start_up(&of(0)).remove(0);
+        withholds(&row, None, FROM_SUPPLY_EDGE);
+        assert_eq!(notes(&row), ["start_up.zone_empty"]);
     }
 
     #[test]

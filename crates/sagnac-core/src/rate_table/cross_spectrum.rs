@@ -9,6 +9,7 @@ use super::blocks::TURN_ARCSEC;
 use crate::recording::{Channel, Role, SampleBlock, Sink};
 use sagnac_fft::{Complex, RealToComplex, real_forward};
 use std::f64::consts::TAU;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Lengths of segments, samples: each gives the frequencies that the next longer one resolves finer than is needed.
@@ -242,6 +243,12 @@ impl CrossSpectra {
     pub fn new(channels: &[Channel], interval_s: f64) -> CrossSpectra {
         let slot = |role: Role| channels.iter().position(|c| c.role == role);
         let angle = slot(Role::TableAngle);
+        let input = angle.or_else(|| slot(Role::TableRate));
+        CrossSpectra { by_angle: angle.is_some(), ..CrossSpectra::from(channels, interval_s, input) }
+    }
+
+    /// From the channel of one position as the input, in its own unit.
+    pub fn from(channels: &[Channel], interval_s: f64, input: Option<usize>) -> CrossSpectra {
         let gyros: Vec<(usize, String)> = channels
             .iter()
             .enumerate()
@@ -251,8 +258,8 @@ impl CrossSpectra {
         let lengthwise = SEGMENT_LENGTHS.iter().map(|l| Lengthwise::new(*l, gyros.len())).collect();
         CrossSpectra {
             interval_s,
-            input: angle.or_else(|| slot(Role::TableRate)),
-            by_angle: angle.is_some(),
+            input,
+            by_angle: false,
             gyros,
             lengthwise,
             angle_before: None,
@@ -265,7 +272,7 @@ impl CrossSpectra {
         self.lengthwise.iter_mut().for_each(Lengthwise::restart);
     }
 
-    /// Rate of the table at a sample, deg/h; `None` where it is not known.
+    /// The input at a sample: the rate of the table in deg/h, or the value of the channel; `None` where it is not known.
     fn rate(&mut self, value: f64) -> Option<f64> {
         if !self.by_angle {
             return value.is_finite().then_some(value);
@@ -275,6 +282,39 @@ impl CrossSpectra {
         let turned = value - before;
         let turned = turned - TURN_ARCSEC * (turned / TURN_ARCSEC).round();
         turned.is_finite().then_some(turned / self.interval_s)
+    }
+
+    /// Takes some rows of a block.
+    pub fn push_rows(&mut self, block: &SampleBlock<'_>, rows: Range<usize>, continues: bool) {
+        if !continues {
+            self.restart();
+        }
+        let Some(input) = self.input.and_then(|slot| block.values.get(slot)) else { return };
+        for (i, value) in input.iter().enumerate().take(rows.end).skip(rows.start) {
+            let rate = self.rate(*value);
+            let mut sample = std::mem::take(&mut self.sample);
+            sample.clear();
+            sample.extend(rate);
+            let output = |slot: usize| block.values.get(slot).and_then(|v| v.get(i)).copied();
+            sample.extend(self.gyros.iter().filter_map(|(slot, _)| output(*slot)));
+            if sample.len() == self.gyros.len() + 1 && sample.iter().all(|v| v.is_finite()) {
+                self.lengthwise.iter_mut().for_each(|l| l.push(&sample));
+            } else if rate.is_some() || !value.is_finite() {
+                // A value that cannot be used ends the stretch.
+                self.restart();
+            }
+            self.sample = sample;
+        }
+    }
+
+    /// The bins of every gyro channel in the longest segments that tell noise from response, for what is sharp.
+    pub fn finish_finest(self, interval_s: f64) -> Vec<(String, Vec<Bin>)> {
+        let finest = self.lengthwise.iter().rev().find(|l| l.segments >= FEWEST_SEGMENTS);
+        let of = |gyro: usize| {
+            let highest = |l: &Lengthwise| (HIGHEST_SHARE * l.len() as f64) as usize;
+            finest.map_or_else(Vec::new, |l| l.bins(gyro, (FIRST_BIN, highest(l)), interval_s, 0.0))
+        };
+        self.gyros.iter().enumerate().map(|(i, (_, id))| (id.clone(), of(i))).collect()
     }
 
     /// The bins of every gyro channel, by frequency. `interval_s` is the measured interval.
@@ -304,24 +344,6 @@ impl CrossSpectra {
 
 impl Sink for CrossSpectra {
     fn push(&mut self, block: &SampleBlock<'_>) {
-        if !block.continues {
-            self.restart();
-        }
-        let Some(input) = self.input.and_then(|slot| block.values.get(slot)) else { return };
-        for (i, value) in input.iter().enumerate() {
-            let rate = self.rate(*value);
-            let mut sample = std::mem::take(&mut self.sample);
-            sample.clear();
-            sample.extend(rate);
-            let output = |slot: usize| block.values.get(slot).and_then(|v| v.get(i)).copied();
-            sample.extend(self.gyros.iter().filter_map(|(slot, _)| output(*slot)));
-            if sample.len() == self.gyros.len() + 1 && sample.iter().all(|v| v.is_finite()) {
-                self.lengthwise.iter_mut().for_each(|l| l.push(&sample));
-            } else if rate.is_some() || !value.is_finite() {
-                // A value that cannot be used ends the stretch.
-                self.restart();
-            }
-            self.sample = sample;
-        }
+        self.push_rows(block, 0..block.len(), block.continues);
     }
 }

@@ -7,7 +7,7 @@ use std::f64::consts::TAU;
 
 /// Variance of neighbouring bins under a Hann window taken as if each stood alone, relative: they share two thirds of their
 /// amplitude with the next and a sixth with the one after.
-pub(super) const SHARED_BY_BINS: f64 = 1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0);
+pub(crate) const SHARED_BY_BINS: f64 = 1.0 + 2.0 * (4.0 / 9.0 + 1.0 / 36.0);
 
 /// Steps of a fit.
 const MAX_STEPS: usize = 60;

@@ -441,6 +441,7 @@ fn under_influence() {
                 declared: false,
                 temperature: None,
                 intervals: vec![],
+                by_frequency: None,
             };
             let series = intervals::find(&made, &test, &["level".into()], &[]);
             figures.add(format!("{influence} {name} intervals"), &series);
@@ -462,7 +463,11 @@ fn under_influence() {
                 change(Some((0.01, 1e-4)), None),
             ];
             for measurand in MEASURANDS {
-                let rows = measurand.evaluate_comparison(&ComparisonEvidence { bias: &bias, noise: &noise });
+                let rows = measurand.evaluate_comparison(&ComparisonEvidence {
+                    bias: &bias,
+                    noise: &noise,
+                    by_frequency: None,
+                });
                 add(&mut figures, &format!("{influence} {name}"), measurand.id, &rows);
             }
         }

@@ -28,6 +28,18 @@ pub struct Band {
     pub to_hz: f64,
 }
 
+impl Band {
+    /// Its name in rows and limits, such as `20-60Hz`.
+    pub fn name(&self) -> String {
+        format!("{}-{}Hz", self.from_hz, self.to_hz)
+    }
+
+    /// Width, Hz.
+    pub fn width_hz(&self) -> f64 {
+        self.to_hz - self.from_hz
+    }
+}
+
 /// Corner of a mask: straight lines in the logarithms join it to its neighbours.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MaskPoint {

@@ -48,20 +48,31 @@ impl Sink for Loudness {
     }
 }
 
+/// What tells the level beside the procedure.
+pub struct Told<'a> {
+    /// Channels of the level, in the order in which blocks keep them beside.
+    pub axes: &'a [String],
+    /// Rms acceleration in every interval by the accelerometer, g; `None` without one.
+    pub rms: Option<Vec<f64>>,
+}
+
 /// What the recording shows of the influence having acted.
 pub fn find(
     reading: &Reading<'_>,
     test: &ComparisonTest,
     blocks: &Blocks,
     series: &Intervals,
-    axes: &[String],
+    told: &Told<'_>,
     progress: Progress<'_>,
 ) -> Run<Acted> {
     if test.intervals.is_empty() {
         return Ok(Acted::Recorded);
     }
-    if let Some(acted) = against_channels(test, blocks, series, axes) {
+    if let Some(acted) = against_channels(test, blocks, series, told.axes) {
         return Ok(acted);
+    }
+    if let Some(rms) = &told.rms {
+        return Ok(against_rms(test, blocks, series, rms));
     }
     let by_noise = if test.setting.influence == Influence::Vibration && series.with() > 0 {
         louder(reading, blocks, series, progress)?
@@ -77,6 +88,27 @@ pub fn find(
     })
 }
 
+/// Largest distance of a level from the reference that is stated.
+fn largest(test: &ComparisonTest, series: &Intervals) -> f64 {
+    let away = |l: f64| (l - test.reference).abs();
+    series.list.iter().flat_map(|i| &i.levels).fold(0.0, |m: f64, l| m.max(away(*l)))
+}
+
+/// Stated levels against the rms of the accelerometer.
+fn against_rms(test: &ComparisonTest, blocks: &Blocks, series: &Intervals, rms: &[f64]) -> Acted {
+    let tolerance = LEVEL_TOLERANCE * largest(test, series);
+    for (interval, recorded) in series.list.iter().zip(rms) {
+        let stated = interval.levels.iter().copied().fold(test.reference, f64::max);
+        // A level that is not recorded in an interval agrees with nothing.
+        let near = (recorded - stated).abs() <= tolerance;
+        if !near {
+            let at_s = blocks.start_s(interval.blocks.0);
+            return Acted::Contradicted { stated, recorded: *recorded, at_s };
+        }
+    }
+    Acted::Recorded
+}
+
 /// Stated levels against the channels that tell them; `None` without such a channel.
 fn against_channels(
     test: &ComparisonTest,
@@ -87,8 +119,7 @@ fn against_channels(
     if axes.is_empty() {
         return None;
     }
-    let away = |l: f64| (l - test.reference).abs();
-    let largest = series.list.iter().flat_map(|i| &i.levels).fold(0.0, |m: f64, l| m.max(away(*l)));
+    let largest = largest(test, series);
     for interval in &series.list {
         let list = &blocks.list[interval.blocks.0..interval.blocks.1];
         for (at, axis) in axes.iter().enumerate() {

@@ -2,6 +2,7 @@
 //! declares.
 
 mod acted;
+mod by_frequency;
 mod noise;
 
 use super::stretch_facts::{RestMean, Stretches, range};
@@ -17,7 +18,8 @@ use crate::figure::Figure;
 use crate::influence::comparison::{self, Beside, Comparison, NoiseChange};
 use crate::influence::intervals::{self, Intervals};
 use crate::influence::nuisance::{Following, Nuisance};
-use crate::influence::{ComparisonTest, Influence, Setting, scale_factor};
+use crate::influence::over_frequency::OverFrequency;
+use crate::influence::{ComparisonTest, Influence, scale_factor};
 use crate::ingest::Pauses;
 use crate::measurand::{ANGLE_RANDOM_WALK_SHIFT, ComparisonEvidence, NOISE_DENSITY_RATIO};
 use crate::rate_table::blocks::Collector;
@@ -43,6 +45,8 @@ pub struct InfluenceEvidence {
     acted: Acted,
     /// How the angle random walk changed, where that is asked for.
     noise: BTreeMap<String, Vec<NoiseChange>>,
+    /// Vibration by frequency, a channel each, where that is asked for.
+    by_frequency: Vec<OverFrequency>,
 }
 
 impl TestKind for UnderInfluence {
@@ -81,9 +85,8 @@ impl TestKind for UnderInfluence {
             channels.iter().enumerate().filter(|(_, c)| of(c)).map(|(slot, _)| slot).collect::<Vec<usize>>()
         };
         // The channels of the level come first.
-        let setting = &self.test.setting;
-        let mut kept = slots(&|c| setting.tells_level(c));
-        kept.extend(slots(&|c| may_disturb(c, setting)));
+        let mut kept = slots(&|c| self.test.setting.tells_level(c));
+        kept.extend(slots(&|c| may_disturb(c, &self.test)));
         Ok(Collector::new(channels, interval_s, self.test.temperature.as_deref()).beside(kept))
     }
 
@@ -108,13 +111,23 @@ impl TestKind for UnderInfluence {
         let resting = channels.iter().filter(|_| !test.setting.on_scale_factor);
         let rest = resting.filter_map(|c| without.fact(reading, &c.channel, Some(&rest_mean(c)))).collect();
         let rates = scale_factor::rates(&blocks, &series, test.rate_settling_s);
-        let acted = acted::find(reading, test, &blocks, &series, &axes, progress)?;
+        let vibration = match &test.by_frequency {
+            Some(asked) => by_frequency::read(reading, asked, &blocks, &series, progress)?,
+            None => None,
+        };
+        let told = acted::Told { axes: &axes, rms: vibration.as_ref().map(|v| v.shaken.rms_g()) };
+        let acted = acted::find(reading, test, &blocks, &series, &told, progress)?;
+        let by_frequency = vibration.iter().flat_map(|vibration| {
+            let of = |gyro| vibration.evaluate(&blocks, &series, test, &context, gyro);
+            (0..blocks.gyros.len()).filter_map(of).collect::<Vec<_>>()
+        });
+        let by_frequency = by_frequency.collect();
         let of_noise = [ANGLE_RANDOM_WALK_SHIFT.id, NOISE_DENSITY_RATIO.id];
         let noise = match of_noise.iter().any(|id| reading.procedure().measures(id, None)) {
             true => noise::find(reading, &blocks, &series, progress)?,
             false => BTreeMap::new(),
         };
-        Ok(InfluenceEvidence { test: self.test, series, channels, rest, rates, acted, noise })
+        Ok(InfluenceEvidence { test: self.test, series, channels, rest, rates, acted, noise, by_frequency })
     }
 }
 
@@ -155,7 +168,8 @@ impl Evidence for InfluenceEvidence {
     fn estimates(&self, _: &Reading<'_>, spec: &MeasurandSpec) -> Vec<Estimate> {
         let of = |c: &Comparison| {
             let noise = self.noise.get(&c.channel).map_or(&[][..], Vec::as_slice);
-            spec.measurand.evaluate_comparison(&ComparisonEvidence { bias: c, noise })
+            let by_frequency = self.by_frequency.iter().find(|f| f.channel == c.channel);
+            spec.measurand.evaluate_comparison(&ComparisonEvidence { bias: c, noise, by_frequency })
         };
         let remarked = |e: Estimate| self.acted.remark().into_iter().fold(e, Estimate::note);
         self.channels.iter().flat_map(of).map(remarked).collect()
@@ -187,7 +201,7 @@ fn rest_mean(c: &Comparison) -> RestMean {
 }
 
 /// True for a channel whose quantity may change the bias beside the influence. The temperature of the unit is judged by itself.
-fn may_disturb(c: &Channel, setting: &Setting) -> bool {
+fn may_disturb(c: &Channel, test: &ComparisonTest) -> bool {
     let role = matches!(
         c.role,
         Role::Temperature
@@ -202,8 +216,10 @@ fn may_disturb(c: &Channel, setting: &Setting) -> bool {
             | Role::TableRate
             | Role::OuterRate
     );
+    let setting = &test.setting;
     let of_test = setting.tells_level(c) || setting.on_scale_factor && c.role == Role::TableRate;
-    role && !of_test
+    let shaken = test.by_frequency.as_ref().is_some_and(|asked| asked.accelerometer == c.id);
+    role && !of_test && !shaken
 }
 
 /// Channels recorded besides output and level. In the blocks the channels of the level come first.
@@ -213,7 +229,7 @@ fn context(channels: &[Channel], test: &ComparisonTest, levels: usize) -> Beside
         unit: c.role.internal_unit().unwrap_or("1"),
         temperature: c.role == Role::Temperature,
     };
-    let others: Vec<&Channel> = channels.iter().filter(|c| may_disturb(c, &test.setting)).collect();
+    let others: Vec<&Channel> = channels.iter().filter(|c| may_disturb(c, test)).collect();
     let warm = || others.iter().filter(|c| c.role == Role::Temperature);
     let own = warm().find(|c| Some(&c.id) == test.temperature.as_ref()).or_else(|| warm().next());
     Beside {

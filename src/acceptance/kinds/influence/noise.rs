@@ -112,7 +112,7 @@ pub fn find(
             let own = format!("{channel}@{place}");
             let pairs = bands.iter().zip(without.bands.iter().zip(&state.bands));
             let of_bands = pairs.map(|(band, (before, at))| BandChange {
-                channel: format!("{own}:{}-{}Hz", band.from_hz, band.to_hz),
+                channel: format!("{own}:{}", band.name()),
                 without: before.0,
                 with: at.0,
                 lines: at.1,

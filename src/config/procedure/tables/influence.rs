@@ -135,6 +135,7 @@ impl ComparisonKeys {
             declared: self.evidence == Some("declared"),
             temperature: self.temperature,
             intervals,
+            by_frequency: None,
         }
     }
 }

@@ -12,6 +12,7 @@ pub(crate) mod rate_table;
 pub(crate) mod start_up;
 pub mod temperature;
 pub(crate) mod transfer;
+pub(crate) mod vibration;
 
 use super::bench::Bench;
 use super::model::{Analysis, ExplainSpec, Instrument, MeasurandKeys, ReportSpec, UnitSpec, Waiver};
@@ -39,6 +40,7 @@ use sagnac_ingest::StampWriting;
 use start_up::StartUpKeys;
 use temperature::{TemperatureKeys, WarmUpKeys};
 use transfer::TransferKeys;
+use vibration::VibrationSpectrumKeys;
 
 /// Roles a channel may have, with their meaning.
 pub const CHANNEL_ROLES: &[Word] = &[
@@ -131,6 +133,8 @@ pub(in crate::config::procedure) struct ProcedureFile {
     pub supply_test: Option<SupplyKeys>,
     /// A comparison under vibration.
     pub vibration_test: Option<VibrationKeys>,
+    /// The effects of vibration by frequency.
+    pub vibration_spectrum: Option<VibrationSpectrumKeys>,
     /// A comparison under any influence that the procedure declares.
     pub influence_test: Option<InfluenceKeys>,
     /// Quantities to determine, one table each, in the order of the report.

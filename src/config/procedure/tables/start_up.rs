@@ -1,5 +1,6 @@
 //! The table of a procedure that asks for the start-up.
 
+use super::temperature::REACHABLE_DEG_C;
 use crate::config::procedure::model::Procedure;
 use crate::config::reader::Reader;
 use crate::config::section::Section;
@@ -7,7 +8,7 @@ use crate::config::table::Table;
 use crate::i18n::note;
 use crate::measurand::Test;
 use crate::recording::Role;
-use crate::start_up::{StartUpTest, Valid};
+use crate::start_up::{StartUpTest, Valid, Zone};
 
 /// A test of the start-up: the recording begins before the supply (role `supply`) is switched on. This table makes its measurands
 /// available: `time_to_first_sample`, `time_to_valid_data`, `power_steady`, `power_peak` and `inrush_current`. A recording that
@@ -39,6 +40,22 @@ pub(crate) struct StartUpKeys {
     /// Standard uncertainty (k = 1) of the current.
     #[key(quantity = "1", min = 0, max = 1, default = "0.5 %", example = "0.5 %")]
     current_uncertainty: f64,
+    /// Zones of temperature, for a recording in which the supply is switched on at several: each switching-on belongs to the zone that
+    /// the mean temperature while on lies in. Rows are named `rate@-40`.
+    #[key(name = "zone")]
+    zones: Vec<ZoneKeys>,
+}
+
+/// A zone of temperature.
+#[derive(Table)]
+#[table("start_up_test.zone")]
+pub(crate) struct ZoneKeys {
+    /// Its middle.
+    #[key(quantity = "degC", range = REACHABLE_DEG_C, example = "-40 degC")]
+    at_deg_c: f64,
+    /// Distance from the middle to either end.
+    #[key(difference = "degC", above = 0, default = "5 degC", example = "3 degC")]
+    within_deg_c: f64,
 }
 
 impl From<StartUpKeys> for StartUpTest {
@@ -55,6 +72,11 @@ impl From<StartUpKeys> for StartUpTest {
             valid,
             voltage_uncertainty: keys.voltage_uncertainty,
             current_uncertainty: keys.current_uncertainty,
+            zones: keys
+                .zones
+                .into_iter()
+                .map(|z| Zone { at_deg_c: z.at_deg_c, half_width_deg_c: z.within_deg_c })
+                .collect(),
         }
     }
 }
@@ -88,6 +110,18 @@ pub(crate) fn validate(procedure: &Procedure, root: &Section, reader: &mut Reade
     let Some(section) = root.table("start_up_test") else { return };
     if !has(Role::Supply) {
         reader.error(&section.span.clone(), "start_up.needs_supply", None);
+    }
+    let zones = procedure.start_up_test.as_ref().map_or(&[][..], |test| &test.zones);
+    if let (Some(first), false) = (section.tables("zone").first(), has(Role::Temperature)) {
+        reader.error(&first.span.clone(), "start_up.needs_temperature", None);
+    }
+    for (at, (own, zone)) in section.tables("zone").iter().zip(zones).enumerate() {
+        let overlaps = |other: &Zone| {
+            (other.at_deg_c - zone.at_deg_c).abs() < other.half_width_deg_c + zone.half_width_deg_c
+        };
+        if zones.iter().take(at).any(overlaps) {
+            reader.error(&own.span_of("at"), "start_up.zones_overlap", None);
+        }
     }
     if section.entry("valid_mask").is_some() {
         if section.entry("valid_band").is_some() {

@@ -5,7 +5,7 @@ use crate::config::table::{Table, words};
 use crate::temperature::{SegmentKind, StartAsked, StatedSegment, TemperatureTest, WarmUpTest};
 
 /// Temperatures that a unit can have, degC.
-const REACHABLE_DEG_C: Range = Range::between(-273.15, 1000.0);
+pub(super) const REACHABLE_DEG_C: Range = Range::between(-273.15, 1000.0);
 
 /// Kinds of stated segments.
 pub const SEGMENT_KINDS: &[Word] = &[
