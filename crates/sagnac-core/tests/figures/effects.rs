@@ -202,7 +202,8 @@ fn found(
             figures.add(name, &(outliers, told));
         }
         Detector::Level(detector) => {
-            figures.add(name, &(detector.laws(&residual, &samples), detector.single_change(samples.len())));
+            figures
+                .add(name, &(detector.laws(&residual, &samples), detector.instants_of_change(samples.len())));
         }
         Detector::Jumps(detector) => {
             let mut powers = vec![0.05f64.powi(2); n];
