@@ -36,6 +36,7 @@ PROCEDURES = {
     "transfer-function": ("transfer-function", None),
     "unit": ("static-bias", "sample-unit"),
     "vibration": ("vibration", None),
+    "vibration-by-frequency": ("vibration-by-frequency", None),
     "warm-up": ("warm-up", "sample-warm-up"),
 }
 """Procedure and limits of the samples, by the beginning of their names."""
