@@ -353,6 +353,7 @@ fn every_example_is_accepted_by_its_own_key() {
                 "exclude each other",
                 "cannot rest on another check",
                 "needs a channel with the role",
+                "need a channel with the role",
                 "no channel has the role",
                 "Looks are for tests of a unit at rest",
             ];

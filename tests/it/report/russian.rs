@@ -33,6 +33,7 @@ const CASES: &[(&str, &str)] = &[
     ("temperature-soak", "temperature-soak-fail"),
     ("threshold", "threshold-fail"),
     ("vibration", "vibration-fail"),
+    ("vibration-by-frequency", "vibration-by-frequency-fail"),
     ("warm-up", "warm-up-fail"),
 ];
 
