@@ -285,7 +285,7 @@ mod tests {
     fn every_pair_has_its_files() {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).parent().unwrap();
         let pairs = pairs();
-        assert_eq!(pairs.len(), 29);
+        assert_eq!(pairs.len(), 51);
         for pair in pairs {
             assert!(root.join(format!("procedures/{}.toml", pair.procedure)).exists(), "{}", pair.name());
             assert!(root.join("samples").join(&pair.sample).exists(), "{}", pair.name());

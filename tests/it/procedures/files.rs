@@ -355,6 +355,7 @@ fn every_example_is_accepted_by_its_own_key() {
                 "needs a channel with the role",
                 "need a channel with the role",
                 "no channel has the role",
+                "no channel with the role",
                 "Looks are for tests of a unit at rest",
             ];
             assert!(whole.iter().any(|w| p.message.say(Lang::En).contains(w)), "{p}");

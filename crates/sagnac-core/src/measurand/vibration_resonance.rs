@@ -19,7 +19,7 @@ pub static VIBRATION_RESONANCE_FREQUENCY: Measurand = of(
     "frequency at which the output resonates with the acceleration",
     |m, compared| row(m, compared, |peak| normal(peak.frequency_hz), |_| None),
 )
-.formulas(FORMULAS, "Bendat and Piersol, Random Data, chapters 6 and 7");
+.formulas(FORMULAS, "Bendat and Piersol, Random Data");
 
 /// Quality factor of the resonance.
 pub static VIBRATION_RESONANCE_QUALITY: Measurand = of(
