@@ -151,7 +151,7 @@ fn states(found: &Intervals, by_band: &Intervals) -> States {
             let pairs = s.levels.iter().zip(&interval.levels);
             pairs.into_iter().all(|(a, b)| (a - b).abs() <= SAME_VIBRATION_SHARE * largest)
         };
-        let at = seen.iter().position(|s| alike(s)).unwrap_or_else(|| {
+        let at = seen.iter().position(alike).unwrap_or_else(|| {
             seen.push(interval);
             seen.len() - 1
         });

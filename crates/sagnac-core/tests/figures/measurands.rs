@@ -389,6 +389,22 @@ fn switching_off_and_on() {
     figures.check("switching.txt");
 }
 
+/// N and bands with and without an influence: both, and each alone.
+fn changes_of_noise() -> [NoiseChange; 3] {
+    let mean = |power| Some(BandMean { power, dof: 200.0 });
+    let band = |without, with, lines| BandChange { channel: "g0 1 1-5Hz".into(), without, with, lines };
+    let bands = vec![band(mean(0.04), mean(0.09), 0), band(mean(0.04), None, 1)];
+    let change = |without, with| {
+        let bands = bands.clone();
+        NoiseChange { channel: "g0 1".into(), without, with, bands }
+    };
+    [
+        change(Some((0.01, 1e-4)), Some((0.013, 2e-4))),
+        change(None, Some((0.013, 2e-4))),
+        change(Some((0.01, 1e-4)), None),
+    ]
+}
+
 #[test]
 fn under_influence() {
     let mut figures = Figures::default();
@@ -449,19 +465,7 @@ fn under_influence() {
             let beside = Beside { temperature: Some(temperature), others: vec![] };
             let Some(bias) = comparison::evaluate(&made, &series, &test, &beside, 0) else { continue };
             figures.add(format!("{influence} {name} found"), &bias);
-            let mean = |power| Some(BandMean { power, dof: 200.0 });
-            let band =
-                |without, with, lines| BandChange { channel: "g0 1 1-5Hz".into(), without, with, lines };
-            let bands = vec![band(mean(0.04), mean(0.09), 0), band(mean(0.04), None, 1)];
-            let change = |without, with| {
-                let bands = bands.clone();
-                NoiseChange { channel: "g0 1".into(), without, with, bands }
-            };
-            let noise = [
-                change(Some((0.01, 1e-4)), Some((0.013, 2e-4))),
-                change(None, Some((0.013, 2e-4))),
-                change(Some((0.01, 1e-4)), None),
-            ];
+            let noise = changes_of_noise();
             for measurand in MEASURANDS {
                 let rows = measurand.evaluate_comparison(&ComparisonEvidence {
                     bias: &bias,
