@@ -282,7 +282,7 @@ pub fn evaluate(
     compare(blocks, found, test, beside, gyro, &Regressed { states, drives })
 }
 
-/// What the output is set against: the levels that differ, and what is proportional to the terms of the law.
+/// Regressors of the output: the levels that differ, and the drives in proportion to the terms of the law.
 pub(super) struct Regressed {
     pub(super) states: States,
     pub(super) drives: Vec<Drive>,

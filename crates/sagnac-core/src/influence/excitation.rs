@@ -16,7 +16,7 @@ const LEAST_OWN_SHARE: f64 = 0.2;
 /// Mean square in step with a band elsewhere, per that of the band, up to which the band has a value.
 const LARGEST_SHARE_ELSEWHERE: f64 = 0.1;
 
-/// What the recording shows of one band.
+/// Excitation of one band, as the recording shows it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Excitation {
     /// It is told apart; with the mean square in step with it at other frequencies, per its own.
@@ -44,10 +44,10 @@ pub struct Column {
     pub drive: Vec<f64>,
 }
 
-/// What is regressed on, and what of it is told apart.
+/// Columns of the regression, and which of them have an estimate of their own.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Excited {
-    /// What is shown of every column.
+    /// Excitation of every column.
     pub shown: Vec<Excitation>,
     /// Positions of the columns that belong into the regression.
     pub regressed: Vec<usize>,
@@ -113,7 +113,7 @@ fn size(values: &[f64]) -> f64 {
     values.iter().fold(0.0, |m: f64, v| m.max(v.abs()))
 }
 
-/// What columns leave of another one, and their coefficients.
+/// The part of a column that others do not explain, and the coefficients of these.
 fn left(columns: &[DVector<f64>], own: &DVector<f64>) -> Option<(DVector<f64>, DVector<f64>)> {
     let scales: Vec<f64> = columns.iter().map(|c| c.norm().max(f64::MIN_POSITIVE)).collect();
     let scaled: Vec<DVector<f64>> = columns.iter().zip(&scales).map(|(c, s)| c / *s).collect();

@@ -1,4 +1,4 @@
-//! What vibration does to one gyro channel by frequency.
+//! Effects of vibration on one gyro channel by frequency.
 
 use super::rectification::Rectification;
 use super::resonance::Resonance;
