@@ -453,12 +453,12 @@ fn law_score(law: &Candidate) -> f64 {
 
 /// For a response that is described by terms: the kinds whose law alone explains a good part of what it explains, the best
 /// first. The others are its equivalents: the response has something of each.
-fn laws<'a>(effect: &dyn Effect, rivals: &'a [Candidate]) -> Vec<&'a Candidate> {
+fn laws<'a>(effect: &dyn Effect, rivals: impl IntoIterator<Item = &'a Candidate>) -> Vec<&'a Candidate> {
     /// Share of the best law's gain from which another is no worse a name.
     const NEAR_GAIN_SHARE: f64 = 0.7;
     let score = |c: &&Candidate| law_score(c);
     let by_law = |c: &&Candidate| effect.named_by_law().iter().any(|law| law.kind() == c.effect.kind());
-    let mut laws: Vec<&Candidate> = rivals.iter().filter(by_law).collect();
+    let mut laws: Vec<&Candidate> = rivals.into_iter().filter(by_law).collect();
     laws.sort_descending_by(|a| score(a));
     let best = laws.first().map_or(0.0, score);
     laws.retain(|c| score(c) >= NEAR_GAIN_SHARE * best);
@@ -482,7 +482,7 @@ fn is_rival(kind: &str, names: &[Probable]) -> bool {
 fn names(
     effect: &'static dyn Effect,
     best: &FittedHypothesis,
-    rivals: &[Candidate],
+    rivals: &[&Candidate],
     laws: &[&Candidate],
     rank_without: f64,
     spectra: &SpectralDataSet,
@@ -490,13 +490,14 @@ fn names(
     let rows = spectra.rows;
     let own = 0.5 * (rank_without - best.rank(rows));
     let is_law = |c: &Candidate| laws.iter().any(|law| law.effect.kind() == c.effect.kind());
-    let others = rivals.iter().filter(|c| c.effect.kind() != effect.kind() && !is_law(c));
+    let others = rivals.iter().copied().filter(|c| c.effect.kind() != effect.kind() && !is_law(c));
     // A free form must explain more than a plain law by a share, to be the better name.
     let bends = |c: &Candidate| {
         if c.effect.is_free_form() && !effect.is_free_form() { MIN_FREE_FORM_SHARE } else { 0.0 }
     };
     let others = others.map(|c| {
-        let (kind, score) = name_of(c, self::laws(c.effect, rivals).first().copied(), rows, rank_without);
+        let (kind, score) =
+            name_of(c, self::laws(c.effect, rivals.iter().copied()).first().copied(), rows, rank_without);
         ScoredName { kind, score: score - bends(c) * score.abs(), within: plainer_name(c, spectra) }
     });
     let kind = if laws.is_empty() { effect.reported_kind() } else { effect.kind() };
@@ -536,19 +537,19 @@ fn chosen(
                 bic_of_rival(c, spectra) - bic_excess(c, best, modes, rows) < best.bic(rows) + MIN_DELTA_BIC
             };
             let laws = laws(effect, &rivals);
-            let mut kinds = vec![effect.kind()];
-            let mut new = |c: &&Candidate| {
+            // The first law is the name.
+            let mut kinds: Vec<&str> =
+                std::iter::once(effect.kind()).chain(laws.first().map(|law| law.effect.kind())).collect();
+            let new = |c: &&Candidate| {
                 let new = !kinds.contains(&c.effect.kind());
                 kinds.push(c.effect.kind());
                 new
             };
-            // The first law is the name.
-            let first_law = laws.first().copied().filter(&mut new);
-            let of_laws = laws.iter().skip(usize::from(first_law.is_some())).copied();
+            let of_laws = laws.iter().skip(1).copied();
             let others = rivals.iter().filter(|c| near(c)).filter_map(|c| named(c, &rivals));
             let mut equivalents: Vec<Candidate> = of_laws.chain(others).filter(new).cloned().collect();
             // What chance gives as often is no name, however well it fits.
-            let improbable: Vec<Candidate> = rivals.iter().filter(|c| search.passes(c)).cloned().collect();
+            let improbable: Vec<&Candidate> = rivals.iter().filter(|c| search.passes(c)).collect();
             let names = names(effect, best, &improbable, &laws, without.rank(rows), spectra);
             equivalents.retain(|c| is_rival(c.effect.reported_kind(), &names));
             equivalents.truncate(MOST_EQUIVALENTS);
