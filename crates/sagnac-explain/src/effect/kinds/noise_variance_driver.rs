@@ -99,7 +99,8 @@ fn over(values: &[f64], flat: &[f64], samples: &[usize]) -> Option<LevelFit> {
     let fits: Vec<(GammaFit, Vec<Vec<f64>>)> =
         orders.into_iter().filter_map(|columns| Some((fit(&groups, &columns)?, columns))).collect();
     let score = |(f, columns): &(GammaFit, Vec<Vec<f64>>)| 2.0 * f.gain - columns.len() as f64 * rows;
-    let contrast = |(f, columns): &(GammaFit, Vec<Vec<f64>>)| contrast(&f.log_squares, &f.covariance, columns);
+    let contrast =
+        |(f, columns): &(GammaFit, Vec<Vec<f64>>)| contrast(&f.log_squares, &f.covariance, columns);
     let of_forms: Vec<(f64, [f64; 2])> = fits.iter().map(|f| (score(f), contrast(f).1)).collect();
     let fitted = fits.into_iter().max_by(|a, b| score(a).total_cmp(&score(b)))?;
     let (ratio, of_best) = contrast(&fitted);
@@ -121,8 +122,12 @@ fn over_column(
         return None;
     }
     let own = over(values, &residual.flat, samples)?;
-    let knots: Vec<Knot> =
-        own.means.iter().zip(&own.best.log_squares).map(|(v, l)| Knot { at: *v, value: (0.5 * l).exp() }).collect();
+    let knots: Vec<Knot> = own
+        .means
+        .iter()
+        .zip(&own.best.log_squares)
+        .map(|(v, l)| Knot { at: *v, value: (0.5 * l).exp() })
+        .collect();
     let Bounds { low: from, high: to } = raised(&own.means, &own.best.log_squares);
     let free = own.columns.len();
     let profile: Vec<f64> = values.iter().map(|v| between(&knots, *v)).collect();

@@ -1,7 +1,8 @@
 //! Forms of the level of the noise over time: a line, slow waves, a step, a stretch, a period.
 
 use crate::effect::shared::variance::{
-    GammaFit, Group, MIN_GROUP_SAMPLES, between, contrast, contrast_of_forms, fit, mean_square, overdispersion, raised, thinned,
+    GammaFit, Group, MIN_GROUP_SAMPLES, between, contrast, contrast_of_forms, fit, mean_square,
+    overdispersion, raised, thinned,
 };
 use crate::effect::{Domain, FlatResidual, Knot, Law, LevelLaw, Place};
 use crate::numeric::sums::cumulated;
