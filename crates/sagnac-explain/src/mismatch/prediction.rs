@@ -17,7 +17,7 @@ const MAX_COMPARED: usize = 2;
 const MIN_PREDICTION_GAIN: f64 = 4.0;
 
 /// True for a process that fits anything slow.
-fn is_process(effect: &dyn Effect) -> bool {
+pub(super) fn is_process(effect: &dyn Effect) -> bool {
     matches!(effect.model(), Model::Spectrum(spectrum) if spectrum.has_course())
 }
 

@@ -15,7 +15,7 @@ use super::noise_fit::{Noise, base_index};
 use super::nonlinear_search::LocalSearch;
 use super::options::Options;
 use super::posterior::{Probable, ScoredName, name_of, probabilities, shared};
-use super::prediction;
+use super::prediction::{self, is_process};
 use super::problem::Problem;
 use super::several::least_of;
 use super::terms::MeanTerm;
@@ -212,6 +212,31 @@ fn has_nameless_form(tried: &FittedHypothesis) -> bool {
     slots(&tried.hypothesis).iter().any(|(_, e)| is_nameless(*e))
 }
 
+/// True for hypotheses that differ only in their processes: a raised coefficient is as free as a process of something that was not
+/// recorded, and none of them is the plainer law.
+fn differ_in_processes(one: &FittedHypothesis, other: &FittedHypothesis) -> bool {
+    let kinds = |t: &FittedHypothesis| -> Vec<&'static dyn Effect> {
+        slots(&t.hypothesis).into_iter().map(|(_, e)| e).collect()
+    };
+    let (one, other) = (kinds(one), kinds(other));
+    let only = |a: &[&'static dyn Effect], b: &[&'static dyn Effect]| {
+        a.iter().filter(|e| !b.iter().any(|o| o.kind() == e.kind())).all(|e| is_named_process(*e))
+    };
+    only(&one, &other) && only(&other, &one)
+}
+
+/// What a process of something that was not recorded must explain beyond one that is a noise of the gyro, nats. A parameter more is
+/// charged already; one that has none more is no better a name before it explains what one would cost.
+fn process_charge(parameters_of_free: usize, parameters_of_noise: usize) -> f64 {
+    const PARAMETER_COST: f64 = 2.0;
+    if parameters_of_free > parameters_of_noise { 0.0 } else { PARAMETER_COST }
+}
+
+/// True for a process that has a kind in the format of explanations.
+fn is_named_process(effect: &dyn Effect) -> bool {
+    is_process(effect) && effect.in_format()
+}
+
 /// True for a free form that has no kind in the format of explanations.
 fn is_nameless(effect: &dyn Effect) -> bool {
     effect.is_free_form() && !effect.in_format()
@@ -341,6 +366,9 @@ impl<'a> Search<'a> {
         let rows = self.spectra.rows;
         let explained = |t: &FittedHypothesis| 0.5 * (base.rank(rows) - t.rank(rows));
         let more = explained(&free) - explained(&plain);
+        if differ_in_processes(&plain, &free) && more >= process_charge(free.parameters, plain.parameters) {
+            return free;
+        }
         if slots(&plain.hypothesis).is_empty() || more >= MIN_FREE_FORM_SHARE * explained(&free) {
             return free;
         }
@@ -492,13 +520,17 @@ fn names(
     let is_law = |c: &Candidate| laws.iter().any(|law| law.effect.kind() == c.effect.kind());
     let others = rivals.iter().copied().filter(|c| c.effect.kind() != effect.kind() && !is_law(c));
     // A free form must explain more than a plain law by a share, to be the better name.
-    let bends = |c: &Candidate| {
-        if c.effect.is_free_form() && !effect.is_free_form() { MIN_FREE_FORM_SHARE } else { 0.0 }
+    let charge = |c: &Candidate, score: f64| match c.effect.is_free_form() && !effect.is_free_form() {
+        false => 0.0,
+        true if is_named_process(c.effect) && is_named_process(effect) => {
+            process_charge(c.tried.parameters, best.parameters)
+        }
+        true => MIN_FREE_FORM_SHARE * score.abs(),
     };
     let others = others.map(|c| {
         let (kind, score) =
             name_of(c, self::laws(c.effect, rivals.iter().copied()).first().copied(), rows, rank_without);
-        ScoredName { kind, score: score - bends(c) * score.abs(), within: plainer_name(c, spectra) }
+        ScoredName { kind, score: score - charge(c, score), within: plainer_name(c, spectra) }
     });
     let kind = if laws.is_empty() { effect.reported_kind() } else { effect.kind() };
     let names = probabilities([(kind, own).into()].into_iter().chain(others));
@@ -524,7 +556,13 @@ fn chosen(
     let rows = spectra.rows;
     let all_slots = slots(&best.hypothesis);
     let single = all_slots.len() == 1;
-    let free = has_free_form(best);
+    let plainer = |t: &FittedHypothesis| {
+        (has_free_form(best) || !has_free_form(t))
+            && (has_nameless_form(best) || !has_nameless_form(t))
+            && (has_response(best) || !has_response(t))
+    };
+    // What was found on the way to several effects that went again need not be the best single one.
+    let margin = if single { 0.0 } else { MIN_DELTA_BIC };
     let mut out: Vec<Chosen> = all_slots
         .into_iter()
         .map(|(slot, effect)| {
@@ -556,10 +594,10 @@ fn chosen(
             let law = laws.first().map(|c| (*c).clone());
             let better = rivals
                 .iter()
-                .filter(|c| !single && search.passes(c))
+                .filter(|c| search.passes(c))
                 .map(|c| &c.tried)
-                .filter(|t| free || !has_free_form(t))
-                .filter(|t| t.rank(rows) < best.rank(rows) - MIN_DELTA_BIC)
+                .filter(|t| plainer(t))
+                .filter(|t| t.rank(rows) < best.rank(rows) - margin)
                 .min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows)))
                 .cloned();
             let delta_bic = without.bic(rows) - best.bic(rows);
