@@ -29,6 +29,8 @@ use std::rc::Rc;
 pub const MIN_DELTA_BIC: f64 = 6.0;
 /// Share of what is explained that a free form must explain beyond the plain laws.
 const MIN_FREE_FORM_SHARE: f64 = 0.05;
+/// The same of a form without a name.
+const MIN_NAMELESS_FORM_SHARE: f64 = 0.2;
 /// What a free form must predict of the blocks held out beyond the plain laws, nats.
 const MIN_FREE_FORM_PREDICTION: f64 = 4.0;
 /// Equivalents that are named at most.
@@ -369,11 +371,14 @@ impl<'a> Search<'a> {
         if differ_in_processes(&plain, &free) && more >= process_charge(free.parameters, plain.parameters) {
             return free;
         }
-        if slots(&plain.hypothesis).is_empty() || more >= MIN_FREE_FORM_SHARE * explained(&free) {
+        // What has no name must say more than a bend of a law that has one.
+        let nameless = has_nameless_form(&free) && !has_nameless_form(&plain);
+        let share = if nameless { MIN_NAMELESS_FORM_SHARE } else { MIN_FREE_FORM_SHARE };
+        if slots(&plain.hypothesis).is_empty() || more >= share * explained(&free) {
             return free;
         }
         let predicted = |t: &FittedHypothesis| self.halves.judge(t).log_likelihood;
-        if more > 0.0 && predicted(&free) - predicted(&plain) >= MIN_FREE_FORM_PREDICTION {
+        if !nameless && more > 0.0 && predicted(&free) - predicted(&plain) >= MIN_FREE_FORM_PREDICTION {
             return free;
         }
         let ordinary = |t: &FittedHypothesis| self.problem.departure_probability(t) >= self.options.alpha;

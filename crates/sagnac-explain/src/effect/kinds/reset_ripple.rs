@@ -1,5 +1,7 @@
 //! A contribution that is periodic in the sensed angle.
 
+use crate::effect::mean::first;
+use crate::effect::shared::heterodyne::{Beat, Sample as AngleSample, Scope, quick_size, strongest};
 use crate::effect::shared::reach::varies;
 use crate::effect::shared::search::{best_of, fast_level, peaks};
 use crate::effect::shared::sinusoid::{averaged, pair, polar, wave};
@@ -16,12 +18,45 @@ use std::sync::Arc;
 
 pub struct ResetRipple;
 
-static PARAMS: [Param; 4] = [
+static PARAMS: [Param; 5] = [
     Param::reported("period_arcsec", "arcsec", 1e-3, 1e7),
     Param::inner("amplitude_deg_h", "deg/h", 0.0, 1e5),
     Param::inner("phase_deg", "deg", -360.0, 360.0),
     Param::inner("sensed_bias_deg_h", "deg/h", -1e5, 1e5),
+    // 1: the angle is off, as by resets that are no whole turn of the phase; 0: the rate is.
+    Param::inner("of_angle", "", 0.0, 1.0),
 ];
+
+/// What comes back with each period of the sensed angle.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Form {
+    /// A contribution to the rate.
+    Rate,
+    /// An error of the angle, of which the rate shows the change: it grows with the rate.
+    Angle,
+}
+
+impl Form {
+    /// All forms; the position of one is its number among the nonlinear parameters.
+    const ALL: [Form; 2] = [Form::Rate, Form::Angle];
+
+    fn of_number(number: f64) -> Form {
+        if number > 0.5 { Form::Angle } else { Form::Rate }
+    }
+
+    fn number(self) -> f64 {
+        if self == Form::Angle { 1.0 } else { 0.0 }
+    }
+
+    /// Share of the amplitude that a sample shows which turns by so many periods. Of an error of the angle the amplitude is that of
+    /// samples of half a period, which show most.
+    fn share(self, periods: f64) -> f64 {
+        match self {
+            Form::Rate => averaged(periods),
+            Form::Angle => (PI * periods).sin(),
+        }
+    }
+}
 
 describe! {
     ResetRipple, "reset_ripple", Mean in Angle, needs [TableRate],
@@ -36,6 +71,8 @@ const MAX_PERIODS: usize = 1 << 18;
 const OCTAVE_BUDGET: f64 = 4e7;
 /// Largest departure of the bias from the claimed one, deg/h.
 const MAX_BIAS_ERROR_DEG_H: f64 = 100.0;
+/// Samples times periods that a search of one octave by beats may go through.
+const BEAT_BUDGET: f64 = 1.2e8;
 /// Standard deviations of the fitted bias within which the true one is sought.
 const BIAS_SEARCH_SIGMAS: f64 = 3.0;
 
@@ -60,12 +97,48 @@ fn extent(bias: f64, drivers: &Drivers) -> f64 {
     })
 }
 
-fn columns(period: f64, bias: f64, drivers: &Drivers) -> Vec<Vec<f64>> {
+fn columns(period: f64, bias: f64, form: Form, drivers: &Drivers) -> Vec<Vec<f64>> {
     match sensed(bias, drivers) {
         Some((angle, step)) if period > 0.0 => {
-            pair(angle.len(), |i| (angle[i] / period, averaged(step[i] / period)))
+            pair(angle.len(), |i| (angle[i] / period, form.share(step[i] / period)))
         }
         _ => vec![],
+    }
+}
+
+/// Scores of the samples that cover less than a period, weighted by what a form shows in the middle of the octave of a period; the forms
+/// that shape a record alike are one.
+struct Weighted {
+    form: Form,
+    /// Number of the sample and its score.
+    scores: Vec<(usize, f64)>,
+    /// Sum of the squares of the weights.
+    squares: f64,
+}
+
+impl Weighted {
+    fn all(period: f64, steps: &[f64], context: &SearchContext<'_>) -> Vec<Weighted> {
+        /// Correlation from which two forms are alike to a search.
+        const ALIKE: f64 = 0.9;
+        let used: Vec<usize> = (0..steps.len()).filter(|i| steps[*i].abs() < period).collect();
+        let weights = |form: Form| -> Vec<f64> {
+            let middle = period / Octave::MIDDLE_FREQUENCY;
+            used.iter().map(|i| form.share(steps[*i] / middle)).collect()
+        };
+        let [rate, angle] = Form::ALL.map(weights);
+        let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let squares = [product(&rate, &rate), product(&angle, &angle)];
+        let alike = product(&rate, &angle).abs() >= ALIKE * (squares[0] * squares[1]).sqrt();
+        let forms = Form::ALL.into_iter().zip([rate, angle]).zip(squares);
+        forms
+            .take(if alike { 1 } else { Form::ALL.len() })
+            .filter(|(_, squares)| *squares > 0.0)
+            .map(|((form, weights), squares)| Weighted {
+                form,
+                scores: used.iter().zip(weights).map(|(i, w)| (*i, w * context.score[*i])).collect(),
+                squares,
+            })
+            .collect()
     }
 }
 
@@ -77,6 +150,8 @@ struct Octave {
     low: f64,
     range: f64,
     dt_s: f64,
+    /// Sum of the squares of the weights of the scores.
+    squares: f64,
     plan: Arc<dyn Fft<f64>>,
 }
 
@@ -97,34 +172,18 @@ struct Buffers {
     gains: Vec<f64>,
 }
 
-/// The smallest product of twos and threes from `least` up: transforms of such sizes are quick.
-fn quick_size(least: usize) -> usize {
-    let of_threes = |threes: u32| {
-        let three = 3usize.pow(threes);
-        three * least.div_ceil(three).next_power_of_two()
-    };
-    (0..6).map(of_threes).min().unwrap_or(least)
-}
-
 impl Octave {
     /// Middle of the frequencies that are looked at, in cycles a period.
     const MIDDLE_FREQUENCY: f64 = 0.75;
 
     /// `margin` is what biases turn the angle by, arcsec.
-    fn new(
-        period: f64,
-        (middles, steps): &(Vec<f64>, Vec<f64>),
-        dt_s: f64,
-        margin: f64,
-        context: &SearchContext<'_>,
-    ) -> Option<Octave> {
-        let used = (0..middles.len()).filter(|i| steps[*i].abs() < period);
-        let sample = |number: usize| {
-            let angle_arcsec = middles[number];
+    fn new(period: f64, middles: &[f64], weighted: &Weighted, dt_s: f64, margin: f64) -> Option<Octave> {
+        let sample = |(number, score): &(usize, f64)| {
+            let angle_arcsec = middles[*number];
             let turned = Complex::cis(-2.0 * PI * (Octave::MIDDLE_FREQUENCY * angle_arcsec / period).fract());
-            Sample { number, angle_arcsec, score: turned * context.score[number] }
+            Sample { number: *number, angle_arcsec, score: turned * *score }
         };
-        let samples: Vec<Sample> = used.map(sample).collect();
+        let samples: Vec<Sample> = weighted.scores.iter().map(sample).collect();
         let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| {
             (s.angle_arcsec.min(a), s.angle_arcsec.max(b))
         });
@@ -136,7 +195,7 @@ impl Octave {
         // Twice the range, so that periods between the cycles of the range are seen too.
         let size = quick_size((2 * (cells as usize + 1)).max(8));
         let plan = complex_forward(size);
-        Some(Octave { period, samples, low, range: high - low, dt_s, plan })
+        Some(Octave { period, samples, low, range: high - low, dt_s, squares: weighted.squares, plan })
     }
 
     /// Gains for one bias by their frequency into `buffers`; the frequency of the first and the step, cycles an arcsec.
@@ -163,7 +222,7 @@ impl Octave {
         self.plan.process_with_scratch(&mut buffers.grid, &mut buffers.scratch);
         let step = 1.0 / (size as f64 * self.period);
         let (quarter, middle) = (size / 4, Octave::MIDDLE_FREQUENCY / self.period);
-        let scale = level / self.samples.len() as f64;
+        let scale = level / self.squares;
         let first = middle - quarter as f64 * step;
         let gain = |j: usize| {
             let f = first + j as f64 * step;
@@ -173,6 +232,57 @@ impl Octave {
         buffers.gains.clear();
         buffers.gains.extend((0..=2 * quarter).map(gain));
         (first, step)
+    }
+}
+
+/// A search of the periods between one and twice that over every bias, where too many of them are possible to try each: what the table
+/// turns is known, so that the bias shows as a beat.
+struct Beats {
+    samples: Vec<AngleSample>,
+    scope: Scope,
+    form: Form,
+    /// Sum of the squares of the weights of the scores.
+    squares: f64,
+}
+
+impl Beats {
+    /// `None` where the table turns too far for the number of periods to be gone through.
+    fn new(
+        period: f64,
+        middles: &[f64],
+        weighted: &Weighted,
+        offset_deg_h: f64,
+        drivers: &Drivers,
+    ) -> Option<Beats> {
+        let (of_table, _) = sensed(0.0, drivers)?;
+        let used: Vec<f64> = weighted.scores.iter().map(|(i, _)| of_table[*i]).collect();
+        let Bounds { low, high } = ends(&used);
+        // A period that is between two of them is a quarter of a turn off at the ends.
+        let step = 0.5 / (high - low).max(period);
+        // A degree an hour is an arcsecond a second.
+        let offset_arcsec_s = offset_deg_h.min(MAX_BIAS_ERROR_DEG_H);
+        let frequencies = [0.5 / period, 1.0 / period];
+        let scope = Scope { frequencies, step, offset_arcsec_s, dt_s: drivers.dt_s, samples: middles.len() };
+        if used.len() < 64 || scope.rows() as f64 * used.len() as f64 > BEAT_BUDGET {
+            return None;
+        }
+        let sample = |(number, score): &(usize, f64)| AngleSample {
+            number: *number,
+            angle_arcsec: middles[*number],
+            score: *score,
+        };
+        let samples = weighted.scores.iter().map(sample).collect();
+        Some(Beats { samples, scope, form: weighted.form, squares: weighted.squares })
+    }
+
+    /// Gains with their period and bias, the largest first.
+    fn found(&self, level: f64, fitted_deg_h: f64) -> Vec<(f64, Vec<f64>)> {
+        /// Beats of an octave that are looked at more closely.
+        const BEATS: usize = 4;
+        let scale = level / self.squares;
+        let shape = |b: Beat| vec![1.0 / b.frequency, fitted_deg_h + b.offset_arcsec_s, self.form.number()];
+        let beats = strongest(&self.samples, &self.scope, BEATS).into_iter();
+        beats.map(|b| (b.power * scale, shape(b))).collect()
     }
 }
 
@@ -198,32 +308,47 @@ impl MeanModel for ResetRipple {
         let (mut period, mut found, mut trials) = (MIN_PERIOD_ARCSEC, vec![], 1.0);
         while period < (high - low) / 3.0 {
             // Half turns of the phase over the record that the uncertainty of the bias amounts to.
-            let uncertain = BIAS_SEARCH_SIGMAS * deviation * drivers.length_s() / (0.5 * period);
+            let uncertain = (BIAS_SEARCH_SIGMAS * deviation * drivers.length_s() / (0.5 * period)).max(1.0);
             let affordable = 0.5 * OCTAVE_BUDGET / (8.0 * (high - low) / period + n as f64);
             let turns = uncertain.min(affordable).clamp(1.0, 1e4).ceil() as i32;
             let per_turn = 0.5 * period / drivers.length_s();
             let margin = f64::from(turns) * 0.5 * period;
-            let Some(octave) = Octave::new(period, &angles, drivers.dt_s, margin, context) else {
-                period *= 2.0;
-                continue;
-            };
-            let of_bias = |buffers: &mut Buffers, k: i32| {
-                let other = f64::from(k) * per_turn;
-                let (first, step) = octave.gains(other, level, buffers);
-                let nonlinear_parameters = |j: usize| {
-                    let f = first + (j as f64 + parabolic_peak(&buffers.gains, j)) * step;
-                    (buffers.gains[j], vec![1.0 / f, fitted + other])
+            for weighted in Weighted::all(period, &angles.1, context) {
+                let most = BIAS_SEARCH_SIGMAS * deviation;
+                let beats = if uncertain > affordable {
+                    Beats::new(period, &angles.0, &weighted, most, drivers)
+                } else {
+                    None
                 };
-                peaks(&buffers.gains, 2, 6).into_iter().map(nonlinear_parameters).collect::<Vec<_>>()
-            };
-            let seen: Vec<Vec<_>> =
-                (-turns..=turns).into_par_iter().map_init(Buffers::default, of_bias).collect();
-            trials += seen.len() as f64 * (high - low) / period * 0.5;
-            found.extend(seen.into_iter().flatten());
+                if let Some(beats) = beats {
+                    trials += beats.scope.trials();
+                    found.extend(beats.found(level, fitted));
+                    continue;
+                }
+                let octave = Octave::new(period, &angles.0, &weighted, drivers.dt_s, margin);
+                let Some(octave) = octave else { continue };
+                let of_bias = |buffers: &mut Buffers, k: i32| {
+                    let other = f64::from(k) * per_turn;
+                    let (first, step) = octave.gains(other, level, buffers);
+                    let shape = |j: usize| {
+                        let f = first + (j as f64 + parabolic_peak(&buffers.gains, j)) * step;
+                        (buffers.gains[j], vec![1.0 / f, fitted + other, weighted.form.number()])
+                    };
+                    peaks(&buffers.gains, 2, 6).into_iter().map(shape).collect::<Vec<_>>()
+                };
+                let seen: Vec<Vec<_>> =
+                    (-turns..=turns).into_par_iter().map_init(Buffers::default, of_bias).collect();
+                trials += seen.len() as f64 * (high - low) / period * 0.5;
+                found.extend(seen.into_iter().flatten());
+            }
             period *= 2.0;
         }
         found.sort_descending_by(|a| a.0);
-        let points = found.into_iter().take(6).map(|(_, s)| s);
+        // Forms that are alike to the search need not be so to the likelihood.
+        let points = found
+            .into_iter()
+            .take(6)
+            .flat_map(|(_, s)| Form::ALL.map(|form| vec![s[0], s[1], form.number()]));
         Starts { points: best_of(self, points, 3, drivers, context), trials }
     }
 
@@ -233,31 +358,53 @@ impl MeanModel for ResetRipple {
         vec![
             Bounds::new(0.5 * MIN_PERIOD_ARCSEC, (0.5 * range).max(MIN_PERIOD_ARCSEC)),
             Bounds::new(bias - MAX_BIAS_ERROR_DEG_H, bias + MAX_BIAS_ERROR_DEG_H),
+            Bounds::new(0.0, 1.0),
         ]
     }
 
     fn regressors(&self, nonlinear_parameters: &[f64], drivers: &Drivers) -> Regressors {
-        let [period, bias] = nonlinear_parameters else { return Regressors::default() };
-        Regressors::columns(columns(*period, *bias, drivers))
+        let [period, bias, form] = nonlinear_parameters else { return Regressors::default() };
+        Regressors::columns(columns(*period, *bias, Form::of_number(*form), drivers))
+    }
+
+    fn whole(&self) -> &'static [usize] {
+        &[2]
+    }
+
+    fn forms(&self) -> Option<(usize, &'static [f64])> {
+        Some((2, &[0.0, 1.0]))
+    }
+
+    /// The harmonics of a ripple have its cause.
+    fn same_cause(&self, earlier: &[f64], nonlinear_parameters: &[f64]) -> bool {
+        /// Highest harmonic that is taken for one.
+        const HIGHEST_HARMONIC: f64 = 5.0;
+        /// Departure of a ratio of periods from a whole number, as a share of it.
+        const MAX_DEPARTURE: f64 = 0.01;
+        let [one, other] = [first(earlier), first(nonlinear_parameters)];
+        let ratio = (one / other).max(other / one);
+        let whole = ratio.round();
+        whole <= HIGHEST_HARMONIC && (ratio / whole - 1.0).abs() < MAX_DEPARTURE
     }
 
     fn parameters(&self, nonlinear_parameters: &[f64], coefficients: &[f64], _drivers: &Drivers) -> Vec<f64> {
-        let [period, bias] = nonlinear_parameters else { return vec![f64::NAN; 4] };
+        let [period, bias, form] = nonlinear_parameters else { return vec![f64::NAN; PARAMS.len()] };
         let (amplitude, phase) = polar(coefficients);
-        vec![*period, amplitude, phase, *bias]
+        vec![*period, amplitude, phase, *bias, *form]
     }
 
     fn course(&self, values: &Values, drivers: &Drivers) -> Option<Vec<f64>> {
         let (period, amplitude) = (number(values, PARAMS[0].name)?, number(values, PARAMS[1].name)?);
         let phase = number(values, PARAMS[2].name).unwrap_or(0.0);
         let bias = number(values, PARAMS[3].name).unwrap_or(drivers.claim.bias_deg_h);
-        let columns = columns(period, bias, drivers);
+        let form = Form::of_number(number(values, PARAMS[4].name).unwrap_or(0.0));
+        let columns = columns(period, bias, form, drivers);
         (columns.len() == 2).then(|| wave(amplitude, phase, &columns))
     }
 
     /// The period of the sensed angle, and the rates at which a sample covers less than one.
     fn places(&self, nonlinear_parameters: &[f64], _coefficients: &[f64], drivers: &Drivers) -> Vec<Place> {
-        let [period, bias] = nonlinear_parameters else { return vec![] };
+        let [period, bias, _] = nonlinear_parameters else { return vec![] };
         let range = extent(*bias, drivers);
         let half = (0.5 * period * period / range).min(0.25 * period);
         let fastest = period / drivers.dt_s / 3600.0;
@@ -270,7 +417,7 @@ impl MeanModel for ResetRipple {
     fn steps(&self, drivers: &Drivers) -> Vec<f64> {
         let range = extent(drivers.claim.bias_deg_h, drivers);
         // A tenth of a cycle over the range for a period of some seconds of arc.
-        vec![0.1 * 9.0 / range, 0.1 * 3.0 / drivers.length_s()]
+        vec![0.1 * 9.0 / range, 0.1 * 3.0 / drivers.length_s(), 1.0]
     }
 }
 
@@ -288,5 +435,31 @@ mod tests {
         assert!((middles[0] - 10.0).abs() < 1e-12 && (middles[1] - 33.6).abs() < 1e-12, "{middles:?}");
         assert!((extent(10.0, &drivers) - 23.6).abs() < 1e-12);
         assert_eq!(extent(10.0, &Drivers::default()), 1.0);
+    }
+
+    #[test]
+    fn a_harmonic_is_no_ripple_of_its_own() {
+        let same = |one: f64, other: f64| ResetRipple.same_cause(&[one, 0.0, 0.0], &[other, 0.1, 1.0]);
+        assert!(same(30.0, 14.98) && same(10.0, 30.1) && same(20.0, 20.0));
+        assert!(!same(30.0, 20.0) && !same(30.0, 4.0));
+    }
+
+    #[test]
+    fn the_angle_that_is_off_shows_as_its_change_over_a_sample() {
+        // Samples of a quarter and of three quarters of 40 arcsec, the second one backwards.
+        let rate = |arcsec: f64| arcsec / 3600.0;
+        let drivers = Drivers {
+            dt_s: 1.0,
+            samples: 2,
+            table_rate: Some(vec![rate(10.0), rate(-30.0)]),
+            ..Drivers::default()
+        };
+        let error = |angle: f64| (2.0 * PI * angle / 40.0 + 0.4).sin();
+        // From 0 to 10, then back to −20.
+        let changes = [error(10.0) - error(0.0), error(-20.0) - error(10.0)];
+        let columns = columns(40.0, 0.0, Form::Angle, &drivers);
+        // The change of sin(φ + 0.4) is 2 sin(π s) cos(φ + 0.4) about the middle.
+        let of_columns = |i: usize| 2.0 * (0.4f64.cos() * columns[0][i] - 0.4f64.sin() * columns[1][i]);
+        assert!((0..2).all(|i| (of_columns(i) - changes[i]).abs() < 1e-12), "{columns:?} {changes:?}");
     }
 }

@@ -4,6 +4,7 @@ pub(super) mod chance;
 pub(super) mod delay;
 pub(super) mod first_order;
 pub(super) mod heading;
+pub(super) mod heterodyne;
 pub(super) mod knots;
 pub(super) mod law;
 pub mod low_pass;
