@@ -67,12 +67,12 @@ describe! {
 const MIN_PERIOD_ARCSEC: f64 = 0.5;
 /// Most periods of angle in a search.
 const MAX_PERIODS: usize = 1 << 18;
+/// Most periods for each sample that tells of them: where few samples of a fast table are slow enough, nearly any period fits them.
+const MAX_PERIODS_A_SAMPLE: usize = 2;
 /// Cells and samples that a search of one octave of periods may go through.
-const OCTAVE_BUDGET: f64 = 4e7;
+const OCTAVE_BUDGET: f64 = 2e7;
 /// Largest departure of the bias from the claimed one, deg/h.
 const MAX_BIAS_ERROR_DEG_H: f64 = 100.0;
-/// Samples times periods that a search of one octave by beats may go through.
-const BEAT_BUDGET: f64 = 1.2e8;
 /// Standard deviations of the fitted bias within which the true one is sought.
 const BIAS_SEARCH_SIGMAS: f64 = 3.0;
 
@@ -189,7 +189,8 @@ impl Octave {
         });
         let (low, high) = (low - margin, high + margin);
         let cells = (high - low) / period;
-        if samples.len() < 32 || !cells.is_finite() || cells >= MAX_PERIODS as f64 {
+        let most = MAX_PERIODS.min(MAX_PERIODS_A_SAMPLE * samples.len());
+        if samples.len() < 32 || !cells.is_finite() || cells >= most as f64 {
             return None;
         }
         // Twice the range, so that periods between the cycles of the range are seen too.
@@ -235,8 +236,8 @@ impl Octave {
     }
 }
 
-/// A search of the periods between one and twice that over every bias, where too many of them are possible to try each: what the table
-/// turns is known, so that the bias shows as a beat.
+/// A search of the periods between one and twice that over every bias at once, where that is less work than one bias after another: what the
+/// table turns is known, so that the bias shows as a beat.
 struct Beats {
     samples: Vec<AngleSample>,
     scope: Scope,
@@ -263,7 +264,7 @@ impl Beats {
         let offset_arcsec_s = offset_deg_h.min(MAX_BIAS_ERROR_DEG_H);
         let frequencies = [0.5 / period, 1.0 / period];
         let scope = Scope { frequencies, step, offset_arcsec_s, dt_s: drivers.dt_s, samples: middles.len() };
-        if used.len() < 64 || scope.rows() as f64 * used.len() as f64 > BEAT_BUDGET {
+        if used.len() < 64 || scope.cost(used.len()) > OCTAVE_BUDGET {
             return None;
         }
         let sample = |(number, score): &(usize, f64)| AngleSample {
@@ -273,6 +274,10 @@ impl Beats {
         };
         let samples = weighted.scores.iter().map(sample).collect();
         Some(Beats { samples, scope, form: weighted.form, squares: weighted.squares })
+    }
+
+    fn cost(&self) -> f64 {
+        self.scope.cost(self.samples.len())
     }
 
     /// Gains with their period and bias, the largest first.
@@ -308,19 +313,18 @@ impl MeanModel for ResetRipple {
         let (mut period, mut found, mut trials) = (MIN_PERIOD_ARCSEC, vec![], 1.0);
         while period < (high - low) / 3.0 {
             // Half turns of the phase over the record that the uncertainty of the bias amounts to.
-            let uncertain = (BIAS_SEARCH_SIGMAS * deviation * drivers.length_s() / (0.5 * period)).max(1.0);
+            let uncertain = BIAS_SEARCH_SIGMAS * deviation * drivers.length_s() / (0.5 * period);
             let affordable = 0.5 * OCTAVE_BUDGET / (8.0 * (high - low) / period + n as f64);
-            let turns = uncertain.min(affordable).clamp(1.0, 1e4).ceil() as i32;
+            // Below a quarter of a turn the fitted bias serves as well as any.
+            let turns =
+                if uncertain < 0.5 { 0 } else { uncertain.min(affordable).clamp(1.0, 1e4).ceil() as i32 };
             let per_turn = 0.5 * period / drivers.length_s();
             let margin = f64::from(turns) * 0.5 * period;
             for weighted in Weighted::all(period, &angles.1, context) {
                 let most = BIAS_SEARCH_SIGMAS * deviation;
-                let beats = if uncertain > affordable {
-                    Beats::new(period, &angles.0, &weighted, most, drivers)
-                } else {
-                    None
-                };
-                if let Some(beats) = beats {
+                let tried = f64::from(2 * turns + 1) * (8.0 * (high - low) / period + n as f64);
+                let beats = Beats::new(period, &angles.0, &weighted, most, drivers);
+                if let Some(beats) = beats.filter(|b| uncertain > affordable || b.cost() < tried) {
                     trials += beats.scope.trials();
                     found.extend(beats.found(level, fitted));
                     continue;

@@ -55,6 +55,16 @@ impl Scope {
         0.5 * self.rows() as f64 * (1.0 + 2.0 * highest * self.samples as f64 * self.dt_s)
     }
 
+    /// Samples and, four times, places of transforms that a search of so many samples goes through.
+    pub fn cost(&self, samples: usize) -> f64 {
+        self.rows() as f64 * (samples as f64 + 4.0 * self.size() as f64)
+    }
+
+    /// Length of a transform.
+    fn size(&self) -> usize {
+        quick_size(2 * self.samples.div_ceil(self.block()))
+    }
+
     /// Samples that are summed before the transform: a quarter of a turn of the fastest beat at most.
     fn block(&self) -> usize {
         let highest = self.frequencies[1] * self.offset_arcsec_s;
@@ -79,7 +89,7 @@ pub fn strongest(samples: &[Sample], scope: &Scope, wanted: usize) -> Vec<Beat> 
     /// Frequencies beside a beat that are the same beat.
     const NEIGHBOURS: f64 = 2.5;
     let block = scope.block();
-    let size = quick_size(2 * scope.samples.div_ceil(block));
+    let size = scope.size();
     let plan = complex_forward(size);
     let turn = |cycles: f64| Complex::cis(-2.0 * PI * cycles.fract());
     let next: Vec<Complex<f64>> = samples.iter().map(|s| turn(scope.step * s.angle_arcsec)).collect();
