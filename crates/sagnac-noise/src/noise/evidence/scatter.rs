@@ -14,39 +14,55 @@ const SMOOTH_BEND: f64 = 0.1;
 const SMOOTH_SHARE: f64 = 0.5;
 /// Bins from which an octave says anything: a sine bends the curve over some ten.
 const MIN_BINS: usize = 20;
-/// Octaves of an evidence at most: 2⁻¹⁰⁰ of the highest frequency is nothing.
-const OCTAVES: usize = 100;
 
-/// The bins of an octave, and the smooth ones of them.
-#[derive(Debug, Clone, Copy, Default)]
+/// The bins of an octave of one transform, and the smooth ones of them.
+#[derive(Debug, Clone, Copy)]
 struct Octave {
+    piece: u32,
+    below_hz: f64,
     bins: usize,
     smooth: usize,
 }
 
 impl Octave {
-    fn is_smooth(&self) -> bool {
-        self.smooth as f64 > SMOOTH_SHARE * self.bins as f64
+    /// The octave that begins with a bin.
+    fn from(bin: &FineBin) -> Octave {
+        Octave { piece: bin.piece, below_hz: 2.0 * bin.frequency_hz, bins: 0, smooth: 0 }
+    }
+
+    fn holds(&self, bin: &FineBin) -> bool {
+        self.piece == bin.piece && bin.frequency_hz < self.below_hz
+    }
+
+    /// Whether its bins scatter; `None` where they are too few.
+    fn scatters(&self) -> Option<bool> {
+        (self.bins >= MIN_BINS).then(|| self.smooth as f64 <= SMOOTH_SHARE * self.bins as f64)
     }
 }
 
 impl Evidence {
     /// True unless the powers lie on a smooth curve in every octave. An expected evidence, which has no bins, says nothing against it.
     pub fn scatters(&self) -> bool {
-        let highest_hz = self.fine.iter().map(|b| b.frequency_hz).fold(0.0, f64::max);
-        let mut octaves = [Octave::default(); OCTAVES];
-        for first in 0..self.fine.len() {
+        let Some(lowest) = self.fine.first() else { return true };
+        let (mut octave, mut is_smooth) = (Octave::from(lowest), false);
+        for (first, bin) in self.fine.iter().enumerate() {
+            if !octave.holds(bin) {
+                // Noise is seen in its lowest octaves, and no more of it is looked at.
+                match octave.scatters() {
+                    Some(true) => return true,
+                    Some(false) => is_smooth = true,
+                    None => {}
+                }
+                octave = Octave::from(bin);
+            }
             let at = |i: usize| self.fine.get(first + i * STRIDE);
-            let (Some(a), Some(b), Some(c)) = (at(0), at(1), at(2)) else { break };
-            let Some(bend) = relative_bend([a, b, c]) else { continue };
-            let below = (highest_hz / b.frequency_hz).log2().max(0.0) as usize;
-            if let Some(octave) = octaves.get_mut(below) {
+            let (Some(b), Some(c)) = (at(1), at(2)) else { break };
+            if let Some(bend) = relative_bend([bin, b, c]) {
                 octave.bins += 1;
                 octave.smooth += usize::from(bend < SMOOTH_BEND);
             }
         }
-        let mut telling = octaves.iter().filter(|o| o.bins >= MIN_BINS).peekable();
-        telling.peek().is_none() || telling.any(|o| !o.is_smooth())
+        octave.scatters().unwrap_or(!is_smooth)
     }
 }
 
