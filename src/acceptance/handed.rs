@@ -91,7 +91,7 @@ impl Handing {
             start_s: reading.start_s,
             interval_s: reading.tau0_s,
             raw: columns.iter().map(raw).collect::<io::Result<_>>()?,
-            parquet: Doubles::begin(File::create(&parquet)?, &names)?,
+            parquet: Doubles::begin(File::create(&parquet)?, &names),
             waiting: vec![vec![]; columns.len()],
             files: HandedFiles { parquet, rows: 0, columns },
             refused: None,

@@ -120,7 +120,7 @@ impl Sink {
                 writeln!(file, "{}", columns.join(","))?;
                 Ok(Sink::Csv(BufWriter::with_capacity(1 << 20, file)))
             }
-            Format::Parquet => Doubles::begin(file, columns).map(|w| Sink::Parquet(Box::new(w))),
+            Format::Parquet => Ok(Sink::Parquet(Box::new(Doubles::begin(file, columns)))),
         }
     }
 

@@ -36,9 +36,11 @@ pub(super) struct Bounded {
 
 /// Draws from the distribution of the variances that values in lots tell. `start` is a variance of their order.
 pub(super) fn draws(lots: &[Lot], bounded: &[Bounded], start: f64, between_lots: bool) -> Vec<Draw> {
+    let logs = [start.ln(), (0.3 * start).ln()];
     let mut state = State {
         lots: lots.to_vec(),
-        logs: [start.ln(), (0.3 * start).ln()],
+        logs,
+        level: level(lots, of_logs(logs, between_lots)),
         between_lots,
         rng: Xoshiro256PlusPlus::seed_from_u64(SAMPLER_SEED),
     };
@@ -48,12 +50,13 @@ pub(super) fn draws(lots: &[Lot], bounded: &[Bounded], start: f64, between_lots:
         if between_lots {
             state.slice(1);
         }
-        let draw = Draw { variances: state.variances(), level: level(&state.lots, state.variances()) };
+        let draw = Draw { variances: state.variances(), level: state.level };
         if i >= LEFT_OUT && i % DRAWS_PER_KEPT == 0 {
             kept.push(draw);
         }
         if !bounded.is_empty() {
             state.complete(bounded, draw);
+            state.level = level(&state.lots, state.variances());
         }
     }
     kept
@@ -63,6 +66,8 @@ struct State {
     lots: Vec<Lot>,
     /// Logarithms of the variances between units and between lots.
     logs: [f64; 2],
+    /// What the values tell with these variances.
+    level: Level,
     between_lots: bool,
     rng: Xoshiro256PlusPlus,
 }
@@ -82,13 +87,15 @@ impl State {
             }
             logs
         };
-        let density = |x: f64| {
+        let told = |x: f64| level(lots, of_logs(with(x), between_lots));
+        let density_of = |x: f64, told: Level| {
             let logs = with(x);
             let jacobian = logs[0] + if between_lots { logs[1] } else { 0.0 };
-            level(lots, of_logs(logs, between_lots)).log_density + jacobian
+            told.log_density + jacobian
         };
+        let density = |x: f64| density_of(x, told(x));
         let here = if which == 0 { from[0] } else { from[1] };
-        let least = density(here) + self.rng.random::<f64>().max(f64::MIN_POSITIVE).ln();
+        let least = density_of(here, self.level) + self.rng.random::<f64>().max(f64::MIN_POSITIVE).ln();
         let mut low = here - SLICE_WIDTH_LN * self.rng.random::<f64>();
         let mut high = low + SLICE_WIDTH_LN;
         for _ in 0..MAX_SLICE_STEPS {
@@ -105,8 +112,9 @@ impl State {
         }
         for _ in 0..MAX_SLICE_STEPS {
             let x = low + (high - low) * self.rng.random::<f64>();
-            if density(x) > least {
-                self.logs = with(x);
+            let there = told(x);
+            if density_of(x, there) > least {
+                (self.logs, self.level) = (with(x), there);
                 return;
             }
             if x < here { low = x } else { high = x }

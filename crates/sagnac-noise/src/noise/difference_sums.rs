@@ -8,6 +8,8 @@ const SIMD_LANES: usize = 8;
 const CHUNK_POINTS: usize = 2048;
 /// Starting points in one parallel task. Fixed, so that sums do not depend on the number of threads.
 const TASK_POINTS: usize = 8 * CHUNK_POINTS;
+/// Tasks of running windows that one thread takes side by side.
+const SIDE_BY_SIDE: usize = 4;
 
 /// Σ (c − 2b + a)² over the common length.
 pub(crate) fn second(a: &[f64], b: &[f64], c: &[f64]) -> f64 {
@@ -99,29 +101,59 @@ pub(crate) fn all_modified(x: &[f64], factors: &[u64]) -> Vec<f64> {
         let m = m as usize;
         let Some(windows) = (x.len() + 1).checked_sub(3 * m) else { return 0.0 };
         let task = TASK_POINTS.max(4 * m);
-        let sums: Vec<f64> =
-            parallel::map(windows.div_ceil(task), |k| sliding(x, m, k * task, ((k + 1) * task).min(windows)));
-        total(sums.into_iter())
+        let (tasks, full) = (windows.div_ceil(task), windows / task);
+        let sums: Vec<Vec<f64>> = parallel::map(tasks.div_ceil(SIDE_BY_SIDE), |group| {
+            let first = group * SIDE_BY_SIDE;
+            if first + SIDE_BY_SIDE <= full {
+                let from: [usize; SIDE_BY_SIDE] = std::array::from_fn(|k| (first + k) * task);
+                return sliding(x, m, from, task).to_vec();
+            }
+            let one = |k: usize| {
+                let [sum] = sliding(x, m, [k * task], task.min(windows - k * task));
+                sum
+            };
+            (first..tasks.min(first + SIDE_BY_SIDE)).map(one).collect()
+        });
+        total(sums.into_iter().flatten())
     })
 }
 
-fn sliding(x: &[f64], m: usize, from: usize, to: usize) -> f64 {
+/// Sums of squared window sums from some windows on, so many each. Each window follows from the one before, so that one series of them
+/// waits for every sum: several go side by side, with the sums that each has alone.
+fn sliding<const N: usize>(x: &[f64], m: usize, from: [usize; N], windows: usize) -> [f64; N] {
     let difference = |i: usize| (x[i + 2 * m] - x[i + m]) - (x[i + m] - x[i]);
-    let mut window: f64 = (from..from + m).map(difference).sum();
-    let mut sum = Compensated::default();
-    sum.add(window * window);
-    let mut j = from + 1;
-    while j < to {
-        let end = (j + CHUNK_POINTS).min(to);
-        let mut partial = 0.0;
-        for k in j..end {
-            window += difference(k + m - 1) - difference(k - 1);
-            partial += window * window;
+    let mut window: [f64; N] = from.map(|from| (from..from + m).map(difference).sum());
+    let mut sums = window.map(|w| {
+        let mut sum = Compensated::default();
+        sum.add(w * w);
+        sum
+    });
+    let mut moves = [[0.0; CHUNK_POINTS]; N];
+    let mut done = 1;
+    while done < windows {
+        let count = CHUNK_POINTS.min(windows - done);
+        for (moves, from) in moves.iter_mut().zip(from) {
+            // From the window before to this one the difference at the first point leaves, and that at the one behind the last enters.
+            let at = |k: usize| {
+                let begin = from + done - 1 + k * m;
+                &x[begin..begin + count]
+            };
+            let points = at(0).iter().zip(at(1)).zip(at(2)).zip(at(3));
+            for (out, (((a, b), c), d)) in moves.iter_mut().zip(points) {
+                *out = ((d - c) - (c - b)) - ((c - b) - (b - a));
+            }
         }
-        sum.add(partial);
-        j = end;
+        let mut partial = [0.0; N];
+        for k in 0..count {
+            for ((window, partial), moves) in window.iter_mut().zip(&mut partial).zip(&moves) {
+                *window += moves[k];
+                *partial += *window * *window;
+            }
+        }
+        sums.iter_mut().zip(partial).for_each(|(sum, partial)| sum.add(partial));
+        done += count;
     }
-    sum.value()
+    sums.map(|sum| sum.value())
 }
 
 /// Sum of squared second differences of the phase continued by odd reflection beyond both ends, over all inner points
@@ -180,6 +212,22 @@ mod tests {
         for lag in [1, 7, 64, 2317] {
             let sum = all_overlapping(&x, &[lag as u64], 2)[0];
             assert!(plain(lag) > 0.0 && (sum / plain(lag) - 1.0).abs() < 1e-12, "{lag}");
+        }
+    }
+
+    #[test]
+    fn windows_side_by_side_have_the_sums_that_they_have_alone() {
+        let noise = |i: u32| f64::from(i.wrapping_mul(2_654_435_761) >> 20) - 2048.0;
+        let x: Vec<f64> = (0..5 * TASK_POINTS as u32).map(noise).collect();
+        for m in [1, 5, 900] {
+            let from = [0, 17, TASK_POINTS, 2 * TASK_POINTS + 3];
+            let alone = from.map(|from| sliding(&x, m, [from], TASK_POINTS)[0]);
+            assert_eq!(sliding(&x, m, from, TASK_POINTS), alone);
+            let window =
+                |j: usize| -> f64 { (j..j + m).map(|i| (x[i + 2 * m] - x[i + m]) - (x[i + m] - x[i])).sum() };
+            let plain: f64 = (0..x.len() + 1 - 3 * m).map(|j| window(j).powi(2)).sum();
+            let sum = all_modified(&x, &[m as u64])[0];
+            assert!((sum / plain - 1.0).abs() < 1e-11, "{m}: {sum} {plain}");
         }
     }
 

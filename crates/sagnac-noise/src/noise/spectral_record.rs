@@ -121,13 +121,19 @@ impl SpectralRecord<'_> {
         let whole = self.evidence(&[]);
         let nyquist_hz = rounded_above_hz.unwrap_or(0.5 / self.tau0_s);
         let seen = retain(self.lines, |l| l.frequency_hz <= nyquist_hz);
-        let evidence = |lines: &[SpectralLine]| match rounded_above_hz {
-            Some(highest_hz) => self.evidence(lines).up_to(highest_hz),
-            None => self.evidence(lines),
+        // Most records have no line, and one evidence does for all.
+        let without = |lines: &[SpectralLine]| match lines {
+            [] => Cow::Borrowed(&whole),
+            lines => Cow::Owned(self.evidence(lines)),
+        };
+        let described = |evidence: &Evidence| match rounded_above_hz {
+            Some(highest_hz) => describe_in_range(channel, &evidence.up_to(highest_hz), nyquist_hz, &options),
+            None => describe_in_range(channel, evidence, nyquist_hz, &options),
         };
         let mut lines = retain(&seen, |l| is_coherent(&whole, l));
         sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
-        let mut ranged = describe_in_range(channel, &evidence(&lines), nyquist_hz, &options);
+        let mut evidence = without(&lines);
+        let mut ranged = described(&evidence);
         for _ in 0..REFINEMENT_ROUNDS {
             let found = &ranged.identification.described.model.quasi_periodic;
             // A peak that is neither coherent nor explained is a line after all; so is a disturbance that hardly decays.
@@ -148,11 +154,12 @@ impl SpectralRecord<'_> {
             lines.sort_ascending_by(|a| a.frequency_hz);
             lines = retain(&lines, |_| true);
             sinusoids::fit(self.blocks, self.tau0_s, &mut lines);
-            ranged = describe_in_range(channel, &evidence(&lines), nyquist_hz, &options);
+            evidence = without(&lines);
+            ranged = described(&evidence);
         }
         ranged.rounded_above_hz = rounded_above_hz;
         ranged.highest_hz = ranged.highest_hz.or(rounded_above_hz);
-        let ranged = identify_over(channel, &self.evidence(&lines), &options, &ranged);
+        let ranged = identify_over(channel, &evidence, &options, &ranged);
         let mut noise = RecordNoise { ranged, lines };
         describe_lines(&mut noise.ranged.identification.described, &noise.lines);
         noise

@@ -5,6 +5,7 @@ use super::spectrum::Evidence;
 use crate::noise::data::{BlockSeries, WelchSpectrum};
 use crate::noise::model::{NoiseModel, TERMS};
 use crate::numeric::cosine::dct2;
+use crate::numeric::order::SortByNumber;
 use std::sync::Arc;
 
 /// Blocks with less than this share of their samples count as empty.
@@ -31,10 +32,50 @@ impl Mask {
     /// True where a mode of means over `tau_s`, or a bin of a periodogram (`windowed`), is left out: the line, folded back about multiples
     /// of 1/τ, lies near.
     pub fn hides(&self, frequency_hz: f64, step_hz: f64, tau_s: f64, windowed: bool) -> bool {
+        self.in_transform(step_hz, tau_s, windowed).holds(frequency_hz)
+    }
+
+    /// What it leaves out of a transform.
+    fn in_transform(&self, step_hz: f64, tau_s: f64, windowed: bool) -> Hidden {
         let turns = self.frequency_hz * tau_s;
-        let folded = (turns - turns.round()).abs() / tau_s;
         let half_width_hz = if windowed { self.windowed_half_width_hz } else { self.half_width_hz };
-        (frequency_hz - folded).abs() <= half_width_hz + step_hz
+        Hidden { centre_hz: (turns - turns.round()).abs() / tau_s, half_width_hz: half_width_hz + step_hz }
+    }
+}
+
+/// A range of frequencies that is left out of a transform.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Hidden {
+    centre_hz: f64,
+    half_width_hz: f64,
+}
+
+impl Hidden {
+    fn holds(&self, frequency_hz: f64) -> bool {
+        (frequency_hz - self.centre_hz).abs() <= self.half_width_hz
+    }
+}
+
+/// The ranges that masks leave out of a transform, by their centres: of some hundred lines only those near a mode are looked at.
+struct HiddenRanges {
+    ranges: Vec<Hidden>,
+    reach_hz: f64,
+}
+
+impl HiddenRanges {
+    fn new(masks: &[Mask], step_hz: f64, tau_s: f64, windowed: bool) -> HiddenRanges {
+        let mut ranges: Vec<Hidden> =
+            masks.iter().map(|m| m.in_transform(step_hz, tau_s, windowed)).collect();
+        ranges.sort_ascending_by(|r| r.centre_hz);
+        let widest_hz = ranges.iter().map(|r| r.half_width_hz).fold(0.0, f64::max);
+        // A little more, so that no rounding leaves one out.
+        HiddenRanges { ranges, reach_hz: 1.01 * widest_hz }
+    }
+
+    fn hold(&self, frequency_hz: f64) -> bool {
+        let first = self.ranges.partition_point(|r| r.centre_hz < frequency_hz - self.reach_hz);
+        let near = self.ranges.get(first..).unwrap_or_default().iter();
+        near.take_while(|r| r.centre_hz <= frequency_hz + self.reach_hz).any(|r| r.holds(frequency_hz))
     }
 }
 
@@ -156,10 +197,6 @@ impl<'a> Builder<'a> {
         self.evidence.pieces.len() - 1
     }
 
-    fn masked(&self, frequency_hz: f64, step_hz: f64, tau_s: f64, windowed: bool) -> bool {
-        self.masks.iter().any(|mask| mask.hides(frequency_hz, step_hz, tau_s, windowed))
-    }
-
     fn add_series(&mut self, series: &Series, top: f64) {
         if series.is_whole() {
             self.add_stretch(series, 0..series.len(), 0.0, top, true);
@@ -227,9 +264,10 @@ impl<'a> Builder<'a> {
     /// Adds the modes of a piece with `from` < f ≤ `to`.
     fn add_modes(&mut self, piece: usize, modes: &[f64], ramp: &[f64], from: f64, to: f64, single: bool) {
         let Some(&Piece { tau_s, step_hz, .. }) = self.evidence.pieces.get(piece) else { return };
+        let hidden = HiddenRanges::new(self.masks, step_hz, tau_s, false);
         for (k, (c, r)) in modes.iter().zip(ramp).enumerate().skip(1) {
             let f = k as f64 * step_hz;
-            if f <= from || f > to * (1.0 + 1e-9) || self.masked(f, step_hz, tau_s, false) {
+            if f <= from || f > to * (1.0 + 1e-9) || hidden.hold(f) {
                 continue;
             }
             let alone = single && k <= SINGLE_MODES;
@@ -243,9 +281,10 @@ impl<'a> Builder<'a> {
         let piece = self.piece(Piece { tau_s: tau0_s, step_hz, blocks: 0, filling: 1.0 });
         let dof = welch.averages_in_sums.max(1.0);
         let nyquist = welch.segment_len / 2;
+        let hidden = HiddenRanges::new(self.masks, 2.0 * step_hz, tau0_s, true);
         for (k, density) in welch.density.iter().enumerate().take(nyquist).skip(2) {
             let f = k as f64 * step_hz;
-            if f <= from || self.masked(f, 2.0 * step_hz, tau0_s, true) {
+            if f <= from || hidden.hold(f) {
                 continue;
             }
             self.add_bin(piece, k, dof, [density * tau0_s, 0.0, 0.0], false);
@@ -364,6 +403,25 @@ mod tests {
         // Means over 1 s show it at 0.3 Hz, over 4 s, 2.8 turns, at 0.05 Hz.
         assert_eq!(hidden(1.0, false), (288..=312).collect::<Vec<_>>());
         assert_eq!(hidden(4.0, false), (38..=62).collect::<Vec<_>>());
+    }
+
+    #[test]
+    fn many_masks_hide_what_each_of_them_hides() {
+        let mask = |i: u32| Mask {
+            frequency_hz: 0.000_37 * f64::from(i * i % 4001),
+            half_width_hz: 1e-5 * f64::from(i % 7),
+            windowed_half_width_hz: 2e-4 * f64::from(i % 5),
+        };
+        let masks: Vec<Mask> = (0..300).map(mask).collect();
+        for (step_hz, tau_s, windowed) in [(1e-5, 1.0, false), (1e-4, 2.5, false), (1e-3, 1.0, true)] {
+            let hidden = HiddenRanges::new(&masks, step_hz, tau_s, windowed);
+            let places: Vec<f64> = (0..5000).map(|i| 1e-4 * f64::from(i)).collect();
+            let by_each = |f: f64| masks.iter().any(|m| m.hides(f, step_hz, tau_s, windowed));
+            assert!(places.iter().all(|f| hidden.hold(*f) == by_each(*f)));
+            let left = places.iter().filter(|f| !hidden.hold(**f)).count();
+            assert!(left > 0 && left < places.len(), "{left}");
+        }
+        assert!(!HiddenRanges::new(&[], 0.1, 1.0, false).hold(0.2));
     }
 
     #[test]

@@ -9,6 +9,7 @@
 mod bands;
 mod build;
 mod places;
+mod scatter;
 mod spectrum;
 
 pub use bands::{Band, FineBin, Zone};

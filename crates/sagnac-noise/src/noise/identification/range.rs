@@ -7,7 +7,7 @@
 //! root of the misfit (Birge ratio), and that is said too.
 //!
 //! Where even the lowest frequencies are far from any model, the record is no noise, such as a ramp: the ranges between are not
-//! tried.
+//! tried. In a range whose powers do not scatter, no process is searched for: a smooth curve is the leakage of a drift.
 //!
 //! What bends beyond the edge of a cut range begins within it, too weak to be seen there. The white level of the lower half of the
 //! range knows less of it: the interval of N holds that as well.
@@ -331,7 +331,7 @@ fn run(
     described: Option<&Identification>,
     intervals: bool,
 ) -> Identification {
-    if options.processes {
+    if options.processes && evidence.scatters() {
         let searched = described.and_then(|d| d.searched.as_ref());
         identify_joint(channel, evidence, options, searched, intervals)
     } else {
@@ -390,6 +390,17 @@ mod tests {
         assert!(found.highest_hz.is_none_or(|hz| hz == 0.5 / 128.0), "{:?}", found.highest_hz);
         let noise = describe_in_range("rate", &behind_a_filter(1), 0.5, &Options::default());
         assert!(!noise.is_void() && noise.widened == 1.0, "{:?}", noise.identification.misfit);
+    }
+
+    #[test]
+    fn no_process_is_found_in_what_does_not_scatter() {
+        for course in [|t: f64| (1e-3 * t).sin(), |t: f64| (-t / 500.0).exp()] {
+            let evidence = evidence_of((0..36_000).map(|i| course(f64::from(i))).collect());
+            let found = describe_in_range("rate", &evidence, 0.5, &Options::default());
+            assert!(found.widened > 1.0, "{:?}", found.identification.misfit);
+            let model = &found.identification.described.model;
+            assert!(model.markov.is_empty() && model.quasi_periodic.is_empty() && model.bandwidth.is_none());
+        }
     }
 
     /// White noise of 0.002 deg/√h at 1 Hz behind a Butterworth filter of second order with its cut-off at 0.2 Hz.

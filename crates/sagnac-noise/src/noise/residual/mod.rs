@@ -50,6 +50,21 @@ pub struct GoodnessOfFit {
     pub whitened: Option<Whitened>,
 }
 
+/// What the statistics of a record give.
+struct OfRecord {
+    bands: frequency::Bands,
+    sample_correlation: Option<ResidualCorrelation>,
+    averaging: (Vec<OctaveRatio>, Option<Judged>),
+}
+
+/// What its whitened block means give.
+struct OfResiduals {
+    whitened: Option<Whitened>,
+    correlation: Option<ResidualCorrelation>,
+    amplitude: Option<Amplitude>,
+    jump: Option<Judged>,
+}
+
 impl GoodnessOfFit {
     /// Judges a description of a record. `octaves`: its overlapping Allan deviations.
     pub fn of(
@@ -72,14 +87,26 @@ impl GoodnessOfFit {
                 .collect();
         }
         let grid = grid::Grid::new(&described, evidence.usable_s, tau0_s);
-        let bands = frequency::Bands::new(&evidence, &described, tau0_s);
-        let whitened = whitened(record, &described.model);
-        let correlation = whitened.as_ref().and_then(|w| lag::of_blocks(w, &grid));
-        let sample_correlation = lag::of_samples(record, &described, &grid);
+        let of_record = || OfRecord {
+            bands: frequency::Bands::new(&evidence, &described, tau0_s),
+            sample_correlation: lag::of_samples(record, &described, &grid),
+            averaging: averaging::judge(octaves, &described, &grid, tau0_s),
+        };
+        let of_residuals = || {
+            let whitened = whitened(record, &described.model);
+            OfResiduals {
+                correlation: whitened.as_ref().and_then(|w| lag::of_blocks(w, &grid)),
+                amplitude: whitened.as_ref().and_then(amplitude::of),
+                jump: whitened.as_ref().and_then(|w| Some(jump::judge(w.jump.as_ref()?, w.step_s, w.from_s))),
+                whitened,
+            }
+        };
+        // One looks at the statistics of the record and the other at residuals: neither waits for the other.
+        let (OfRecord { bands, sample_correlation, averaging }, residuals) =
+            rayon::join(of_record, of_residuals);
+        let OfResiduals { whitened, correlation, amplitude, jump } = residuals;
+        let (octaves, averaging) = averaging;
         let looks: Vec<&ResidualCorrelation> = sample_correlation.iter().chain(&correlation).collect();
-        let amplitude = whitened.as_ref().and_then(amplitude::of);
-        let (octaves, averaging) = averaging::judge(octaves, &described, &grid, tau0_s);
-        let jump = whitened.as_ref().and_then(|w| Some(jump::judge(w.jump.as_ref()?, w.step_s, w.from_s)));
         let amplitudes = amplitude.as_ref().map(amplitude::judge);
         let views = [bands.judge(), lag::judge(&looks), averaging, amplitudes, jump];
         GoodnessOfFit {
