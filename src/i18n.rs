@@ -5,7 +5,6 @@
 
 mod effect_text;
 mod lang;
-mod locale_file;
 mod system;
 
 pub use effect_text::{EffectText, effect_key, effect_text};
@@ -28,8 +27,8 @@ static LOCALE_TABLES: [OnceLock<Table>; Lang::ALL.len()] = [const { OnceLock::ne
 
 static EMPTY_TABLE: Table = Table::new();
 
-/// Turns the nested tables of a locale file into dotted keys; `None` for a file that is no TOML.
-fn flatten(source: &str) -> Option<Table> {
+/// Turns the nested tables of a locale file into dotted keys.
+fn flatten(source: &str) -> Table {
     fn walk(prefix: &str, table: &toml::Table, out: &mut Table) {
         for (key, value) in table {
             let path = if prefix.is_empty() { key.clone() } else { format!("{prefix}.{key}") };
@@ -43,19 +42,16 @@ fn flatten(source: &str) -> Option<Table> {
         }
     }
     let mut out = Table::new();
-    walk("", &source.parse::<toml::Table>().ok()?, &mut out);
-    Some(out)
-}
-
-/// The texts of a locale file by their dotted keys.
-fn texts(source: &str) -> Table {
-    locale_file::read(source).or_else(|| flatten(source)).unwrap_or_default()
+    if let Ok(table) = source.parse::<toml::Table>() {
+        walk("", &table, &mut out);
+    }
+    out
 }
 
 /// The table of a language: dotted key → text with `{argument}` places.
 pub fn table(lang: Lang) -> &'static BTreeMap<String, String> {
     let place = Lang::ALL.iter().position(|of| *of == lang).and_then(|place| LOCALE_TABLES.get(place));
-    place.map_or(&EMPTY_TABLE, |table| table.get_or_init(|| texts(lang.source())))
+    place.map_or(&EMPTY_TABLE, |table| table.get_or_init(|| flatten(lang.source())))
 }
 
 /// The text of a key, in English where the table of the language lacks it; `None` when no table has it.
