@@ -222,7 +222,8 @@ impl OnTable {
             Dynamics::None => (frequency_hz, frequency_hz),
             Dynamics::OnePole { corner_hz } => (corner_hz, corner_hz),
             Dynamics::TwoPoles { corner_hz, damping } => (corner_hz, corner_hz * damping.min(1.0 / damping)),
-            Dynamics::Average { over_s } => (1.0 / over_s, 1.0 / over_s),
+            // A mean is no equation that is run: the steps of the sine serve.
+            Dynamics::Average { over_s } => (frequency_hz, 1.0 / over_s),
         };
         let steps_per_period = 400.0 * (corner / frequency_hz).max(1.0).ceil();
         let step = 1.0 / (frequency_hz * steps_per_period);

@@ -73,6 +73,8 @@ const MAX_PERIODS_A_SAMPLE: usize = 2;
 const OCTAVE_BUDGET: f64 = 2e7;
 /// Largest departure of the bias from the claimed one, deg/h.
 const MAX_BIAS_ERROR_DEG_H: f64 = 100.0;
+/// The same where no search of one bias after another would see all that are possible.
+const UNCERTAIN_OCTAVE_BUDGET: f64 = 6e7;
 /// Standard deviations of the fitted bias within which the true one is sought.
 const BIAS_SEARCH_SIGMAS: f64 = 3.0;
 
@@ -247,12 +249,13 @@ struct Beats {
 }
 
 impl Beats {
-    /// `None` where the table turns too far for the number of periods to be gone through.
+    /// `None` where more than the budget of samples and places of transforms would be gone through.
     fn new(
         period: f64,
         middles: &[f64],
         weighted: &Weighted,
         offset_deg_h: f64,
+        budget: f64,
         drivers: &Drivers,
     ) -> Option<Beats> {
         let (of_table, _) = sensed(0.0, drivers)?;
@@ -264,7 +267,7 @@ impl Beats {
         let offset_arcsec_s = offset_deg_h.min(MAX_BIAS_ERROR_DEG_H);
         let frequencies = [0.5 / period, 1.0 / period];
         let scope = Scope { frequencies, step, offset_arcsec_s, dt_s: drivers.dt_s, samples: middles.len() };
-        if used.len() < 64 || scope.cost(used.len()) > OCTAVE_BUDGET {
+        if used.len() < 64 || scope.cost(used.len()) > budget {
             return None;
         }
         let sample = |(number, score): &(usize, f64)| AngleSample {
@@ -274,10 +277,6 @@ impl Beats {
         };
         let samples = weighted.scores.iter().map(sample).collect();
         Some(Beats { samples, scope, form: weighted.form, squares: weighted.squares })
-    }
-
-    fn cost(&self) -> f64 {
-        self.scope.cost(self.samples.len())
     }
 
     /// Gains with their period and bias, the largest first.
@@ -323,8 +322,9 @@ impl MeanModel for ResetRipple {
             for weighted in Weighted::all(period, &angles.1, context) {
                 let most = BIAS_SEARCH_SIGMAS * deviation;
                 let tried = f64::from(2 * turns + 1) * (8.0 * (high - low) / period + n as f64);
-                let beats = Beats::new(period, &angles.0, &weighted, most, drivers);
-                if let Some(beats) = beats.filter(|b| uncertain > affordable || b.cost() < tried) {
+                let budget = if uncertain > affordable { UNCERTAIN_OCTAVE_BUDGET } else { tried };
+                let beats = Beats::new(period, &angles.0, &weighted, most, budget, drivers);
+                if let Some(beats) = beats {
                     trials += beats.scope.trials();
                     found.extend(beats.found(level, fitted));
                     continue;
