@@ -32,6 +32,7 @@ const RUNS: &[(&str, &str, &[&str])] = &[
     ("magnetic-sensitivity", "magnetic-sensitivity-fail.csv", &["--serial", "SN-0114"]),
     ("supply-sensitivity", "supply-sensitivity-fail.csv", &["--serial", "SN-0116"]),
     ("vibration", "vibration-fail.csv", &["--serial", "SN-0118"]),
+    ("vibration-by-frequency", "vibration-by-frequency-fail.csv", &["--serial", "SN-0128"]),
     ("pressure-sensitivity", "pressure-sensitivity-fail.csv", &["--serial", "SN-0122"]),
     ("electromagnetic-immunity", "electromagnetic-immunity-fail.csv", &["--serial", "SN-0124"]),
     ("scale-factor-under-pressure", "scale-factor-under-pressure-fail.csv", &["--serial", "SN-0126"]),
