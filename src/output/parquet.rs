@@ -56,7 +56,8 @@ impl<W: Write + Send> Doubles<W> {
         };
         match &mut self.stage {
             Stage::Begun(writer) => Ok(writer),
-            _ => Err(io::Error::other("the file was not begun")),
+            // Why it could not be made was said before.
+            _ => Err(io::ErrorKind::BrokenPipe.into()),
         }
     }
 

@@ -68,7 +68,7 @@ const MIN_PERIOD_ARCSEC: f64 = 0.5;
 /// Most periods of angle in a search.
 const MAX_PERIODS: usize = 1 << 18;
 /// Most periods for each sample that tells of them: where few samples of a fast table are slow enough, nearly any period fits them.
-const MAX_PERIODS_A_SAMPLE: usize = 2;
+const MAX_PERIODS_A_SAMPLE: usize = 64;
 /// Cells and samples that a search of one octave of periods may go through.
 const OCTAVE_BUDGET: f64 = 2e7;
 /// Largest departure of the bias from the claimed one, deg/h.
@@ -314,13 +314,11 @@ impl MeanModel for ResetRipple {
             // Half turns of the phase over the record that the uncertainty of the bias amounts to.
             let uncertain = BIAS_SEARCH_SIGMAS * deviation * drivers.length_s() / (0.5 * period);
             let affordable = 0.5 * OCTAVE_BUDGET / (8.0 * (high - low) / period + n as f64);
-            // Below a quarter of a turn the fitted bias serves as well as any.
-            let turns =
-                if uncertain < 0.5 { 0 } else { uncertain.min(affordable).clamp(1.0, 1e4).ceil() as i32 };
+            let turns = uncertain.min(affordable).clamp(1.0, 1e4).ceil() as i32;
             let per_turn = 0.5 * period / drivers.length_s();
             let margin = f64::from(turns) * 0.5 * period;
             for weighted in Weighted::all(period, &angles.1, context) {
-                let most = BIAS_SEARCH_SIGMAS * deviation;
+                let most = (BIAS_SEARCH_SIGMAS * deviation).max(per_turn);
                 let tried = f64::from(2 * turns + 1) * (8.0 * (high - low) / period + n as f64);
                 let budget = if uncertain > affordable { UNCERTAIN_OCTAVE_BUDGET } else { tried };
                 let beats = Beats::new(period, &angles.0, &weighted, most, budget, drivers);

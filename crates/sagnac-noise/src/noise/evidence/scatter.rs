@@ -36,7 +36,7 @@ impl Octave {
 
     /// Whether its bins scatter; `None` where they are too few.
     fn scatters(&self) -> Option<bool> {
-        (self.bins >= MIN_BINS).then(|| self.smooth as f64 <= SMOOTH_SHARE * self.bins as f64)
+        (self.bins >= MIN_BINS).then_some(self.smooth as f64 <= SMOOTH_SHARE * self.bins as f64)
     }
 }
 
@@ -92,6 +92,9 @@ mod tests {
 
     const SAMPLES: usize = 20_000;
 
+    /// A course over time with its name.
+    type Named = (&'static str, fn(f64) -> f64);
+
     /// What samples at 1 Hz show.
     fn evidence_of(rate: impl Fn(f64) -> f64) -> Evidence {
         let mean: Vec<f64> = (0..SAMPLES).map(|i| rate(i as f64)).collect();
@@ -102,7 +105,7 @@ mod tests {
 
     #[test]
     fn powers_of_a_smooth_course_do_not_scatter() {
-        let courses: [(&str, fn(f64) -> f64); 4] = [
+        let courses: [Named; 4] = [
             ("ramp", |t| 1e9 * t),
             ("square of the time", |t| t * t),
             ("sine", |t| (1e-3 * t).sin()),
