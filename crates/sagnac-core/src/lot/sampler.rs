@@ -66,7 +66,7 @@ struct State {
     lots: Vec<Lot>,
     /// Logarithms of the variances between units and between lots.
     logs: [f64; 2],
-    /// What the values tell with these variances.
+    /// Likelihood of the values with these variances.
     level: Level,
     between_lots: bool,
     rng: Xoshiro256PlusPlus,

@@ -227,7 +227,7 @@ fn differ_in_processes(one: &FittedHypothesis, other: &FittedHypothesis) -> bool
     only(&one, &other) && only(&other, &one)
 }
 
-/// What a process of something that was not recorded must explain beyond one that is a noise of the gyro, nats. A parameter more is
+/// Log-likelihood that a process of something that was not recorded must explain beyond one that is a noise of the gyro, nats. A parameter more is
 /// charged already; one that has none more is no better a name before it explains what one would cost.
 fn process_charge(parameters_of_free: usize, parameters_of_noise: usize) -> f64 {
     const PARAMETER_COST: f64 = 2.0;

@@ -27,7 +27,7 @@ static PARAMS: [Param; 5] = [
     Param::inner("of_angle", "", 0.0, 1.0),
 ];
 
-/// What comes back with each period of the sensed angle.
+/// Quantity that comes back with each period of the sensed angle.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Form {
     /// A contribution to the rate.
@@ -121,7 +121,7 @@ struct Weighted {
 impl Weighted {
     fn all(period: f64, steps: &[f64], context: &SearchContext<'_>) -> Vec<Weighted> {
         /// Correlation from which two forms are alike to a search.
-        const ALIKE: f64 = 0.9;
+        const ALIKE_CORRELATION: f64 = 0.9;
         let used: Vec<usize> = (0..steps.len()).filter(|i| steps[*i].abs() < period).collect();
         let weights = |form: Form| -> Vec<f64> {
             let middle = period / Octave::MIDDLE_FREQUENCY;
@@ -130,7 +130,7 @@ impl Weighted {
         let [rate, angle] = Form::ALL.map(weights);
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let squares = [product(&rate, &rate), product(&angle, &angle)];
-        let alike = product(&rate, &angle).abs() >= ALIKE * (squares[0] * squares[1]).sqrt();
+        let alike = product(&rate, &angle).abs() >= ALIKE_CORRELATION * (squares[0] * squares[1]).sqrt();
         let forms = Form::ALL.into_iter().zip([rate, angle]).zip(squares);
         forms
             .take(if alike { 1 } else { Form::ALL.len() })
@@ -282,10 +282,10 @@ impl Beats {
     /// Gains with their period and bias, the largest first.
     fn found(&self, level: f64, fitted_deg_h: f64) -> Vec<(f64, Vec<f64>)> {
         /// Beats of an octave that are looked at more closely.
-        const BEATS: usize = 4;
+        const CLOSER_BEATS: usize = 4;
         let scale = level / self.squares;
         let shape = |b: Beat| vec![1.0 / b.frequency, fitted_deg_h + b.offset_arcsec_s, self.form.number()];
-        let beats = strongest(&self.samples, &self.scope, BEATS).into_iter();
+        let beats = strongest(&self.samples, &self.scope, CLOSER_BEATS).into_iter();
         beats.map(|b| (b.power * scale, shape(b))).collect()
     }
 }

@@ -17,7 +17,7 @@ pub struct Sample {
     pub score: f64,
 }
 
-/// What a search goes through.
+/// Frequencies, offsets and samples that a search goes through.
 #[derive(Debug, Clone, Copy)]
 pub struct Scope {
     /// Frequencies of the angle, cycles an arcsec: the first and the last.
@@ -87,7 +87,7 @@ pub fn strongest(samples: &[Sample], scope: &Scope, wanted: usize) -> Vec<Beat> 
     /// Frequencies that one worker goes through from one exact turn.
     const ROWS_A_WORKER: usize = 32;
     /// Frequencies beside a beat that are the same beat.
-    const NEIGHBOURS: f64 = 2.5;
+    const NEIGHBOUR_STEPS: f64 = 2.5;
     let block = scope.block();
     let size = scope.size();
     let plan = complex_forward(size);
@@ -119,7 +119,7 @@ pub fn strongest(samples: &[Sample], scope: &Scope, wanted: usize) -> Vec<Beat> 
     beats.sort_descending_by(|b| b.power);
     let mut out: Vec<Beat> = vec![];
     for beat in beats {
-        let beside = |o: &Beat| (o.frequency - beat.frequency).abs() < NEIGHBOURS * scope.step;
+        let beside = |o: &Beat| (o.frequency - beat.frequency).abs() < NEIGHBOUR_STEPS * scope.step;
         if out.len() < wanted && !out.iter().any(beside) {
             out.push(beat);
         }
