@@ -111,15 +111,17 @@ fn columns(period: f64, bias: f64, form: Form, drivers: &Drivers) -> Vec<Vec<f64
 /// Scores of the samples that cover less than a period, weighted by what a form shows in the middle of the octave of a period; the forms
 /// that shape a record alike are one.
 struct Weighted {
-    form: Form,
-    /// Number of the sample and its score.
-    scores: Vec<(usize, f64)>,
+    samples: Vec<AngleSample>,
     /// Sum of the squares of the weights.
     squares: f64,
 }
 
 impl Weighted {
-    fn all(period: f64, steps: &[f64], context: &SearchContext<'_>) -> Vec<Weighted> {
+    fn all(
+        period: f64,
+        (middles, steps): &(Vec<f64>, Vec<f64>),
+        context: &SearchContext<'_>,
+    ) -> Vec<Weighted> {
         /// Correlation from which two forms are alike to a search.
         const ALIKE_CORRELATION: f64 = 0.9;
         let used: Vec<usize> = (0..steps.len()).filter(|i| steps[*i].abs() < period).collect();
@@ -131,13 +133,16 @@ impl Weighted {
         let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
         let squares = [product(&rate, &rate), product(&angle, &angle)];
         let alike = product(&rate, &angle).abs() >= ALIKE_CORRELATION * (squares[0] * squares[1]).sqrt();
-        let forms = Form::ALL.into_iter().zip([rate, angle]).zip(squares);
+        let sample = |(number, weight): (&usize, f64)| AngleSample {
+            number: *number,
+            angle_arcsec: middles[*number],
+            score: weight * context.score[*number],
+        };
+        let forms = [rate, angle].into_iter().zip(squares).take(if alike { 1 } else { Form::ALL.len() });
         forms
-            .take(if alike { 1 } else { Form::ALL.len() })
             .filter(|(_, squares)| *squares > 0.0)
-            .map(|((form, weights), squares)| Weighted {
-                form,
-                scores: used.iter().zip(weights).map(|(i, w)| (*i, w * context.score[*i])).collect(),
+            .map(|(weights, squares)| Weighted {
+                samples: used.iter().zip(weights).map(sample).collect(),
                 squares,
             })
             .collect()
@@ -179,13 +184,12 @@ impl Octave {
     const MIDDLE_FREQUENCY: f64 = 0.75;
 
     /// `margin` is what biases turn the angle by, arcsec.
-    fn new(period: f64, middles: &[f64], weighted: &Weighted, dt_s: f64, margin: f64) -> Option<Octave> {
-        let sample = |(number, score): &(usize, f64)| {
-            let angle_arcsec = middles[*number];
+    fn new(period: f64, weighted: &Weighted, dt_s: f64, margin: f64) -> Option<Octave> {
+        let sample = |&AngleSample { number, angle_arcsec, score }: &AngleSample| {
             let turned = Complex::cis(-2.0 * PI * (Octave::MIDDLE_FREQUENCY * angle_arcsec / period).fract());
-            Sample { number: *number, angle_arcsec, score: turned * *score }
+            Sample { number, angle_arcsec, score: turned * score }
         };
-        let samples: Vec<Sample> = weighted.scores.iter().map(sample).collect();
+        let samples: Vec<Sample> = weighted.samples.iter().map(sample).collect();
         let (low, high) = samples.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), s| {
             (s.angle_arcsec.min(a), s.angle_arcsec.max(b))
         });
@@ -240,52 +244,41 @@ impl Octave {
 
 /// A search of the periods between one and twice that over every bias at once, where that is less work than one bias after another: what the
 /// table turns is known, so that the bias shows as a beat.
-struct Beats {
-    samples: Vec<AngleSample>,
+struct Beats<'a> {
+    weighted: &'a Weighted,
     scope: Scope,
-    form: Form,
-    /// Sum of the squares of the weights of the scores.
-    squares: f64,
 }
 
-impl Beats {
-    /// `None` where more than the budget of samples and places of transforms would be gone through.
-    fn new(
+impl Beats<'_> {
+    /// `of_table` is the angle that the table turned by at each sample of the record. `None` where more than the budget of samples and
+    /// places of transforms would be gone through.
+    fn new<'a>(
         period: f64,
-        middles: &[f64],
-        weighted: &Weighted,
+        of_table: &[f64],
+        weighted: &'a Weighted,
         offset_deg_h: f64,
         budget: f64,
-        drivers: &Drivers,
-    ) -> Option<Beats> {
-        let (of_table, _) = sensed(0.0, drivers)?;
-        let used: Vec<f64> = weighted.scores.iter().map(|(i, _)| of_table[*i]).collect();
+        dt_s: f64,
+    ) -> Option<Beats<'a>> {
+        let used: Vec<f64> = weighted.samples.iter().map(|s| of_table[s.number]).collect();
         let Bounds { low, high } = ends(&used);
         // A period that is between two of them is a quarter of a turn off at the ends.
         let step = 0.5 / (high - low).max(period);
         // A degree an hour is an arcsecond a second.
         let offset_arcsec_s = offset_deg_h.min(MAX_BIAS_ERROR_DEG_H);
         let frequencies = [0.5 / period, 1.0 / period];
-        let scope = Scope { frequencies, step, offset_arcsec_s, dt_s: drivers.dt_s, samples: middles.len() };
-        if used.len() < 64 || scope.cost(used.len()) > budget {
-            return None;
-        }
-        let sample = |(number, score): &(usize, f64)| AngleSample {
-            number: *number,
-            angle_arcsec: middles[*number],
-            score: *score,
-        };
-        let samples = weighted.scores.iter().map(sample).collect();
-        Some(Beats { samples, scope, form: weighted.form, squares: weighted.squares })
+        let scope = Scope { frequencies, step, offset_arcsec_s, dt_s, samples: of_table.len() };
+        let affordable = used.len() >= 64 && scope.cost(used.len()) <= budget;
+        affordable.then_some(Beats { weighted, scope })
     }
 
     /// Gains with their period and bias, the largest first.
-    fn found(&self, level: f64, fitted_deg_h: f64) -> Vec<(f64, Vec<f64>)> {
+    fn found(&self, level: f64, fitted_deg_h: f64) -> Vec<(f64, [f64; 2])> {
         /// Beats of an octave that are looked at more closely.
         const CLOSER_BEATS: usize = 4;
-        let scale = level / self.squares;
-        let shape = |b: Beat| vec![1.0 / b.frequency, fitted_deg_h + b.offset_arcsec_s, self.form.number()];
-        let beats = strongest(&self.samples, &self.scope, CLOSER_BEATS).into_iter();
+        let scale = level / self.weighted.squares;
+        let shape = |b: Beat| [1.0 / b.frequency, fitted_deg_h + b.offset_arcsec_s];
+        let beats = strongest(&self.weighted.samples, &self.scope, CLOSER_BEATS).into_iter();
         beats.map(|b| (b.power * scale, shape(b))).collect()
     }
 }
@@ -307,6 +300,7 @@ impl MeanModel for ResetRipple {
         // The mean of a random walk is off from where it began by π²/3 times the variance of its slowest wave.
         let deviation = PI * (context.powers[1] / (3.0 * n as f64)).sqrt();
         let Some(angles) = sensed(fitted, drivers) else { return Starts::none() };
+        let Some((of_table, _)) = sensed(0.0, drivers) else { return Starts::none() };
         let Bounds { low, high } = ends(&angles.0);
         let level = fast_level(context);
         let (mut period, mut found, mut trials) = (MIN_PERIOD_ARCSEC, vec![], 1.0);
@@ -317,24 +311,24 @@ impl MeanModel for ResetRipple {
             let turns = uncertain.min(affordable).clamp(1.0, 1e4).ceil() as i32;
             let per_turn = 0.5 * period / drivers.length_s();
             let margin = f64::from(turns) * 0.5 * period;
-            for weighted in Weighted::all(period, &angles.1, context) {
+            for weighted in Weighted::all(period, &angles, context) {
                 let most = (BIAS_SEARCH_SIGMAS * deviation).max(per_turn);
                 let tried = f64::from(2 * turns + 1) * (8.0 * (high - low) / period + n as f64);
                 let budget = if uncertain > affordable { UNCERTAIN_OCTAVE_BUDGET } else { tried };
-                let beats = Beats::new(period, &angles.0, &weighted, most, budget, drivers);
+                let beats = Beats::new(period, &of_table, &weighted, most, budget, drivers.dt_s);
                 if let Some(beats) = beats {
                     trials += beats.scope.trials();
                     found.extend(beats.found(level, fitted));
                     continue;
                 }
-                let octave = Octave::new(period, &angles.0, &weighted, drivers.dt_s, margin);
+                let octave = Octave::new(period, &weighted, drivers.dt_s, margin);
                 let Some(octave) = octave else { continue };
                 let of_bias = |buffers: &mut Buffers, k: i32| {
                     let other = f64::from(k) * per_turn;
                     let (first, step) = octave.gains(other, level, buffers);
                     let shape = |j: usize| {
                         let f = first + (j as f64 + parabolic_peak(&buffers.gains, j)) * step;
-                        (buffers.gains[j], vec![1.0 / f, fitted + other, weighted.form.number()])
+                        (buffers.gains[j], [1.0 / f, fitted + other])
                     };
                     peaks(&buffers.gains, 2, 6).into_iter().map(shape).collect::<Vec<_>>()
                 };
@@ -350,7 +344,7 @@ impl MeanModel for ResetRipple {
         let points = found
             .into_iter()
             .take(6)
-            .flat_map(|(_, s)| Form::ALL.map(|form| vec![s[0], s[1], form.number()]));
+            .flat_map(|(_, [period, bias])| Form::ALL.map(|form| vec![period, bias, form.number()]));
         Starts { points: best_of(self, points, 3, drivers, context), trials }
     }
 
