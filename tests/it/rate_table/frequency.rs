@@ -91,6 +91,57 @@ fn a_table_that_ends_below_the_bandwidth_tells_at_least_and_lets_the_models_diff
     }
 }
 
+/// The result of the shipped procedure on a drawn unit.
+fn tested(unit: &OnTable, flat_to: &str) -> Value {
+    let folder = tempdir().unwrap();
+    fs::write(folder.path().join("r.csv"), csv(unit, 5)).unwrap();
+    let shipped = shipped("procedures/transfer-function.toml");
+    altered(
+        folder.path(),
+        "p.toml",
+        &shipped,
+        &[("flat_to = \"10 Hz\"", &format!("flat_to = \"{flat_to}\""))],
+    );
+    let said = sagnac(folder.path(), &["run", "p.toml", "r.csv", "--serial", "SN-1", "--out", "o"]);
+    assert_ne!(said.code, 2, "{}", said.err);
+    result(&folder.path().join("o"))
+}
+
+#[test]
+fn sine_steps_far_apart_tell_the_flatness_between_them() {
+    // 14.7 and 20.7 Hz are steps, 20 Hz is none: there a pole at 25 Hz has lost 2.15 dB, at 14.7 Hz 1.29 dB.
+    let unit = OnTable {
+        dynamics: Dynamics::OnePole { corner_hz: 25.0 },
+        motion: Motion::Steps,
+        frequencies: (0.5, 80.0),
+        seconds: 96.0,
+        ..OnTable::default()
+    };
+    let r = tested(&unit, "20 Hz");
+    let lost = 10.0 * (1.0 + 0.8f64.powi(2)).log10();
+    for (id, truth) in [("response_flatness", lost), ("latency", 1.5 + 1e3 / (std::f64::consts::TAU * 25.0))]
+    {
+        holds(row(&r, id), truth, 0.3);
+    }
+}
+
+#[test]
+fn noise_of_the_angle_does_not_lower_the_gain() {
+    // −3 dB of two poles of damping 0.5 lies at 1.272 of their corner; read as it is, this angle would put it 0.2 Hz lower.
+    let unit = OnTable {
+        dynamics: Dynamics::TwoPoles { corner_hz: 40.0, damping: 0.5 },
+        frequencies: (0.5, 80.0),
+        seconds: 60.0,
+        reading_arcsec: 3.0,
+        ..OnTable::default()
+    };
+    let r = tested(&unit, "20 Hz");
+    let truth = 40.0 * (0.5 + 1.25f64.sqrt()).sqrt();
+    let found = row(&r, "bandwidth_3db_model");
+    let at = found["value"].as_f64().unwrap_or_else(|| panic!("{found}"));
+    assert!((at - truth).abs() < 0.07, "{truth} {found}");
+}
+
 #[test]
 fn a_table_at_rest_tells_nothing() {
     let folder = tempdir().unwrap();

@@ -69,6 +69,12 @@ impl WindowTerms {
 /// Largest distance of the motion that a bin holds from its frequency, in bins: beyond, the bin holds what the window leaks.
 const LARGEST_DISTANCE: f64 = 1.0;
 
+/// Neighbouring bins of which the mean power is taken for that of the noise of the readings.
+const QUIET_BINS: usize = 16;
+
+/// Largest mean coherence of such bins: some is there by chance in few segments.
+const LARGEST_QUIET_COHERENCE: f64 = 0.3;
+
 /// What the segments show at one frequency of one channel.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bin {
@@ -175,15 +181,43 @@ impl Lengthwise {
         self.segments += 1;
     }
 
+    /// Power of the noise of the readings, as [`InputKind::of_white_readings`] has it: that of the quietest frequencies at which an output follows
+    /// nothing; 0 where it follows the input everywhere.
+    fn noise_of_readings(&self, output: usize, input: InputKind) -> f64 {
+        let Some((power, product)) = self.outputs.get(output) else { return 0.0 };
+        let highest = (HIGHEST_SHARE * self.len() as f64) as usize;
+        let level = |bins: Range<usize>| {
+            let sum = |of: &dyn Fn(usize) -> f64| bins.clone().map(of).sum::<f64>();
+            let at = |of: &[f64], k: usize| of.get(k).copied().unwrap_or(0.0);
+            let shared = sum(&|k| {
+                let both = at(&self.input_power, k) * at(power, k);
+                product.get(k).map_or(0.0, |p| p.norm_sqr() / both.max(f64::MIN_POSITIVE))
+            });
+            let count = bins.len() as f64;
+            if shared / count >= LARGEST_QUIET_COHERENCE {
+                return None;
+            }
+            let unit = |k| input.of_white_readings(k, self.len());
+            let powers =
+                bins.clone().map(|k| Some(at(&self.input_power, k) / unit(k)?)).sum::<Option<f64>>()?;
+            Some(powers / count)
+        };
+        let starts = (FIRST_BIN..highest.saturating_sub(QUIET_BINS)).step_by(QUIET_BINS);
+        let lowest = starts.filter_map(|k| level(k..k + QUIET_BINS)).fold(f64::INFINITY, f64::min);
+        if lowest.is_finite() { lowest } else { 0.0 }
+    }
+
     /// The bins from `first` on to below `end` of an output.
     fn bins(
         &self,
         output: usize,
         (first, end): (usize, usize),
         interval_s: f64,
-        averaged_over_s: f64,
+        input: InputKind,
     ) -> Vec<Bin> {
         let Some((power, product)) = self.outputs.get(output) else { return vec![] };
+        let readings = self.noise_of_readings(output, input);
+        let averaged_over_s = if input == InputKind::TableAngle { interval_s } else { 0.0 };
         let (n, length) = (self.segments as f64, self.len() as f64);
         let [under_first, under_second] = &self.under_derivatives;
         let one = |(k, ((xx, yy), xy)): (usize, ((&f64, &f64), &Complex<f64>))| {
@@ -197,6 +231,10 @@ impl Lengthwise {
                 return None;
             }
             let coherence = (xy.norm_sqr() / (xx * yy)).min(1.0);
+            // Noise of the readings is power of the input that the output does not follow.
+            let of_reading =
+                (readings * input.of_white_readings(k, self.len()).unwrap_or(0.0) / xx).min(1.0 - coherence);
+            let xx = &(xx * (1.0 - of_reading));
             let noise = yy * (1.0 - coherence) * n / (n - OVERLAP_LOSS);
             Some(Bin {
                 frequency_hz: k as f64 / (length * interval_s),
@@ -226,12 +264,33 @@ fn without_line(values: &[f64]) -> Vec<f64> {
     values.iter().enumerate().map(|(i, v)| v - mean - slope * (i as f64 - middle)).collect()
 }
 
+/// What the input is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum InputKind {
+    /// Angle of the table, whose differences are the mean rate of the interval before each sample.
+    TableAngle,
+    /// Rate of the table.
+    TableRate,
+    /// Another channel, which the output follows at few frequencies: they do not tell the noise of its readings.
+    Other,
+}
+
+impl InputKind {
+    /// Power of white noise of the readings in a bin of a segment of `length` samples, of unit size; `None` where it is not told.
+    fn of_white_readings(self, bin: usize, length: usize) -> Option<f64> {
+        match self {
+            InputKind::TableAngle => Some(2.0 - 2.0 * (TAU * bin as f64 / length as f64).cos()),
+            InputKind::TableRate => Some(1.0),
+            InputKind::Other => None,
+        }
+    }
+}
+
 /// Collects the spectra of every gyro channel against the motion of the table.
 pub struct CrossSpectra {
     interval_s: f64,
     input: Option<usize>,
-    /// True where the input is an angle, whose differences are the mean rate of the interval before each sample.
-    by_angle: bool,
+    kind: InputKind,
     gyros: Vec<(usize, String)>,
     lengthwise: Vec<Lengthwise>,
     angle_before: Option<f64>,
@@ -244,7 +303,8 @@ impl CrossSpectra {
         let slot = |role: Role| channels.iter().position(|c| c.role == role);
         let angle = slot(Role::TableAngle);
         let input = angle.or_else(|| slot(Role::TableRate));
-        CrossSpectra { by_angle: angle.is_some(), ..CrossSpectra::from(channels, interval_s, input) }
+        let kind = if angle.is_some() { InputKind::TableAngle } else { InputKind::TableRate };
+        CrossSpectra { kind, ..CrossSpectra::from(channels, interval_s, input) }
     }
 
     /// From the channel of one position as the input, in its own unit.
@@ -259,7 +319,7 @@ impl CrossSpectra {
         CrossSpectra {
             interval_s,
             input,
-            by_angle: false,
+            kind: InputKind::Other,
             gyros,
             lengthwise,
             angle_before: None,
@@ -274,7 +334,7 @@ impl CrossSpectra {
 
     /// The input at a sample: the rate of the table in deg/h, or the value of the channel; `None` where it is not known.
     fn rate(&mut self, value: f64) -> Option<f64> {
-        if !self.by_angle {
+        if self.kind != InputKind::TableAngle {
             return value.is_finite().then_some(value);
         }
         let before = self.angle_before.replace(value)?;
@@ -312,7 +372,7 @@ impl CrossSpectra {
         let finest = self.lengthwise.iter().rev().find(|l| l.segments >= FEWEST_SEGMENTS);
         let of = |gyro: usize| {
             let highest = |l: &Lengthwise| (HIGHEST_SHARE * l.len() as f64) as usize;
-            finest.map_or_else(Vec::new, |l| l.bins(gyro, (FIRST_BIN, highest(l)), interval_s, 0.0))
+            finest.map_or_else(Vec::new, |l| l.bins(gyro, (FIRST_BIN, highest(l)), interval_s, self.kind))
         };
         self.gyros.iter().enumerate().map(|(i, (_, id))| (id.clone(), of(i))).collect()
     }
@@ -333,8 +393,7 @@ impl CrossSpectra {
                 let is_longest = i + 1 == usable.len();
                 let first = if is_longest { FIRST_BIN } else { TAKES_OVER_AT };
                 let highest = (HIGHEST_SHARE * length as f64) as usize;
-                let averaged_over_s = if self.by_angle { interval_s } else { 0.0 };
-                bins.extend(one.bins(gyro, (first, end.min(highest)), interval_s, averaged_over_s));
+                bins.extend(one.bins(gyro, (first, end.min(highest)), interval_s, self.kind));
             }
             bins
         };

@@ -3,7 +3,7 @@
 //! Sources: IEEE Std 952-2020, 12.15 (frequency response); Bendat and Piersol, Random Data, chapters 6 and 9.
 
 use super::cross_spectrum::Bin;
-use super::transfer_model::{FittedModel, Model, Order, SHARED_BY_BINS, fit};
+use super::transfer_model::{FittedModel, LARGEST_RELATIVE_MISFIT, Model, Order, SHARED_BY_BINS, fit};
 use crate::estimate::{LowerLimit, SCORE_ONE_SIDED_95, SCORE_TWO_SIDED_95, Spread, UpperLimit};
 use crate::numeric::optimize::bisect;
 use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2};
@@ -16,9 +16,6 @@ const FEWEST_BANDS: usize = 4;
 
 /// A model counts beside the best one where its criterion is larger by no more than this.
 const RIVAL_CRITERION: f64 = 6.0;
-
-/// What the best model may leave beyond the noise, as a share of the response: with more no row rests on it. Less is in the intervals.
-const LARGEST_RELATIVE_MISFIT: f64 = 0.03;
 
 /// Probability with which a bound holds.
 pub const CLAIM_CONFIDENCE: f64 = 0.95;
@@ -195,9 +192,7 @@ impl Transfer {
         let step = 1e-3 * (to - from);
         let slope = (at(found + step) - at(found - step)) / (2.0 * step);
         let noise = (0.5 * (a.standard.powi(2) + b.standard.powi(2)) + common * common).sqrt();
-        // Between bands far apart, what the model leaves need not go straight.
-        let apart = ((to - from) * BANDS_PER_OCTAVE / std::f64::consts::LN_2 - 2.0).clamp(0.0, 1.0);
-        let unsure = noise.hypot(0.3 * apart * (left(b) - left(a)));
+        let unsure = noise.hypot(unsure_between(a, b) * (left(b) - left(a)));
         let standard = unsure / slope.abs();
         if !standard.is_finite() {
             return Shown::Nothing;
@@ -289,19 +284,18 @@ impl Transfer {
     }
 
     /// The bands up to a frequency, with points between them and at that frequency: there the best model is followed, and what it leaves of the bands
-    /// on either side is interpolated. Without a model that fits, the bands alone.
+    /// on either side is interpolated.
     fn followed(&self, up_to_hz: f64) -> Vec<Band> {
         let within = |b: &Band| b.frequency_hz <= up_to_hz;
-        let Some(model) = self.best().map(|f| &f.model).filter(|_| !self.misfits()) else {
-            return self.bands.iter().copied().filter(within).collect();
-        };
+        let Some(model) = self.best().map(|f| &f.model) else { return vec![] };
         let of_model = |f: f64| model.shape(f).norm().ln();
         let left = |b: &Band| b.log_gain - of_model(b.frequency_hz);
         let between = |a: &Band, b: &Band, frequency_hz: f64| {
             let share = ((frequency_hz / a.frequency_hz).ln() / (b.frequency_hz / a.frequency_hz).ln())
                 .clamp(0.0, 1.0);
             let log_gain = of_model(frequency_hz) + (1.0 - share) * left(a) + share * left(b);
-            Band { frequency_hz, log_gain, standard: a.standard.max(b.standard), ..*a }
+            let standard = a.standard.max(b.standard).hypot(unsure_between(a, b) * (left(b) - left(a)));
+            Band { frequency_hz, log_gain, standard, ..*a }
         };
         let mut all: Vec<Band> = self.bands.iter().copied().filter(within).collect();
         for pair in self.bands.windows(2) {
@@ -327,6 +321,13 @@ impl Transfer {
     pub fn order(&self) -> Option<Order> {
         self.best().map(|f| f.model.order)
     }
+}
+
+/// Standard uncertainty between two bands, as a share of the change from one to the other of what a model leaves: between bands
+/// far apart it need not go straight.
+fn unsure_between(a: &Band, b: &Band) -> f64 {
+    let bands = (b.frequency_hz / a.frequency_hz).log2() * BANDS_PER_OCTAVE;
+    0.3 * (bands - 2.0).clamp(0.0, 1.0)
 }
 
 /// Decibels of a natural logarithm of a ratio of amplitudes.

@@ -15,6 +15,9 @@ const MAX_STEPS: usize = 60;
 /// Steps for the derivative of a response, relative for what is a logarithm and in units of the shortest period for a delay.
 const DERIVATIVE_STEP: f64 = 1e-5;
 
+/// What the best model may leave beyond the noise, as a share of the response: with more no row rests on it. Less is in the intervals.
+pub(crate) const LARGEST_RELATIVE_MISFIT: f64 = 0.03;
+
 /// Largest step for the derivative of what follows from a model, relative.
 const DERIVATIVE_OF_RESULT_STEP: f64 = 1e-3;
 
@@ -229,23 +232,30 @@ fn of_order(order: Order, bins: &[Bin]) -> Option<FittedModel> {
     let count = model.parameters.len() as f64;
     let dof = (2.0 * bins.len() as f64 - count).max(1.0);
     let misfit = squares / dof;
-    let beyond: f64 = bins
-        .iter()
-        .map(|b| {
-            let expected = model.read(b);
-            let left = (b.response - expected).norm_sqr() - 2.0 * b.variance;
-            left.max(0.0) / expected.norm_sqr()
-        })
-        .sum();
+    let relative_misfit = beyond_noise(&model, bins);
     Some(FittedModel {
         model,
         // Bins share noise: what they say counts for less, and scatter beyond it widens everything.
         covariance: covariance * (SHARED_BY_BINS * misfit.max(1.0)),
         misfit,
-        relative_misfit: (beyond / bins.len() as f64).sqrt(),
+        relative_misfit,
         criterion: 0.0,
         squares,
     })
+}
+
+/// Root mean square of what a model leaves beyond the noise, as a share of the response. Bins whose own noise hides what counts as a misfit
+/// count less; a bin may fall below its noise as well as above it.
+fn beyond_noise(model: &Model, bins: &[Bin]) -> f64 {
+    let (mut left, mut weights) = (0.0, 0.0);
+    for b in bins {
+        let power = model.read(b).norm_sqr();
+        let noise = 2.0 * b.variance / power;
+        let weight = 1.0 / (1.0 + noise / LARGEST_RELATIVE_MISFIT.powi(2));
+        left += weight * ((b.response - model.read(b)).norm_sqr() / power - noise);
+        weights += weight;
+    }
+    (left / weights).max(0.0).sqrt()
 }
 
 /// Residuals over their standard deviations, real and imaginary parts.
