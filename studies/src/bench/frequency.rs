@@ -170,6 +170,7 @@ impl OnTable {
         // Angles at the steps, for the mean over a time before.
         let mut angles = vec![];
         let mut delayed_angle = 0.0;
+        let (mut now, mut now_delayed) = (rate.at(0.0), rate.at(-self.delay_s));
         for i in 0..samples * STEPS_PER_SAMPLE {
             let t = i as f64 * step;
             if i % STEPS_PER_SAMPLE == 0 {
@@ -187,12 +188,14 @@ impl OnTable {
                 record.angle.push(angle + self.reading_arcsec / 3600.0 * source.normal());
             }
             angles.push(delayed_angle);
-            let u = |later: f64| rate.at(t + later);
+            // A rate of many sines is dear: that of the end of a step is that of the beginning of the next.
+            let ahead = [0.5 * step, step].map(|later| rate.at(t + later));
+            let ahead_delayed = [0.5 * step, step].map(|later| rate.at(t + later - self.delay_s));
             // Simpson's rule.
-            angle += step / 6.0 * (u(0.0) + 4.0 * u(0.5 * step) + u(step));
-            let d = |later: f64| rate.at(t + later - self.delay_s);
-            delayed_angle += step / 6.0 * (d(0.0) + 4.0 * d(0.5 * step) + d(step));
-            state = self.followed(state, [d(0.0), d(0.5 * step), d(step)], step);
+            angle += step / 6.0 * (now + 4.0 * ahead[0] + ahead[1]);
+            delayed_angle += step / 6.0 * (now_delayed + 4.0 * ahead_delayed[0] + ahead_delayed[1]);
+            state = self.followed(state, [now_delayed, ahead_delayed[0], ahead_delayed[1]], step);
+            (now, now_delayed) = (ahead[1], ahead_delayed[1]);
         }
         record
     }
@@ -218,32 +221,32 @@ impl OnTable {
 
     /// Amplitude and lag of the output at a frequency, rad, from the equations run until only the forced motion is left.
     pub fn forced(&self, frequency_hz: f64) -> (f64, f64) {
+        let rate = |t: f64| (TAU * frequency_hz * (t - self.delay_s)).sin();
         let (corner, slowest) = match self.dynamics {
             Dynamics::None => (frequency_hz, frequency_hz),
             Dynamics::OnePole { corner_hz } => (corner_hz, corner_hz),
             Dynamics::TwoPoles { corner_hz, damping } => (corner_hz, corner_hz * damping.min(1.0 / damping)),
-            // A mean is no equation that is run: the steps of the sine serve.
-            Dynamics::Average { over_s } => (frequency_hz, 1.0 / over_s),
+            Dynamics::Average { over_s } => {
+                // A mean has no motion of its own: its values a quarter of a period apart give both.
+                let parts = 20_000;
+                let part = over_s / f64::from(parts);
+                let at = |t: f64| {
+                    (0..parts).map(|k| rate(t - part * (f64::from(k) + 0.5))).sum::<f64>() / f64::from(parts)
+                };
+                let (sine, cosine) = (at(0.25 / frequency_hz), at(0.0));
+                return (sine.hypot(cosine), -cosine.atan2(sine));
+            }
         };
         let steps_per_period = 400.0 * (corner / frequency_hz).max(1.0).ceil();
         let step = 1.0 / (frequency_hz * steps_per_period);
         let periods = (6.0 * frequency_hz / slowest).ceil().max(2.0) + 1.0;
         let (begin, end) =
             (((periods - 1.0) * steps_per_period) as usize, (periods * steps_per_period) as usize);
-        let rate = |t: f64| (TAU * frequency_hz * (t - self.delay_s)).sin();
         let (mut state, mut sine, mut cosine) = ((0.0, 0.0), 0.0, 0.0);
         for i in 0..end {
             let t = i as f64 * step;
             if i >= begin {
-                let y = match self.dynamics {
-                    Dynamics::None => rate(t),
-                    Dynamics::OnePole { .. } | Dynamics::TwoPoles { .. } => state.0,
-                    Dynamics::Average { over_s } => {
-                        let parts = 2000;
-                        let at = |k: i32| rate(t - over_s * (f64::from(k) + 0.5) / f64::from(parts));
-                        (0..parts).map(at).sum::<f64>() / f64::from(parts)
-                    }
-                };
+                let y = if self.dynamics == Dynamics::None { rate(t) } else { state.0 };
                 sine += y * (TAU * frequency_hz * t).sin();
                 cosine += y * (TAU * frequency_hz * t).cos();
             }
