@@ -45,6 +45,8 @@ const LOW_HARMONICS: usize = 3;
 const MIN_LOW_HARMONICS: usize = 2;
 /// Gain of a line some tens of frequency cells away, as a share of its own.
 const LEAKAGE_SHARE: f64 = 1e-3;
+/// Smallest gain of a harmonic below the highest that pays for itself, nats: that of its two parameters by AIC.
+const MIN_GAIN_BELOW_HIGHEST: f64 = 2.0;
 /// Fewest periods in the record: slower ones are slow processes.
 const MIN_PERIODS: f64 = 8.0;
 /// Fewest samples of a record in which a comb is sought.
@@ -104,6 +106,13 @@ fn price(drivers: &Drivers) -> f64 {
     0.5 * (drivers.samples.max(2) as f64).ln()
 }
 
+/// Price of a harmonic, nats, whose fundamental is free as well. One above the lowest is chosen among all harmonics, and among the
+/// frequencies that the lowest cannot tell apart: without this, noise far up would move the fundamental to itself.
+fn price_of_order(order: usize, drivers: &Drivers) -> f64 {
+    let choices = if order > LOW_HARMONICS { MAX_HARMONIC * order / LOW_HARMONICS } else { 1 };
+    price(drivers) + (choices as f64).ln()
+}
+
 /// A comb with its gain less the price of its harmonics.
 struct Candidate {
     point: Vec<f64>,
@@ -113,19 +122,19 @@ struct Candidate {
 /// The best comb in time: at each fundamental, the harmonics that pay for their parameter.
 fn in_time(drivers: &Drivers, context: &SearchContext<'_>, bounds: Bounds) -> Option<Candidate> {
     let LineGains { gains, step_hz } = LineGains::of(drivers, context);
-    let price = price(drivers);
-    let score: Vec<f64> = gains.iter().map(|g| (g - price).max(0.0)).collect();
+    let prices: Vec<f64> = (0..=MAX_HARMONIC).map(|h| price_of_order(h, drivers)).collect();
     // A fundamental is met to half a cell of its highest harmonic.
     let fine = step_hz / MAX_HARMONIC as f64;
     let (first, last) = ((bounds.low / fine).ceil() as usize, (bounds.high / fine) as usize);
     let cell = |i: usize, h: usize| (h * i + MAX_HARMONIC / 2) / MAX_HARMONIC;
     let mut best = (0.0, 0);
     for i in first..=last {
-        let lowest = (1..=LOW_HARMONICS).filter(|h| score.get(cell(i, *h)).is_some_and(|w| *w > 0.0)).count();
+        let paid = |h: usize| gains.get(cell(i, h)).map(|gain| (gain - prices[h]).max(0.0));
+        let lowest = (1..=LOW_HARMONICS).filter(|h| paid(*h).is_some_and(|w| w > 0.0)).count();
         if lowest < MIN_LOW_HARMONICS {
             continue;
         }
-        let total = (1..=MAX_HARMONIC).map_while(|h| score.get(cell(i, h))).sum::<f64>();
+        let total = (1..=MAX_HARMONIC).map_while(paid).sum::<f64>();
         if total > best.0 {
             best = (total, i);
         }
@@ -134,7 +143,10 @@ fn in_time(drivers: &Drivers, context: &SearchContext<'_>, bounds: Bounds) -> Op
     let gain = |h: usize| gains.get(cell(i, h)).copied().unwrap_or(0.0);
     let largest = (1..=MAX_HARMONIC).map(gain).fold(0.0, f64::max);
     // A strong line leaks into every cell, by less the farther it is.
-    let present = |h: &usize| gain(*h) > price.max(LEAKAGE_SHARE * largest);
+    let leaked = LEAKAGE_SHARE * largest;
+    let highest = (1..=MAX_HARMONIC).filter(|h| gain(*h) > prices[*h].max(leaked)).max().unwrap_or(0);
+    // Below the highest one that pays, those too weak to pay still carry their share of the disturbance.
+    let present = |h: &usize| *h <= highest && gain(*h) > MIN_GAIN_BELOW_HIGHEST.max(leaked);
     let mask = (1..=MAX_HARMONIC).filter(present).fold(0u32, |mask, h| mask | 1 << (h - 1));
     let point = vec![(i as f64 * fine).clamp(bounds.low, bounds.high), f64::from(mask), 0.0];
     (best_score > 0.0 && is_comb(mask)).then_some(Candidate { point, score: best_score })
