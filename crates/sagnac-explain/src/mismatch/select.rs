@@ -291,6 +291,9 @@ impl<'a> Search<'a> {
         let mut beam = vec![base.clone()];
         for depth in 0..most {
             let mut next: Vec<FittedHypothesis> = vec![];
+            if beam.first().is_some_and(|leader| depth > 0 && self.is_enough(leader, &wanted)) {
+                break;
+            }
             for before in &beam {
                 let candidates = self.candidates(before);
                 let passing: Vec<&Candidate> =
@@ -338,6 +341,17 @@ impl<'a> Search<'a> {
             best = next;
         }
         best
+    }
+
+    /// True for laws that bend to nothing, beside which nothing is improbable and which leave ordinary noise: what is plainer than they are was
+    /// tried before, and what explains more explains noise.
+    fn is_enough(&self, leader: &FittedHypothesis, wanted: impl Fn(&dyn Effect) -> bool) -> bool {
+        let bends = |e: &dyn Effect| e.is_free_form() || is_process(e) || is_response(e);
+        let is_plain = !slots(&leader.hypothesis).iter().any(|(_, e)| bends(*e));
+        let adds = |c: &Candidate| self.passes(c) && wanted(c.effect);
+        is_plain
+            && !self.candidates(leader).iter().any(adds)
+            && self.problem.departure_probability(leader) >= self.options.alpha
     }
 
     /// A hypothesis without the effects that the rule would not add to the others: what came first may have stood for what came after.
