@@ -118,7 +118,23 @@ pub fn levels(problem: &Problem, tried: &FittedHypothesis) -> Vec<Level> {
     let rows = (samples.len() as f64).ln();
     let score = |l: &Level| 2.0 * l.gain - l.parameters as f64 * rows;
     out.sort_descending_by(|a| score(a));
+    recorded_first(&mut out, score);
     out
+}
+
+/// Moves the best law of a recorded column before a course of time that bends more and explains hardly more: what readings
+/// of the column lose by rounding and noise, such a course does not.
+fn recorded_first(levels: &mut Vec<Level>, score: impl Fn(&Level) -> f64) {
+    /// Share of what a course of time explains that it must explain beyond a column.
+    const MIN_BENT_SHARE: f64 = 0.1;
+    let Some(best) = levels.first().filter(|l| matches!(l.law, Law::Time(_))) else { return };
+    let is_plainer = |l: &Level| {
+        let recorded = matches!(l.law, Law::Column(..) | Law::Rate { .. });
+        recorded && l.parameters < best.parameters && score(l) > (1.0 - MIN_BENT_SHARE) * score(best)
+    };
+    if let Some(at) = levels.iter().position(is_plainer) {
+        levels[..=at].rotate_right(1);
+    }
 }
 
 /// Finds what the level of the noise follows, where the claim states nothing of it: the claim's fit with N free, since the
@@ -240,6 +256,36 @@ pub fn with_free_level(base: &FittedHypothesis, problem: &Problem) -> FittedHypo
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    fn level(law: Law, gain: f64, parameters: usize) -> Level {
+        Level {
+            effect: EFFECTS[0],
+            law,
+            profile: vec![],
+            gain,
+            parameters,
+            p_value: 0.0,
+            ratio: 1.0,
+            ci95: [1.0; 2],
+            places: vec![],
+        }
+    }
+
+    #[test]
+    fn a_column_comes_before_a_course_of_time_that_bends_more_and_says_hardly_more() {
+        let column = |gain, parameters| {
+            level(Law::Column(crate::effect::Column::of_name("p"), vec![]), gain, parameters)
+        };
+        let first = |time: Level, column: Level| {
+            let mut levels = vec![time, column];
+            recorded_first(&mut levels, |l| 2.0 * l.gain);
+            matches!(levels[0].law, Law::Column(..))
+        };
+        assert!(first(level(Law::Time(vec![]), 249.0, 4), column(230.0, 2)));
+        // A course as plain as the law of the column, and one that says clearly more.
+        assert!(!first(level(Law::Time(vec![]), 249.0, 2), column(230.0, 2)));
+        assert!(!first(level(Law::Time(vec![]), 249.0, 4), column(200.0, 2)));
+    }
 
     #[test]
     fn the_gain_of_known_deviations_is_that_of_their_likelihood() {

@@ -110,7 +110,7 @@ fn most_probable(gains: &[f64]) -> Option<[usize; 2]> {
         gains.iter().enumerate().map(|(j, g)| ((g - largest).exp(), j)).filter(|(p, _)| *p > 1e-9).collect();
     likely.sort_descending_by(|a| a.0);
     let whole: f64 = likely.iter().map(|l| l.0).sum();
-    let (mut held, mut first, mut last) = (0.0, gains.len(), 0);
+    let (mut held, mut first, mut last) = (0.0, usize::MAX, 0);
     for (p, j) in likely {
         (first, last) = (first.min(j), last.max(j));
         held += p;
