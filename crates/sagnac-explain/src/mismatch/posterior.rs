@@ -31,7 +31,7 @@ impl From<(&'static str, f64)> for ScoredName {
 
 /// Physics differs from the formulas that are fitted, by more where it is better seen: log-likelihoods that differ by less than this
 /// share of the gain do not tell names apart. Set on 428 names of the development half of a generator that shares no formula with the engine; of
-/// 227 names of the held-out half those stated .69 and .97 were right in .68 and .96 (with 0.05 and 2 nats .69 and .95 in .85 and .98).
+/// 227 names of the held-out half those stated .69 and .97 were right in .70 and .96 (with 0.05 and 2 nats .69 and .95 in .85 and .98).
 const MODEL_ERROR: f64 = 0.032;
 /// Least gain that names share, nats.
 const MIN_SHARED_GAIN: f64 = 1.3;
