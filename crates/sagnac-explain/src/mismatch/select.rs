@@ -214,6 +214,11 @@ fn has_nameless_form(tried: &FittedHypothesis) -> bool {
     slots(&tried.hypothesis).iter().any(|(_, e)| is_nameless(*e))
 }
 
+/// True for a hypothesis that has a free form, or one without a name, only where another has one.
+fn bends_no_more(one: &FittedHypothesis, other: &FittedHypothesis) -> bool {
+    (has_free_form(other) || !has_free_form(one)) && (has_nameless_form(other) || !has_nameless_form(one))
+}
+
 /// True for hypotheses that differ only in their processes: a raised coefficient is as free as a process of something that was not
 /// recorded, and none of them is the plainer law.
 fn differ_in_processes(one: &FittedHypothesis, other: &FittedHypothesis) -> bool {
@@ -405,8 +410,9 @@ impl<'a> Search<'a> {
         let tried = self.tried.borrow();
         let passing = tried.iter().flat_map(|t| t.candidates.iter()).filter(|c| self.passes(c));
         let smaller = passing.map(|c| &c.tried).filter(|t| {
-            let fewer = slots(&t.hypothesis).len() < effects && (has_free_form(&best) || !has_free_form(t));
-            fewer && t.fit.log_likelihood >= best.fit.log_likelihood
+            slots(&t.hypothesis).len() < effects
+                && bends_no_more(t, &best)
+                && t.fit.log_likelihood >= best.fit.log_likelihood
         });
         let rows = self.spectra.rows;
         let least = smaller.min_by(|a, b| a.rank(rows).total_cmp(&b.rank(rows))).cloned();
@@ -575,11 +581,7 @@ fn chosen(
     let rows = spectra.rows;
     let all_slots = slots(&best.hypothesis);
     let single = all_slots.len() == 1;
-    let plainer = |t: &FittedHypothesis| {
-        (has_free_form(best) || !has_free_form(t))
-            && (has_nameless_form(best) || !has_nameless_form(t))
-            && (has_response(best) || !has_response(t))
-    };
+    let plainer = |t: &FittedHypothesis| bends_no_more(t, best) && (has_response(best) || !has_response(t));
     // What was found on the way to several effects that went again need not be the best single one.
     let margin = if single { 0.0 } else { MIN_DELTA_BIC };
     let mut out: Vec<Chosen> = all_slots
