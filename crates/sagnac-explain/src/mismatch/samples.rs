@@ -124,7 +124,7 @@ pub fn levels(problem: &Problem, tried: &FittedHypothesis) -> Vec<Level> {
 
 /// Moves the best law of a recorded column before a course of time that bends more and explains hardly more: what readings
 /// of the column lose by rounding and noise, such a course does not.
-fn recorded_first(levels: &mut Vec<Level>, score: impl Fn(&Level) -> f64) {
+fn recorded_first(levels: &mut [Level], score: impl Fn(&Level) -> f64) {
     /// Share of what a course of time explains that it must explain beyond a column.
     const MIN_BENT_SHARE: f64 = 0.1;
     let Some(best) = levels.first().filter(|l| matches!(l.law, Law::Time(_))) else { return };
