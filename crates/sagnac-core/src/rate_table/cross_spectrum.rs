@@ -264,7 +264,7 @@ fn without_line(values: &[f64]) -> Vec<f64> {
     values.iter().enumerate().map(|(i, v)| v - mean - slope * (i as f64 - middle)).collect()
 }
 
-/// What the input is.
+/// Kinds of the input of a spectrum.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum InputKind {
     /// Angle of the table, whose differences are the mean rate of the interval before each sample.

@@ -15,7 +15,7 @@ const MAX_STEPS: usize = 60;
 /// Steps for the derivative of a response, relative for what is a logarithm and in units of the shortest period for a delay.
 const DERIVATIVE_STEP: f64 = 1e-5;
 
-/// What the best model may leave beyond the noise, as a share of the response: with more no row rests on it. Less is in the intervals.
+/// Largest share of the response that the best model may leave beyond the noise: with more no row rests on it. Less is in the intervals.
 pub(crate) const LARGEST_RELATIVE_MISFIT: f64 = 0.03;
 
 /// Largest step for the derivative of what follows from a model, relative.
