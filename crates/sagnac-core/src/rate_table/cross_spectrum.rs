@@ -184,27 +184,22 @@ impl Lengthwise {
     /// Power of the noise of the readings, as [`InputKind::of_white_readings`] has it: that of the quietest frequencies at which an output follows
     /// nothing; 0 where it follows the input everywhere.
     fn noise_of_readings(&self, output: usize, input: InputKind) -> f64 {
-        let Some((power, product)) = self.outputs.get(output) else { return 0.0 };
-        let highest = (HIGHEST_SHARE * self.len() as f64) as usize;
-        let level = |bins: Range<usize>| {
-            let sum = |of: &dyn Fn(usize) -> f64| bins.clone().map(of).sum::<f64>();
-            let at = |of: &[f64], k: usize| of.get(k).copied().unwrap_or(0.0);
-            let shared = sum(&|k| {
-                let both = at(&self.input_power, k) * at(power, k);
-                product.get(k).map_or(0.0, |p| p.norm_sqr() / both.max(f64::MIN_POSITIVE))
-            });
-            let count = bins.len() as f64;
-            if shared / count >= LARGEST_QUIET_COHERENCE {
-                return None;
-            }
-            let unit = |k| input.of_white_readings(k, self.len());
-            let powers =
-                bins.clone().map(|k| Some(at(&self.input_power, k) / unit(k)?)).sum::<Option<f64>>()?;
-            Some(powers / count)
+        let Some((power, product)) = self.outputs.get(output).filter(|_| input != InputKind::Other) else {
+            return 0.0;
         };
+        let highest = (HIGHEST_SHARE * self.len() as f64) as usize;
+        let mean = |of: &dyn Fn(usize) -> f64, first: usize| {
+            (first..first + QUIET_BINS).map(of).sum::<f64>() / QUIET_BINS as f64
+        };
+        let at = |of: &[f64], k: usize| of.get(k).copied().unwrap_or(0.0);
+        let coherence = |k: usize| {
+            let both = at(&self.input_power, k) * at(power, k);
+            product.get(k).map_or(0.0, |p| p.norm_sqr() / both.max(f64::MIN_POSITIVE))
+        };
+        let level = |k: usize| at(&self.input_power, k) / input.of_white_readings(k, self.len());
         let starts = (FIRST_BIN..highest.saturating_sub(QUIET_BINS)).step_by(QUIET_BINS);
-        let lowest = starts.filter_map(|k| level(k..k + QUIET_BINS)).fold(f64::INFINITY, f64::min);
-        if lowest.is_finite() { lowest } else { 0.0 }
+        let quiet = starts.filter(|k| mean(&coherence, *k) < LARGEST_QUIET_COHERENCE);
+        quiet.map(|k| mean(&level, k)).min_by(f64::total_cmp).unwrap_or(0.0)
     }
 
     /// The bins from `first` on to below `end` of an output.
@@ -232,8 +227,7 @@ impl Lengthwise {
             }
             let coherence = (xy.norm_sqr() / (xx * yy)).min(1.0);
             // Noise of the readings is power of the input that the output does not follow.
-            let of_reading =
-                (readings * input.of_white_readings(k, self.len()).unwrap_or(0.0) / xx).min(1.0 - coherence);
+            let of_reading = (readings * input.of_white_readings(k, self.len()) / xx).min(1.0 - coherence);
             let xx = &(xx * (1.0 - of_reading));
             let noise = yy * (1.0 - coherence) * n / (n - OVERLAP_LOSS);
             Some(Bin {
@@ -276,12 +270,12 @@ enum InputKind {
 }
 
 impl InputKind {
-    /// Power of white noise of the readings in a bin of a segment of `length` samples, of unit size; `None` where it is not told.
-    fn of_white_readings(self, bin: usize, length: usize) -> Option<f64> {
+    /// Power of white noise of the readings in a bin of a segment of `length` samples, of unit size; 0 where it is not told.
+    fn of_white_readings(self, bin: usize, length: usize) -> f64 {
         match self {
-            InputKind::TableAngle => Some(2.0 - 2.0 * (TAU * bin as f64 / length as f64).cos()),
-            InputKind::TableRate => Some(1.0),
-            InputKind::Other => None,
+            InputKind::TableAngle => 2.0 - 2.0 * (TAU * bin as f64 / length as f64).cos(),
+            InputKind::TableRate => 1.0,
+            InputKind::Other => 0.0,
         }
     }
 }
