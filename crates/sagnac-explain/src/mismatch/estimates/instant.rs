@@ -10,9 +10,9 @@ use crate::mismatch::hypothesis::PartModes;
 use crate::mismatch::spectral_data::SpectralData;
 use crate::mismatch::terms::MeanTerm;
 use crate::numeric::cosine::{dct2, inverse_dct2};
+use crate::numeric::least_squares::Normal;
 use crate::numeric::order::SortByNumber;
 use crate::numeric::parallel;
-use nalgebra::{DMatrix, DVector};
 
 /// Probability that an interval holds.
 const INTERVAL_PROBABILITY: f64 = 0.95;
@@ -28,17 +28,15 @@ pub fn interval(inside: &MeanTerm, tried: &FittedHypothesis, spectra: &SpectralD
         return None;
     }
     let parts = PartModes::of_shape(course, &inside.nonlinear_parameters, spectral);
-    // What is left without the course, over the power of each mode.
-    let mut left = tried.residual(spectra).to_vec();
+    // What is left without the course.
+    let mut left = tried.residual(spectra);
     for (column, size) in parts.columns.iter().zip(&inside.coefficients) {
         left.iter_mut().zip(column).for_each(|(r, z)| *r += size * z);
     }
     let powers = tried.powers(spectra);
-    let weighted: Vec<f64> =
-        left.iter().zip(&powers).map(|(r, p)| if p.is_finite() { r / p } else { 0.0 }).collect();
     match (inside.nonlinear_parameters.as_slice(), inside.coefficients.len()) {
-        ([_], 1) => of_step(&weighted, &powers, spectral),
-        ([_], 2..) => of_columns(course, &weighted, &powers, spectral),
+        ([_], 1) => of_step(&left, &powers, spectral),
+        ([_], 2..) => of_columns(course, &left, &powers, spectral),
         _ => None,
     }
 }
@@ -46,38 +44,31 @@ pub fn interval(inside: &MeanTerm, tried: &FittedHypothesis, spectra: &SpectralD
 /// That of a course of several columns, on a grid of instants: a table that turns may hide for a long while that it has begun.
 fn of_columns(
     course: &dyn MeanModel,
-    weighted: &[f64],
+    left: &[f64],
     powers: &[f64],
     spectral: &SpectralData,
 ) -> Option<[f64; 2]> {
     let bounds = *course.bounds(&spectral.drivers).first()?;
     let count = FITTED_INSTANTS.min(spectral.drivers.samples / 4);
-    let at = |i: usize| bounds.low + bounds.width() * (i as f64 + 0.5) / count as f64;
+    let step = bounds.width() / count as f64;
+    let edge = |i: usize| bounds.low + step * i as f64;
+    // Only differences of the log-likelihood count.
     let gain = |i: usize| {
-        let columns = PartModes::of_shape(course, &[at(i)], spectral).columns;
-        let product = |a: &[f64], b: &[f64]| {
-            let terms = a.iter().zip(b).zip(powers).filter(|(_, p)| p.is_finite());
-            terms.map(|((x, y), p)| x * y / p).sum::<f64>()
-        };
-        let count = columns.len();
-        let information = DMatrix::from_fn(count, count, |j, k| product(&columns[j], &columns[k]));
-        let score = columns.iter().map(|c| c.iter().zip(weighted).map(|(z, r)| z * r).sum::<f64>());
-        let score = DVector::from_iterator(count, score);
-        let gain = information.cholesky().map(|of| 0.5 * of.solve(&score).dot(&score));
-        gain.unwrap_or(f64::NEG_INFINITY)
+        let columns = PartModes::of_shape(course, &[edge(i) + 0.5 * step], spectral).columns;
+        let free: Vec<(&[f64], f64)> = columns.iter().map(|c| (c.as_slice(), f64::INFINITY)).collect();
+        let (_, _, unexplained) = Normal::new(&free, left, powers).solve();
+        -0.5 * unexplained
     };
     let [first, last] = most_probable(&parallel::map(count, gain))?;
-    let time = |shape: f64| spectral.drivers.start_s + shape;
-    Some([
-        time(at(first) - 0.5 * bounds.width() / count as f64),
-        time(at(last) + 0.5 * bounds.width() / count as f64),
-    ])
+    Some([first, last + 1].map(|i| spectral.drivers.start_s + edge(i)))
 }
 
 /// That of a step of one size: the sum of what is left from each instant on tells its gain at once.
-fn of_step(weighted: &[f64], powers: &[f64], spectral: &SpectralData) -> Option<[f64; 2]> {
+fn of_step(left: &[f64], powers: &[f64], spectral: &SpectralData) -> Option<[f64; 2]> {
     let n = spectral.drivers.samples;
-    let score = inverse_dct2(weighted);
+    let weighted: Vec<f64> =
+        left.iter().zip(powers).map(|(r, p)| if p.is_finite() { r / p } else { 0.0 }).collect();
+    let score = inverse_dct2(&weighted);
     let at = |place: usize| 1 + place * (n - 2) / WEIGHT_POINTS;
     let weight = |j: usize| {
         let step: Vec<f64> = (0..n).map(|i| f64::from(u8::from(i >= j))).collect();
